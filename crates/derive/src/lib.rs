@@ -1,0 +1,1 @@
+//! `#[derive(Params)]`, `#[derive(Inputs)]` and `#[derive(Targets)]`: static tables and thin glue, no behaviour.

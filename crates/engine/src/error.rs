@@ -1,0 +1,205 @@
+//! The one public error of the toolkit.
+//!
+//! One type, because finer ones compose badly across crates; what a caller can act on is the [`ErrorKind`],
+//! which has the same names and numbers on every surface (Python exception, C status, exit code).
+
+use std::error::Error as StdError;
+use std::fmt;
+
+/// `Result` with the toolkit's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// What went wrong, as far as a caller can act on it. The numbers are those of C's `opendr_status`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+#[repr(i32)]
+pub enum ErrorKind {
+    /// A datum, target or file handed in does not fit: wrong shape, empty, NaN, undecodable picture.
+    InvalidInput = 1,
+    /// A parameter is unknown, of the wrong type or out of range.
+    InvalidParam = 2,
+    /// A file, model, learner, device node or class name does not exist.
+    NotFound = 3,
+    /// The operating system refused to read or write.
+    Io = 4,
+    /// A server or package client could not be reached or broke off.
+    Network = 5,
+    /// Bytes differ from their checksum or stated size, or an archive member leaves its folder.
+    Integrity = 6,
+    /// A file or message does not follow its format.
+    Format = 7,
+    /// This learner, runtime or build cannot do what was asked.
+    Unsupported = 8,
+    /// The device asked for is not there or failed.
+    Device = 9,
+    /// A fault of OpenDR itself: please report it.
+    Internal = 10,
+}
+
+impl ErrorKind {
+    /// The name as written on every surface, e.g. `"InvalidInput"`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::InvalidInput => "InvalidInput",
+            Self::InvalidParam => "InvalidParam",
+            Self::NotFound => "NotFound",
+            Self::Io => "Io",
+            Self::Network => "Network",
+            Self::Integrity => "Integrity",
+            Self::Format => "Format",
+            Self::Unsupported => "Unsupported",
+            Self::Device => "Device",
+            Self::Internal => "Internal",
+        }
+    }
+}
+
+impl fmt::Display for ErrorKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// An error: a kind, a message (what, the values, what to do next), context added on the way up, and a source.
+///
+/// The size of a pointer, so that `Result<T>` stays small.
+pub struct Error(Box<Inner>);
+
+struct Inner {
+    kind: ErrorKind,
+    message: String,
+    context: Vec<String>,
+    source: Option<Box<dyn StdError + Send + Sync>>,
+}
+
+macro_rules! constructors {
+    ($($(#[$doc:meta])* $name:ident => $kind:ident;)*) => {$(
+        $(#[$doc])*
+        #[cold]
+        pub fn $name(message: impl Into<String>) -> Self { Self::new(ErrorKind::$kind, message) }
+    )*};
+}
+
+impl Error {
+    /// An error of `kind`. The message is lower case, without a full stop, and tells what to do next.
+    #[cold]
+    pub fn new(kind: ErrorKind, message: impl Into<String>) -> Self {
+        Self(Box::new(Inner { kind, message: message.into(), context: Vec::new(), source: None }))
+    }
+
+    constructors! {
+        /// [`ErrorKind::InvalidInput`].
+        invalid_input => InvalidInput;
+        /// [`ErrorKind::InvalidParam`].
+        invalid_param => InvalidParam;
+        /// [`ErrorKind::NotFound`].
+        not_found => NotFound;
+        /// [`ErrorKind::Io`].
+        io => Io;
+        /// [`ErrorKind::Network`].
+        network => Network;
+        /// [`ErrorKind::Integrity`].
+        integrity => Integrity;
+        /// [`ErrorKind::Format`].
+        format => Format;
+        /// [`ErrorKind::Unsupported`].
+        unsupported => Unsupported;
+        /// [`ErrorKind::Device`].
+        device => Device;
+        /// [`ErrorKind::Internal`].
+        internal => Internal;
+    }
+
+    /// What a caller can act on.
+    pub fn kind(&self) -> ErrorKind {
+        self.0.kind
+    }
+
+    /// The message without its context and source.
+    pub fn message(&self) -> &str {
+        &self.0.message
+    }
+
+    /// Adds what was being done, outermost last: `reading model.json: ...`.
+    #[cold]
+    #[must_use]
+    pub fn context(mut self, what: impl Into<String>) -> Self {
+        self.0.context.push(what.into());
+        self
+    }
+
+    /// Attaches the error that caused this one.
+    #[cold]
+    #[must_use]
+    pub fn with_source(mut self, source: impl Into<Box<dyn StdError + Send + Sync>>) -> Self {
+        self.0.source = Some(source.into());
+        self
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for context in self.0.context.iter().rev() {
+            write!(f, "{context}: ")?;
+        }
+        f.write_str(&self.0.message)?;
+        if let Some(source) = &self.0.source {
+            write!(f, " ({source})")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {self}", self.0.kind)
+    }
+}
+
+impl StdError for Error {
+    fn source(&self) -> Option<&(dyn StdError + 'static)> {
+        self.0.source.as_deref().map(|source| source as _)
+    }
+}
+
+/// A missing file becomes [`ErrorKind::NotFound`], everything else [`ErrorKind::Io`].
+impl From<std::io::Error> for Error {
+    fn from(error: std::io::Error) -> Self {
+        let kind = match error.kind() {
+            std::io::ErrorKind::NotFound => ErrorKind::NotFound,
+            _ => ErrorKind::Io,
+        };
+        Self::new(kind, error.to_string())
+    }
+}
+
+/// Adds context to the error of a `Result`.
+pub trait ResultExt<T> {
+    /// Adds what was being done; the text is only made when there is an error.
+    fn context<S: Into<String>>(self, what: impl FnOnce() -> S) -> Result<T>;
+}
+
+impl<T, E: Into<Error>> ResultExt<T> for Result<T, E> {
+    fn context<S: Into<String>>(self, what: impl FnOnce() -> S) -> Result<T> {
+        self.map_err(|error| error.into().context(what()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn message_reads_from_the_outside_in() {
+        let error = Error::format("no key \"files\"").context("reading model.json").context("loading nanodet");
+        assert_eq!(error.to_string(), "loading nanodet: reading model.json: no key \"files\"");
+        assert_eq!(error.kind(), ErrorKind::Format);
+        assert_eq!(size_of::<Error>(), size_of::<usize>());
+    }
+
+    #[test]
+    fn missing_file_is_not_found() {
+        let error: Error = std::fs::read("/no/such/file").unwrap_err().into();
+        assert_eq!(error.kind(), ErrorKind::NotFound);
+    }
+}

@@ -1,0 +1,41 @@
+//! Where and when a datum was taken.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+/// Time stamp and coordinate frame of a datum; they travel from the input to every target made of it.
+///
+/// Cloning copies no text and allocates nothing.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Header {
+    /// Nanoseconds since the Unix epoch, or since the start of a recording; `None` when unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stamp_ns: Option<i64>,
+    /// The coordinate frame (ROS's `frame_id`, e.g. `"camera_link"`); `None` when unknown.
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "frame_id")]
+    pub frame_id: Option<Arc<str>>,
+}
+
+impl Header {
+    /// A header with both stamp (nanoseconds) and frame id.
+    pub fn new(stamp_ns: i64, frame_id: impl Into<Arc<str>>) -> Self {
+        Self { stamp_ns: Some(stamp_ns), frame_id: Some(frame_id.into()) }
+    }
+}
+
+mod frame_id {
+    use super::Arc;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(value: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
+        match value {
+            Some(text) => serializer.serialize_str(text),
+            None => serializer.serialize_none(),
+        }
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Arc<str>>, D::Error> {
+        Ok(Option::<String>::deserialize(deserializer)?.map(Arc::from))
+    }
+}
