@@ -32,7 +32,8 @@ pub enum Device {
 
 impl Device {
     /// The names that [`Device::from_str`] takes.
-    pub const NAMES: [&str; 7] = ["auto", "cpu", "cuda[:N]", "tensorrt[:N]", "openvino", "coreml", "vulkan[:N]"];
+    pub const NAMES: [&str; 7] =
+        ["auto", "cpu", "cuda[:N]", "tensorrt[:N]", "openvino", "coreml", "vulkan[:N]"];
 
     /// This device, or the one that `OPENDR_DEVICE` names.
     ///

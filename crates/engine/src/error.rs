@@ -191,7 +191,8 @@ mod tests {
 
     #[test]
     fn message_reads_from_the_outside_in() {
-        let error = Error::format("no key \"files\"").context("reading model.json").context("loading nanodet");
+        let error =
+            Error::format("no key \"files\"").context("reading model.json").context("loading nanodet");
         assert_eq!(error.to_string(), "loading nanodet: reading model.json: no key \"files\"");
         assert_eq!(error.kind(), ErrorKind::Format);
         assert_eq!(size_of::<Error>(), size_of::<usize>());

@@ -3,6 +3,10 @@
 mod device;
 mod error;
 mod header;
+mod pool;
+mod progress;
+mod statistics;
+mod task;
 
 pub mod data;
 pub mod target;
@@ -10,3 +14,7 @@ pub mod target;
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};
 pub use header::Header;
+pub use pool::{Pool, Pooled};
+pub use progress::{Progress, Silent, Unit};
+pub use statistics::Statistics;
+pub use task::Task;

@@ -162,8 +162,7 @@ mod tests {
 
     #[test]
     fn crop_is_cut_at_the_border() {
-        let image =
-            Image::new((0..12).collect::<Vec<u8>>(), 4, 3, PixelFormat::Grey, Layout::Hwc).unwrap();
+        let image = Image::new((0..12).collect::<Vec<u8>>(), 4, 3, PixelFormat::Grey, Layout::Hwc).unwrap();
         let crop = image.view().crop(2, 1, 9, 9).unwrap();
         assert_eq!((crop.width(), crop.height()), (2, 2));
         assert_eq!(crop.hwc_u8(PixelFormat::Grey), [6, 7, 10, 11]);

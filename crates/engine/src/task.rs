@@ -1,0 +1,56 @@
+//! What a learner is for.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Error, Result};
+
+macro_rules! tasks {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal;)*) => {
+        /// A task fixes the target type and the metric of its learners; `eval` belongs to it.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+        #[serde(rename_all = "snake_case")]
+        #[non_exhaustive]
+        pub enum Task {
+            $($(#[$doc])* #[serde(rename = $name)] $variant,)*
+        }
+
+        impl Task {
+            /// Every task that has a learner.
+            pub const ALL: &[Self] = &[$(Self::$variant),*];
+
+            /// The name as OpenDR's package has it, e.g. `"object_detection_2d"`.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+        }
+    };
+}
+
+tasks! {
+    /// Boxes with classes in a picture.
+    ObjectDetection2d = "object_detection_2d";
+    /// Boxes of faces in a picture.
+    FaceDetection = "face_detection";
+    /// Key points of persons in a picture.
+    PoseEstimation = "pose_estimation";
+}
+
+impl fmt::Display for Task {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Task {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self> {
+        Self::ALL.iter().copied().find(|task| task.name() == text).ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|task| task.name()).collect();
+            Error::not_found(format!("no task {text:?}; there are {}", names.join(", ")))
+        })
+    }
+}
