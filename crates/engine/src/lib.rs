@@ -1,5 +1,8 @@
 //! What every OpenDR algorithm speaks: data, targets, learners, parameters, model containers, errors.
 
+// Derived code names this crate as `opendr_engine`, here too.
+extern crate self as opendr_engine;
+
 mod device;
 mod error;
 mod header;
@@ -9,6 +12,7 @@ mod statistics;
 mod task;
 
 pub mod data;
+pub mod params;
 pub mod target;
 
 pub use device::Device;

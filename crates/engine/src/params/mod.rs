@@ -1,0 +1,127 @@
+//! Parameters: the one place where a name, type, default, range and documentation stand.
+//!
+//! `#[derive(Params)]` makes a static table of [`Field`]s and the glue to read and write them by name; Python keyword
+//! arguments and stubs, command-line flags, ROS parameters, C's JSON, the tuner's search space and the reference pages
+//! all come from that table.
+
+mod choices;
+mod field;
+mod param;
+mod value;
+
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+
+pub use field::{Field, ParamRange};
+pub use opendr_derive::Params;
+pub use param::{Param, ParamKind};
+pub use value::ParamValue;
+
+use crate::{Error, Result};
+
+/// Parameters by name, as surfaces pass them.
+pub type ParamMap = BTreeMap<String, ParamValue>;
+
+/// A struct of parameters. Derive it; `Default` comes with the derive.
+///
+/// ```
+/// use opendr_engine::params::{Params, ParamValue};
+///
+/// /// What a user may set.
+/// #[derive(Debug, Clone, Params)]
+/// pub struct MyParams {
+///     /// Detections below this score are dropped.
+///     #[param(default = 0.35, range = 0.0..=1.0, live)]
+///     pub threshold: f32,
+///     /// Side of the network's input in pixels.
+///     #[param(default = 416, range = 32..=2048, unit = "px")]
+///     pub size: usize,
+/// }
+///
+/// let mut params = MyParams::default();
+/// params.set("threshold", ParamValue::Float(0.5)).unwrap();
+/// assert_eq!(params.threshold, 0.5);
+/// assert!(params.set("threshold", ParamValue::Float(1.5)).is_err());
+/// assert_eq!(MyParams::FIELDS[0].doc, "Detections below this score are dropped.");
+/// ```
+pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
+    /// The table of fields, in order of declaration.
+    const FIELDS: &'static [Field];
+
+    /// The value of field number `index`.
+    #[doc(hidden)]
+    fn get_at(&self, index: usize) -> ParamValue;
+
+    /// Sets field number `index`; `false` when the value is of the wrong type.
+    #[doc(hidden)]
+    fn set_at(&mut self, index: usize, value: &ParamValue) -> bool;
+
+    /// The value of a field.
+    ///
+    /// # Errors
+    /// `InvalidParam` when there is no such field.
+    fn get(&self, name: &str) -> Result<ParamValue> {
+        Ok(self.get_at(index_of(Self::FIELDS, name)?))
+    }
+
+    /// Sets a field.
+    ///
+    /// # Errors
+    /// `InvalidParam` when there is no such field, or the value is of the wrong type or out of range.
+    fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
+        let index = index_of(Self::FIELDS, name)?;
+        let field = &Self::FIELDS[index];
+        field.check(&value)?;
+        if self.set_at(index, &value) { Ok(()) } else { Err(field.wrong_type(&value)) }
+    }
+
+    /// Sets a field from text, as it comes from a command line.
+    ///
+    /// # Errors
+    /// As [`Params::set`].
+    fn set_text(&mut self, name: &str, text: &str) -> Result<()> {
+        let field = &Self::FIELDS[index_of(Self::FIELDS, name)?];
+        self.set(name, field.parse(text)?)
+    }
+
+    /// Checks every field against its range and choices.
+    ///
+    /// # Errors
+    /// `InvalidParam` for the first field that does not hold.
+    fn check(&self) -> Result<()> {
+        Self::FIELDS.iter().enumerate().try_for_each(|(index, field)| field.check(&self.get_at(index)))
+    }
+
+    /// All fields by name.
+    fn to_map(&self) -> ParamMap {
+        let fields = Self::FIELDS.iter().enumerate();
+        fields.map(|(index, field)| (field.name.to_owned(), self.get_at(index))).collect()
+    }
+
+    /// The defaults with the values of `map` over them.
+    ///
+    /// # Errors
+    /// As [`Params::set`].
+    fn from_map(map: &ParamMap) -> Result<Self> {
+        let mut params = Self::default();
+        map.iter().try_for_each(|(name, value)| params.set(name, value.clone()))?;
+        Ok(params)
+    }
+}
+
+/// No parameters.
+#[derive(Debug, Clone, Params)]
+pub struct NoParams {}
+
+fn index_of(fields: &[Field], name: &str) -> Result<usize> {
+    fields.iter().position(|field| field.name == name).ok_or_else(|| {
+        let names: Vec<_> = fields.iter().map(|field| field.name).collect();
+        Error::invalid_param(match names.is_empty() {
+            true => format!("no parameter {name:?}; there are none here"),
+            false => format!("no parameter {name:?}; there are {}", names.join(", ")),
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests;
