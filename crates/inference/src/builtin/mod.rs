@@ -1,0 +1,65 @@
+//! The built-in runtime: pure Rust (rten), so that a bare binary always works.
+
+mod engine;
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use opendr_engine::{Device, Error, Result};
+use rten::{LoadErrorKind, ModelOptions, ThreadPool};
+
+use crate::onnx_header::OnnxHeader;
+use crate::runtime::{Engine, Runtime, SessionOptions};
+use engine::BuiltinEngine;
+
+/// The version of rten in the workspace's manifest; rten does not tell it.
+const RTEN_VERSION: &str = "0.27";
+
+/// The built-in runtime. Processor only; two to eight times slower than ONNX Runtime, and always there.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Builtin;
+
+impl Runtime for Builtin {
+    fn name(&self) -> &'static str {
+        "builtin"
+    }
+
+    fn version(&self) -> String {
+        format!("rten {RTEN_VERSION}")
+    }
+
+    fn devices(&self) -> Vec<Device> {
+        vec![Device::Cpu]
+    }
+
+    fn open(&self, model: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
+        if !matches!(options.device, Device::Auto | Device::Cpu) {
+            return Err(Error::device(format!(
+                "the built-in runtime has no device {}, only cpu; install ONNX Runtime for others",
+                options.device
+            )));
+        }
+        let header = OnnxHeader::read(model)?;
+        let mut load = ModelOptions::with_all_ops();
+        load.prepack_weights(true);
+        // rten checks most of what it reads, not all: what is left panics, and must not take the process along.
+        let model = catch_unwind(AssertUnwindSafe(|| load.load(model.to_vec())))
+            .map_err(|_| {
+                Error::format("the built-in runtime cannot read the ONNX model: its graph is damaged")
+            })?
+            .map_err(|error| {
+                let message = "the built-in runtime cannot open the ONNX model";
+                match error.kind() {
+                    LoadErrorKind::OperatorInvalid => Error::unsupported(message),
+                    _ => Error::format(message),
+                }
+                .with_source(error)
+            })?;
+        let threads = Arc::new(ThreadPool::with_num_threads(options.thread_count()?));
+        Ok(Box::new(BuiltinEngine::new(model, header, threads)?))
+    }
+
+    fn describe(&self) -> String {
+        format!("built-in (rten {RTEN_VERSION})")
+    }
+}

@@ -1,0 +1,21 @@
+//! Inference module: sessions over ONNX Runtime or the built-in runtime, one interface for both.
+
+mod builtin;
+mod cache;
+mod onnx_header;
+mod onnx_runtime;
+mod protobuf;
+mod runtime;
+mod selection;
+mod session;
+mod tensor;
+
+pub mod timing;
+
+pub use builtin::Builtin;
+pub use cache::cache_dir;
+pub use onnx_runtime::OnnxRuntime;
+pub use runtime::{Engine, Runtime, SessionOptions, Sink};
+pub use selection::{default_runtime, describe, runtimes};
+pub use session::Session;
+pub use tensor::{Element, ElementType, MAX_RANK, TensorData, TensorInfo, TensorView};

@@ -1,0 +1,188 @@
+//! ONNX Runtime, loaded at run time.
+
+mod engine;
+mod library;
+mod provider;
+mod python;
+
+use std::path::Path;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use opendr_engine::{Device, Error, Result};
+use ort::session::Session;
+use ort::session::builder::{GraphOptimizationLevel, SessionBuilder};
+
+use crate::onnx_header::OnnxHeader;
+use crate::runtime::{Engine, Runtime, SessionOptions};
+use engine::OnnxRuntimeEngine;
+use library::Library;
+
+/// ONNX Runtime: the fastest runtime on every device, when its library is installed.
+///
+/// The library is searched for, once per process, in this order: `ORT_DYLIB_PATH` (a file or folder), the `onnxruntime`
+/// package of the active Python environment or of the `python3` on the search path, the cache that
+/// `opendr runtime install` fills, the system's loader.
+pub struct OnnxRuntime(Library);
+
+/// What the search of this process came to.
+#[derive(Default)]
+struct Search {
+    found: Option<Arc<OnnxRuntime>>,
+    done: bool,
+    skipped: Vec<String>,
+}
+
+static SEARCH: Mutex<Search> = Mutex::new(Search { found: None, done: false, skipped: Vec::new() });
+
+impl OnnxRuntime {
+    /// The ONNX Runtime of this process; the first call searches for its library.
+    ///
+    /// # Errors
+    /// `NotFound` that says what was passed over and how to install one.
+    pub fn find() -> Result<Arc<Self>> {
+        let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
+        if !search.done {
+            search.found = library::find(&mut search.skipped).map(|library| Arc::new(Self(library)));
+            search.done = true;
+        }
+        search.found.clone().ok_or_else(|| {
+            let mut message = String::from("no ONNX Runtime found; run \"opendr runtime install\"");
+            message.extend(search.skipped.iter().flat_map(|skipped| ["; ", skipped]));
+            Error::not_found(message)
+        })
+    }
+
+    /// Loads the library at `path` as the ONNX Runtime of this process.
+    ///
+    /// # Errors
+    /// `NotFound` when there is no such file, `Format` when it is no ONNX Runtime, `Unsupported` when it is too old or
+    /// another one is loaded already: a process holds one.
+    pub fn load(path: &Path) -> Result<Arc<Self>> {
+        let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(loaded) = &search.found {
+            if path.canonicalize().is_ok_and(|path| path == loaded.0.path) {
+                return Ok(Arc::clone(loaded));
+            }
+            return Err(Error::unsupported(format!(
+                "ONNX Runtime at {} is loaded already, and a process holds one; start anew to use {}",
+                loaded.0.path.display(),
+                path.display()
+            )));
+        }
+        let loaded = Arc::new(Self(library::load(path)?));
+        search.found = Some(Arc::clone(&loaded));
+        search.done = true;
+        Ok(loaded)
+    }
+
+    /// Libraries that the search passed over, and why, one line each: worth showing to the user once.
+    pub fn skipped() -> Vec<String> {
+        SEARCH.lock().unwrap_or_else(PoisonError::into_inner).skipped.clone()
+    }
+
+    /// Where the library lies.
+    pub fn path(&self) -> &Path {
+        &self.0.path
+    }
+
+    fn builder(&self, options: &SessionOptions) -> Result<SessionBuilder> {
+        let threads = options.thread_count()?;
+        let build = || -> ort::Result<SessionBuilder> {
+            let builder = Session::builder(&self.0.environment)?;
+            let builder = builder.with_optimization_level(GraphOptimizationLevel::All)?;
+            Ok(builder.with_intra_threads(threads)?)
+        };
+        build().map_err(|error| {
+            Error::internal("ONNX Runtime refuses its options").with_source(error.message().to_owned())
+        })
+    }
+
+    fn open_on_cpu(&self, model: &[u8], options: &SessionOptions) -> Result<Session> {
+        self.builder(options)?.commit_from_memory(model).map_err(|error| {
+            let message = "ONNX Runtime cannot open the ONNX model";
+            match error.code() {
+                ort::ErrorCode::NotImplemented => Error::unsupported(message),
+                _ => Error::format(message),
+            }
+            .with_source(error.message().to_owned())
+        })
+    }
+
+    /// Opens a model on an accelerator, or says why that fails.
+    fn open_on(&self, device: Device, model: &[u8], options: &SessionOptions) -> Result<Session> {
+        let builder = self.builder(options)?;
+        provider::provider_from_device(device)
+            .filter(|_| provider::is_built_in(device))
+            .ok_or_else(|| self.no_provider(device).to_owned())
+            .and_then(|provider| {
+                builder.with_execution_providers([provider]).map_err(|error| error.message().to_owned())
+            })
+            .and_then(|mut builder| {
+                builder.commit_from_memory(model).map_err(|error| error.message().to_owned())
+            })
+            .map_err(|reason| {
+                let devices: Vec<_> = self.devices().iter().map(ToString::to_string).collect();
+                Error::device(format!(
+                    "device {device} is not there or does not work; available: {}",
+                    devices.join(", ")
+                ))
+                .with_source(reason)
+            })
+    }
+
+    fn no_provider(&self, device: Device) -> String {
+        format!("ONNX Runtime at {} was built without {device}", self.0.path.display())
+    }
+
+    /// Whether `device` can be set up, as far as that shows without a model.
+    fn is_usable(&self, device: Device) -> bool {
+        provider::is_built_in(device)
+            && provider::provider_from_device(device).is_none_or(|provider| {
+                self.builder(&SessionOptions { device, threads: 1 })
+                    .is_ok_and(|builder| builder.with_execution_providers([provider]).is_ok())
+            })
+    }
+}
+
+impl Runtime for OnnxRuntime {
+    fn name(&self) -> &'static str {
+        "onnxruntime"
+    }
+
+    fn version(&self) -> String {
+        self.0
+            .version
+            .map_or_else(|| format!("1.{} or later", library::OLDEST_MINOR), |version| version.to_string())
+    }
+
+    fn devices(&self) -> Vec<Device> {
+        let accelerators = provider::ACCELERATORS.into_iter().filter(|&device| self.is_usable(device));
+        accelerators.chain([Device::Cpu]).collect()
+    }
+
+    fn open(&self, model: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
+        OnnxHeader::read(model)?;
+        let (device, session) = match options.device {
+            Device::Cpu => (Device::Cpu, self.open_on_cpu(model, options)?),
+            Device::Auto => {
+                let cuda = Device::Cuda(0);
+                let on_cuda =
+                    provider::is_built_in(cuda).then(|| self.open_on(cuda, model, options).ok()).flatten();
+                match on_cuda {
+                    Some(session) => (cuda, session),
+                    None => (Device::Cpu, self.open_on_cpu(model, options)?),
+                }
+            }
+            device => match self.open_on(device, model, options) {
+                Ok(session) => (device, session),
+                // A model that the processor cannot open either is at fault itself.
+                Err(error) => return Err(self.open_on_cpu(model, options).err().unwrap_or(error)),
+            },
+        };
+        Ok(Box::new(OnnxRuntimeEngine::new(session, device)?))
+    }
+
+    fn describe(&self) -> String {
+        format!("ONNX Runtime {} ({})", self.version(), self.0.path.display())
+    }
+}
