@@ -12,12 +12,14 @@ mod statistics;
 mod task;
 
 pub mod data;
+pub mod model;
 pub mod params;
 pub mod target;
 
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};
 pub use header::Header;
+pub use model::Model;
 pub use pool::{Pool, Pooled};
 pub use progress::{Progress, Silent, Unit};
 pub use statistics::Statistics;

@@ -1,0 +1,158 @@
+//! Writing a container so that it is there whole or not at all.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use super::{MANIFEST_NAME, Manifest, Model, ModelFile, Sha256, member_path};
+use crate::{Error, Result, ResultExt};
+
+/// Writes a container beside its final place and renames it there when it is complete.
+///
+/// ```
+/// # fn main() -> opendr_engine::Result<()> {
+/// use opendr_engine::model::{Manifest, Model, ModelWriter};
+///
+/// let path = std::env::temp_dir().join(format!("opendr-doc-{}", std::process::id()));
+/// let mut writer = ModelWriter::new(&path, Manifest::new("nanodet", "mine"))?;
+/// writer.add("model.onnx", b"the network")?;
+/// let model = writer.finish()?;
+/// assert_eq!(model.file("model.onnx")?, b"the network");
+/// # std::fs::remove_dir_all(path)?;
+/// # Ok(()) }
+/// ```
+#[derive(Debug)]
+pub struct ModelWriter {
+    target: PathBuf,
+    temporary: PathBuf,
+    manifest: Manifest,
+}
+
+static COUNTER: AtomicU64 = AtomicU64::new(0);
+
+impl ModelWriter {
+    /// Begins a container at `path`: a zip when it ends in `.zip`, else a folder. The manifest's list of files is
+    /// replaced by those added.
+    ///
+    /// # Errors
+    /// `InvalidInput` when something other than a model is at `path`, `Io` when the folder above cannot be written.
+    pub fn new(path: impl AsRef<Path>, mut manifest: Manifest) -> Result<Self> {
+        let target = std::path::absolute(path)?;
+        check_replaceable(&target)?;
+        let (Some(parent), Some(name)) = (target.parent(), target.file_name()) else {
+            return Err(Error::invalid_input(format!("{} cannot be a model's folder", target.display())));
+        };
+        fs::create_dir_all(parent).context(|| parent.display().to_string())?;
+        let count = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let temporary =
+            parent.join(format!(".{}.{}.{count}.partial", name.to_string_lossy(), std::process::id()));
+        fs::create_dir(&temporary).context(|| temporary.display().to_string())?;
+        manifest.files.clear();
+        Ok(Self { target, temporary, manifest })
+    }
+
+    /// Adds a file.
+    ///
+    /// # Errors
+    /// `Integrity` when the name could leave the folder, `InvalidInput` when it is taken, `Io` when writing fails.
+    pub fn add(&mut self, name: &str, bytes: &[u8]) -> Result<()> {
+        let path = self.temporary.join(member_path(name)?);
+        let taken = |file: &ModelFile| file.name.eq_ignore_ascii_case(name);
+        if name.eq_ignore_ascii_case(MANIFEST_NAME) || self.manifest.files.iter().any(taken) {
+            return Err(Error::invalid_input(format!("the model already has a file {name:?}")));
+        }
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent)?;
+        }
+        write_synced(&path, bytes)?;
+        self.manifest.files.push(ModelFile {
+            name: name.to_owned(),
+            size: Some(bytes.len() as u64),
+            sha256: Some(Sha256::of(bytes)),
+        });
+        Ok(())
+    }
+
+    /// Puts the container in its place, where it replaces an older one, and opens it.
+    ///
+    /// # Errors
+    /// `Io` when writing or renaming fails.
+    pub fn finish(self) -> Result<Model> {
+        write_synced(&self.temporary.join(MANIFEST_NAME), &self.manifest.to_json()?)?;
+        if self.target.extension().is_some_and(|extension| extension == "zip") {
+            let packed = self.temporary.join("packed.zip");
+            self.pack(&packed).context(|| packed.display().to_string())?;
+            fs::rename(&packed, &self.target).context(|| self.target.display().to_string())?;
+        } else {
+            self.place_folder().context(|| self.target.display().to_string())?;
+        }
+        Model::open(&self.target)
+    }
+
+    fn pack(&self, path: &Path) -> Result<()> {
+        let mut archive = ZipWriter::new(io::BufWriter::new(File::create(path)?));
+        // Weights hardly shrink, and stored members load faster.
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+        for name in self.manifest.files.iter().map(|file| file.name.as_str()).chain([MANIFEST_NAME]) {
+            archive.start_file(name, options).map_err(io::Error::from)?;
+            io::copy(&mut File::open(self.temporary.join(member_path(name)?))?, &mut archive)?;
+        }
+        let file =
+            archive.finish().map_err(io::Error::from)?.into_inner().map_err(|error| error.into_error())?;
+        Ok(file.sync_all()?)
+    }
+
+    fn place_folder(&self) -> io::Result<()> {
+        let old = self.temporary.with_extension("old");
+        let replaces = match fs::rename(&self.target, &old) {
+            Ok(()) => true,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => false,
+            Err(error) => return Err(error),
+        };
+        let placed = fs::rename(&self.temporary, &self.target);
+        if placed.is_err() && replaces {
+            fs::rename(&old, &self.target)?;
+        } else if replaces {
+            fs::remove_dir_all(&old)?;
+        }
+        placed
+    }
+}
+
+impl Drop for ModelWriter {
+    fn drop(&mut self) {
+        // Gone already after a successful `finish`; a leftover only costs room.
+        let _ = fs::remove_dir_all(&self.temporary);
+    }
+}
+
+fn check_replaceable(target: &Path) -> Result<()> {
+    let is_zip = target.extension().is_some_and(|extension| extension == "zip");
+    let free = match fs::metadata(target) {
+        Err(_) => true,
+        Ok(found) if is_zip => found.is_file(),
+        Ok(found) => {
+            found.is_dir() && (target.join(MANIFEST_NAME).is_file() || fs::read_dir(target)?.next().is_none())
+        }
+    };
+    if free {
+        return Ok(());
+    }
+    Err(Error::invalid_input(format!(
+        "{} exists and is no model: name another place, so that nothing is lost",
+        target.display()
+    )))
+}
+
+fn write_synced(path: &Path, bytes: &[u8]) -> Result<()> {
+    let write = || {
+        let mut file = File::create(path)?;
+        file.write_all(bytes)?;
+        file.sync_all()
+    };
+    write().context(|| path.display().to_string())
+}
