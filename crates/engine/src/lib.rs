@@ -10,8 +10,12 @@ mod pool;
 mod progress;
 mod statistics;
 mod task;
+mod value;
 
 pub mod data;
+pub mod dataset;
+pub mod environment;
+pub mod learner;
 pub mod model;
 pub mod params;
 pub mod target;
@@ -24,3 +28,4 @@ pub use pool::{Pool, Pooled};
 pub use progress::{Progress, Silent, Unit};
 pub use statistics::Statistics;
 pub use task::Task;
+pub use value::{Datum, Value, ValueRef, ValueType};

@@ -1,0 +1,194 @@
+//! Learners without their types: what surfaces hold.
+
+use std::path::Path;
+
+use crate::dataset::DatasetRef;
+use crate::learner::capability::{Abilities, PushFn};
+use crate::learner::{Capabilities, FitJob, Handle, Learner, Outputs, Ports, Stream};
+use crate::params::{ParamMap, ParamValue, Params};
+use crate::target::Classes;
+use crate::{Device, Error, Result, Statistics};
+
+/// A [`Handle`] of any learner: one dispatch per call, values by name.
+pub trait AnyLearner: Send {
+    /// Loads a model container.
+    ///
+    /// # Errors
+    /// As [`Handle::load`].
+    fn load(&mut self, path: &Path) -> Result<()>;
+
+    /// Writes a model container.
+    ///
+    /// # Errors
+    /// As [`Handle::save`].
+    fn save(&self, path: &Path) -> Result<()>;
+
+    /// Whether a model is loaded.
+    fn is_ready(&self) -> bool;
+
+    /// Answers named ports on the learner's own stream.
+    ///
+    /// # Errors
+    /// As [`Stream::infer_ports`].
+    fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs>;
+
+    /// Takes the next piece of the own stream; `None` ends the stream.
+    ///
+    /// # Errors
+    /// `Unsupported` when the learner takes no pieces.
+    fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()>;
+
+    /// Trains, and loads the result.
+    ///
+    /// # Errors
+    /// `Unsupported` when the learner does not train.
+    fn fit(
+        &mut self,
+        fit_params: &ParamMap,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics>;
+
+    /// Forgets what the own stream remembers.
+    fn reset(&mut self);
+
+    /// A stream of its own for another camera, topic or thread.
+    ///
+    /// # Errors
+    /// `NotFound` when nothing is loaded.
+    fn stream(&self) -> Result<Box<dyn AnyStream>>;
+
+    /// The parameters.
+    fn params(&self) -> ParamMap;
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// As [`Handle::set`].
+    fn set(&mut self, name: &str, value: ParamValue) -> Result<()>;
+
+    /// What class numbers mean.
+    fn classes(&self) -> Classes;
+
+    /// The device asked for.
+    fn device(&self) -> Device;
+
+    /// What it can do besides `infer`.
+    fn capabilities(&self) -> Capabilities;
+}
+
+/// A [`Stream`] of any learner.
+pub trait AnyStream: Send {
+    /// Answers named ports.
+    ///
+    /// # Errors
+    /// As [`Stream::infer_ports`].
+    fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs>;
+
+    /// Takes the next piece; `None` ends the stream.
+    ///
+    /// # Errors
+    /// `Unsupported` when the learner takes no pieces.
+    fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()>;
+
+    /// Forgets everything.
+    fn reset(&mut self);
+}
+
+pub(crate) struct Typed<L: Learner> {
+    pub(crate) handle: Handle<L>,
+    pub(crate) abilities: Abilities<L>,
+    pub(crate) target: L::Target,
+}
+
+struct TypedStream<L: Learner> {
+    stream: Stream<L>,
+    push: Option<PushFn<L>>,
+    target: L::Target,
+}
+
+#[cold]
+fn cannot<L: Learner>(what: &str) -> Error {
+    Error::unsupported(format!("{} cannot {what}", L::SPEC.class))
+}
+
+impl<L: Learner> AnyLearner for Typed<L> {
+    fn load(&mut self, path: &Path) -> Result<()> {
+        self.handle.load(path)
+    }
+
+    fn save(&self, path: &Path) -> Result<()> {
+        self.handle.save(path)
+    }
+
+    fn is_ready(&self) -> bool {
+        self.handle.is_ready()
+    }
+
+    fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
+        self.handle.own_stream()?.infer_ports(ports, &mut self.target)?;
+        Ok(Outputs::from_targets(&self.target))
+    }
+
+    fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()> {
+        let push = self.abilities.push.ok_or_else(|| cannot::<L>("take its input in pieces"))?;
+        push(self.handle.own_stream()?, piece, emit)
+    }
+
+    fn fit(
+        &mut self,
+        fit_params: &ParamMap,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let (fit, _) = self.abilities.fit.ok_or_else(|| cannot::<L>("fit"))?;
+        fit(&mut self.handle, fit_params, dataset, val_dataset, job)
+    }
+
+    fn reset(&mut self) {
+        self.handle.reset();
+    }
+
+    fn stream(&self) -> Result<Box<dyn AnyStream>> {
+        let (stream, target) = (self.handle.stream()?, L::Target::default());
+        Ok(Box::new(TypedStream { stream, push: self.abilities.push, target }))
+    }
+
+    fn params(&self) -> ParamMap {
+        self.handle.params().to_map()
+    }
+
+    fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
+        self.handle.set(name, value)
+    }
+
+    fn classes(&self) -> Classes {
+        self.handle.classes()
+    }
+
+    fn device(&self) -> Device {
+        self.handle.device()
+    }
+
+    fn capabilities(&self) -> Capabilities {
+        self.abilities.capabilities()
+    }
+}
+
+impl<L: Learner> AnyStream for TypedStream<L> {
+    fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
+        self.stream.infer_ports(ports, &mut self.target)?;
+        Ok(Outputs::from_targets(&self.target))
+    }
+
+    fn push(&mut self, piece: Option<&Ports<'_>>, emit: &mut dyn FnMut(Outputs)) -> Result<()> {
+        let push = self.push.ok_or_else(|| cannot::<L>("take its input in pieces"))?;
+        push(&mut self.stream, piece, emit)
+    }
+
+    fn reset(&mut self) {
+        self.stream.reset();
+    }
+}

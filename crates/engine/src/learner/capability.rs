@@ -1,0 +1,108 @@
+//! What a learner can do besides `infer`, found out by the compiler.
+
+use std::marker::PhantomData;
+
+use crate::dataset::DatasetRef;
+use crate::learner::{Fit, FitJob, Handle, Learner, Outputs, Ports, Stream, Streaming};
+use crate::params::{Field, ParamMap, Params};
+use crate::{Result, Statistics};
+
+/// What a learner can do besides `infer`; surfaces show it and refuse the rest as `Unsupported`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Capabilities {
+    /// `fit` trains it.
+    pub fit: bool,
+    /// `push` and `flush` take its input in pieces.
+    pub streaming: bool,
+}
+
+pub(crate) type PushFn<L> = fn(&mut Stream<L>, Option<&Ports<'_>>, &mut dyn FnMut(Outputs)) -> Result<()>;
+pub(crate) type FitFn<L> =
+    fn(&mut Handle<L>, &ParamMap, DatasetRef<'_>, Option<DatasetRef<'_>>, &FitJob<'_>) -> Result<Statistics>;
+
+/// The optional abilities of `L` as plain functions.
+#[doc(hidden)]
+pub struct Abilities<L: Learner> {
+    pub(crate) push: Option<PushFn<L>>,
+    pub(crate) fit: Option<(FitFn<L>, &'static [Field])>,
+}
+
+impl<L: Learner> Clone for Abilities<L> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<L: Learner> Copy for Abilities<L> {}
+
+impl<L: Learner> Abilities<L> {
+    pub(crate) fn capabilities(&self) -> Capabilities {
+        Capabilities { fit: self.fit.is_some(), streaming: self.push.is_some() }
+    }
+}
+
+/// Asks the compiler whether `L` implements an optional trait.
+///
+/// `(&Probe::<L>::new()).push()` finds [`ProbeStreaming`] when `L: Streaming`, and else, one reference further,
+/// [`ProbeFallback`]. It works because `learners!` names concrete types; so a learner says what it can do by
+/// implementing a trait and nowhere else.
+#[doc(hidden)]
+pub struct Probe<L>(PhantomData<L>);
+
+impl<L> Probe<L> {
+    #[allow(clippy::new_without_default, missing_docs)]
+    pub const fn new() -> Self {
+        Self(PhantomData)
+    }
+
+    #[allow(missing_docs)]
+    pub fn abilities(push: Option<PushFn<L>>, fit: Option<(FitFn<L>, &'static [Field])>) -> Abilities<L>
+    where
+        L: Learner,
+    {
+        Abilities { push, fit }
+    }
+}
+
+#[doc(hidden)]
+#[allow(missing_docs)]
+pub trait ProbeFallback<L: Learner> {
+    fn push(&self) -> Option<PushFn<L>> {
+        None
+    }
+
+    fn fit(&self) -> Option<(FitFn<L>, &'static [Field])> {
+        None
+    }
+}
+
+impl<L: Learner> ProbeFallback<L> for &Probe<L> {}
+
+#[doc(hidden)]
+#[allow(missing_docs)]
+pub trait ProbeStreaming<L: Learner> {
+    fn push(&self) -> Option<PushFn<L>>;
+}
+
+impl<L: Streaming> ProbeStreaming<L> for Probe<L> {
+    fn push(&self) -> Option<PushFn<L>> {
+        Some(|stream, piece, emit| stream.push_ports(piece, emit))
+    }
+}
+
+#[doc(hidden)]
+#[allow(missing_docs)]
+pub trait ProbeFit<L: Learner> {
+    fn fit(&self) -> Option<(FitFn<L>, &'static [Field])>;
+}
+
+impl<L: Fit> ProbeFit<L> for Probe<L> {
+    fn fit(&self) -> Option<(FitFn<L>, &'static [Field])> {
+        Some((
+            |handle, map, dataset, val_dataset, job| {
+                handle.fit(&L::FitParams::from_map(map)?, dataset, val_dataset, job)
+            },
+            L::FitParams::FIELDS,
+        ))
+    }
+}

@@ -1,0 +1,67 @@
+//! Learners that train.
+
+use std::path::Path;
+
+use crate::dataset::DatasetRef;
+use crate::learner::{Handle, Learner};
+use crate::model::Model;
+use crate::params::Params;
+use crate::{Device, Progress, Result, Silent, Statistics};
+
+/// Where a training writes and to whom it reports.
+#[derive(Clone, Copy)]
+pub struct FitJob<'a> {
+    /// The folder of checkpoints and of the trained container.
+    pub output: &'a Path,
+    /// The folder of event files and curves; `None` writes none (the paper's `logging_path`).
+    pub logging_path: Option<&'a Path>,
+    /// Where to train.
+    pub device: Device,
+    /// To whom to report; it also says when the user wants to stop.
+    pub progress: &'a dyn Progress,
+}
+
+impl<'a> FitJob<'a> {
+    /// A silent job on the best device that writes to `output`.
+    pub fn new(output: &'a Path) -> Self {
+        Self { output, logging_path: None, device: Device::Auto, progress: &Silent }
+    }
+}
+
+/// A learner that trains on a data set.
+pub trait Fit: Learner {
+    /// What a user may set of the training: rate, epochs, batch size.
+    type FitParams: Params;
+
+    /// Trains, from `base` where one is given, and writes the trained model as a container into `job.output`.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the data set does not fit the task; `Io` when nothing can be written.
+    fn fit(
+        base: Option<&Model>,
+        params: &Self::Params,
+        fit_params: &Self::FitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics>;
+}
+
+impl<L: Fit> Handle<L> {
+    /// Trains, starting from the loaded model where there is one, and loads the result.
+    ///
+    /// # Errors
+    /// As [`Fit::fit`].
+    pub fn fit(
+        &mut self,
+        fit_params: &L::FitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        fit_params.check()?;
+        let statistics = L::fit(self.model(), self.params(), fit_params, dataset, val_dataset, job)?;
+        self.load(job.output)?;
+        Ok(statistics)
+    }
+}

@@ -1,0 +1,120 @@
+//! The named inputs of a learner.
+
+use smallvec::SmallVec;
+
+use crate::{Datum, Error, Header, Result, ValueRef, ValueType};
+
+/// One named input: a Python argument, a command-line flag, a field of a C struct, a ROS topic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Port {
+    /// Its name on every surface.
+    pub name: &'static str,
+    /// What it is.
+    pub doc: &'static str,
+    /// The type it takes.
+    pub value_type: ValueType,
+    /// Whether it may be left out.
+    pub optional: bool,
+    /// Whether it is given once per stream, with its first call, and kept in the state.
+    pub init: bool,
+}
+
+/// What a learner takes: a reference to one datum, or a `#[derive(Inputs)]` struct of references.
+pub trait Inputs<'a>: Sized {
+    /// The table of ports.
+    const PORTS: &'static [Port];
+
+    /// Picks the ports out of named values.
+    ///
+    /// # Errors
+    /// `InvalidInput` when a port is missing or of another type.
+    fn from_ports(ports: &Ports<'a>) -> Result<Self>;
+
+    /// Stamp and frame of the first port; the targets carry them.
+    fn header(&self) -> &Header;
+}
+
+impl<'a, T: Datum> Inputs<'a> for &'a T {
+    const PORTS: &'static [Port] =
+        &[Port { name: T::TYPE.port(), doc: "", value_type: T::TYPE, optional: false, init: false }];
+
+    fn from_ports(ports: &Ports<'a>) -> Result<Self> {
+        ports.required(T::TYPE.port())
+    }
+
+    fn header(&self) -> &Header {
+        Datum::header(*self)
+    }
+}
+
+/// Named values on their way from a surface to a learner.
+#[derive(Debug, Clone, Default)]
+pub struct Ports<'a> {
+    values: SmallVec<[(&'a str, ValueRef<'a>); 4]>,
+}
+
+impl<'a> Ports<'a> {
+    /// The only port of a learner with one input.
+    pub fn one(value: impl Into<ValueRef<'a>>) -> Self {
+        let value = value.into();
+        Self::default().with(value.value_type().port(), value)
+    }
+
+    /// Adds a port.
+    #[must_use]
+    pub fn with(mut self, name: &'a str, value: impl Into<ValueRef<'a>>) -> Self {
+        self.values.push((name, value.into()));
+        self
+    }
+
+    /// The value of a port.
+    pub fn get(&self, name: &str) -> Option<ValueRef<'a>> {
+        self.values.iter().find(|(port, _)| *port == name).map(|(_, value)| *value)
+    }
+
+    /// The value of a port that must be there.
+    ///
+    /// # Errors
+    /// `InvalidInput` when it is missing or of another type.
+    pub fn required<T: Datum>(&self, name: &str) -> Result<&'a T> {
+        self.optional(name)?.ok_or_else(|| {
+            Error::invalid_input(format!("input {name:?} ({}) is missing; give it", T::TYPE.name()))
+        })
+    }
+
+    /// The value of a port that may be left out.
+    ///
+    /// # Errors
+    /// `InvalidInput` when it is of another type.
+    pub fn optional<T: Datum>(&self, name: &str) -> Result<Option<&'a T>> {
+        let Some(value) = self.get(name) else { return Ok(None) };
+        T::from_value_ref(value).map(Some).ok_or_else(|| {
+            let (wanted, given) = (T::TYPE.name(), value.value_type().name());
+            Error::invalid_input(format!("input {name:?} takes {wanted}, not {given}"))
+        })
+    }
+
+    /// Checks the names against the table of a learner and that an init port is given when its stream begins.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a port that the learner does not have, or a missing init port.
+    pub(crate) fn check(&self, table: &[Port], begins: bool) -> Result<()> {
+        for (name, _) in &self.values {
+            if !table.iter().any(|port| port.name == *name) {
+                let names: Vec<_> = table.iter().map(|port| port.name).collect();
+                return Err(Error::invalid_input(format!(
+                    "no input {name:?}; there are {}",
+                    names.join(", ")
+                )));
+            }
+        }
+        match table.iter().find(|port| begins && port.init && self.get(port.name).is_none()) {
+            Some(port) => Err(Error::invalid_input(format!(
+                "input {:?} ({}) must be given with the first call of a stream; give it, or reset and begin again",
+                port.name,
+                port.value_type.name()
+            ))),
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! A learner with everything at once keeps the machinery honest: two ports, an init port, state, two outputs, pieces,
+//! training. It finds nothing; it counts.
+
+use crate::data::{Image, Layout, PixelFormat};
+use crate::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
+use crate::learner::{
+    CheckOptions, Fit, FitJob, Handle, Inputs, Learner, Ports, Registry, Spec, Streaming, Targets,
+    check_learner,
+};
+use crate::model::{Manifest, Model, ModelWriter};
+use crate::params::{ParamMap, ParamValue, Params};
+use crate::target::{BoundingBox, BoundingBoxList, PoseList};
+use crate::{Device, ErrorKind, Header, Result, Statistics, Task, Value};
+
+#[derive(Debug, Clone, Params)]
+struct CounterParams {
+    /// Boxes below this score are dropped.
+    #[param(default = 0.5, range = 0.0..=1.0, live)]
+    threshold: f32,
+    /// What the count is multiplied with.
+    #[param(default = 2, range = 1..=9)]
+    factor: i64,
+}
+
+#[derive(Debug, Clone, Params)]
+struct CounterFitParams {
+    /// How often the data set is read.
+    #[param(default = 1, range = 1..=100)]
+    epochs: usize,
+}
+
+#[derive(Inputs)]
+struct CounterInputs<'a> {
+    /// A picture.
+    image: &'a Image,
+    /// What was found in it.
+    detections: &'a BoundingBoxList,
+    /// Where to begin.
+    #[port(init)]
+    first: Option<&'a BoundingBoxList>,
+}
+
+#[derive(Default, Targets)]
+struct CounterTargets {
+    /// One box whose left edge is the count.
+    count: BoundingBoxList,
+    /// Nothing.
+    poses: PoseList,
+}
+
+#[derive(Default)]
+struct CounterState {
+    begin: f32,
+    seen: usize,
+}
+
+struct Counter {
+    params: CounterParams,
+    bias: f32,
+}
+
+impl Learner for Counter {
+    const SPEC: Spec =
+        Spec::new("counter", Task::ObjectDetection2d).class("CounterLearner").about("Counts boxes.");
+    type Params = CounterParams;
+    type Input<'a> = CounterInputs<'a>;
+    type Target = CounterTargets;
+    type State = CounterState;
+
+    fn load(model: &Model, params: CounterParams, _device: Device) -> Result<Self> {
+        Ok(Self { params, bias: f32::from(model.file("bias.bin")?[0]) })
+    }
+
+    fn params(&self) -> &CounterParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut CounterParams {
+        &mut self.params
+    }
+
+    fn infer_into(
+        &self,
+        state: &mut CounterState,
+        input: CounterInputs<'_>,
+        target: &mut CounterTargets,
+    ) -> Result<()> {
+        if let Some(first) = input.first {
+            state.begin = first.boxes.len() as f32;
+        }
+        let boxes = input.detections.boxes.iter();
+        state.seen += boxes.filter(|found| found.confidence >= self.params.threshold).count();
+        let count = state.begin + self.bias + state.seen as f32 * self.params.factor as f32;
+        target.count.boxes.clear();
+        target.count.boxes.push(BoundingBox::new(0, count, input.image.width() as f32, 1.0, 1.0, 1.0));
+        Ok(())
+    }
+}
+
+impl Streaming for Counter {
+    fn push(
+        &self,
+        state: &mut CounterState,
+        piece: CounterInputs<'_>,
+        emit: &mut dyn FnMut(CounterTargets),
+    ) -> Result<()> {
+        let mut target = CounterTargets::default();
+        self.infer_into(state, piece, &mut target)?;
+        if state.seen.is_multiple_of(2) {
+            emit(target);
+        }
+        Ok(())
+    }
+
+    fn flush(&self, state: &mut CounterState, emit: &mut dyn FnMut(CounterTargets)) -> Result<()> {
+        let mut target = CounterTargets::default();
+        target.count.boxes.push(BoundingBox::new(0, state.seen as f32, 0.0, 0.0, 0.0, 0.0));
+        emit(target);
+        Ok(())
+    }
+}
+
+impl Fit for Counter {
+    type FitParams = CounterFitParams;
+
+    fn fit(
+        _base: Option<&Model>,
+        params: &CounterParams,
+        fit_params: &CounterFitParams,
+        dataset: DatasetRef<'_>,
+        _val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let DatasetRef::Iterator(dataset) = dataset else {
+            return Err(crate::Error::invalid_input("a counter trains on samples only"));
+        };
+        let mut statistics = Statistics::default();
+        (0..fit_params.epochs).for_each(|_| statistics.push("loss", 0.0));
+        write_model(job.output, dataset.len() as u8, &params.to_map())?;
+        Ok(statistics)
+    }
+}
+
+struct Samples(usize);
+
+impl Dataset for Samples {}
+
+impl DatasetIterator for Samples {
+    fn len(&self) -> usize {
+        self.0
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        Ok(Sample { data: vec![picture(index as i64).into()], target: None })
+    }
+}
+
+fn write_model(folder: &std::path::Path, bias: u8, params: &ParamMap) -> Result<()> {
+    let manifest = Manifest { params: params.clone(), ..Manifest::new("counter", "") };
+    let mut writer = ModelWriter::new(folder, manifest)?;
+    writer.add("bias.bin", &[bias])?;
+    writer.finish().map(drop)
+}
+
+fn picture(stamp: i64) -> Image {
+    let image = Image::new(vec![0u8; 4], 2, 2, PixelFormat::Grey, Layout::Hwc).unwrap();
+    image.with_header(Header::new(stamp, "camera"))
+}
+
+fn boxes(scores: &[f32]) -> BoundingBoxList {
+    scores.iter().map(|score| BoundingBox::new(0, 0.0, 0.0, 1.0, 1.0, *score)).collect::<Vec<_>>().into()
+}
+
+fn scratch(name: &str) -> std::path::PathBuf {
+    let folder = std::env::temp_dir().join(format!("opendr-learner-{name}-{}", std::process::id()));
+    std::fs::remove_dir_all(&folder).ok();
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+fn ready(name: &str) -> Handle<Counter> {
+    let folder = scratch(name);
+    write_model(&folder.join("model"), 1, &ParamMap::from([("factor".to_owned(), 3.into())])).unwrap();
+    let mut handle = Handle::<Counter>::new(CounterParams::default(), Device::Cpu).unwrap();
+    handle.load(folder.join("model")).unwrap();
+    handle
+}
+
+fn count(targets: &CounterTargets) -> f32 {
+    targets.count.boxes[0].left
+}
+
+#[test]
+fn every_promise_is_kept() {
+    let folder = scratch("check");
+    write_model(&folder.join("model"), 1, &ParamMap::new()).unwrap();
+    let registry = crate::learners![Counter];
+    let call = |stamp, scores: &[f32]| -> Vec<(&'static str, Value)> {
+        vec![
+            ("image", picture(stamp).into()),
+            ("detections", boxes(scores).into()),
+            ("first", boxes(scores).into()),
+        ]
+    };
+    let calls = [call(1, &[0.9, 0.1]), call(2, &[0.9, 0.8]), call(3, &[0.7])];
+    let options = CheckOptions { model: &folder.join("model"), scratch: &folder, calls: &calls };
+    check_learner(registry.find("counter").unwrap(), &options).unwrap();
+}
+
+#[test]
+fn container_params_fill_defaults_only() {
+    let mut handle = ready("params");
+    assert_eq!(handle.params().factor, 3);
+    let (image, found) = (picture(1), boxes(&[0.9, 0.6]));
+    let input = || CounterInputs { image: &image, detections: &found, first: None };
+    assert_eq!(count(&handle.infer(input()).unwrap()), 7.0);
+    handle.set("threshold", ParamValue::Float(0.7)).unwrap();
+    assert_eq!(count(&handle.infer(input()).unwrap()), 10.0);
+    let error = handle.set("factor", ParamValue::Int(1)).unwrap_err();
+    assert!(error.to_string().contains("cannot change while"), "{error}");
+    handle.reset();
+    assert_eq!(count(&handle.infer(input()).unwrap()), 4.0);
+}
+
+#[test]
+fn pieces_and_batches_keep_stamps() {
+    let handle = ready("pieces");
+    let (images, found) = ([picture(1), picture(2)], boxes(&[0.9]));
+    let inputs = || {
+        images
+            .iter()
+            .map(|image| CounterInputs { image, detections: &found, first: None })
+            .collect::<Vec<_>>()
+    };
+    let batch = handle.stream().unwrap().infer_batch(inputs()).unwrap();
+    assert_eq!(batch.iter().map(count).collect::<Vec<_>>(), [4.0, 7.0]);
+    assert_eq!(batch[1].count.header, Header::new(2, "camera"));
+    let (mut stream, mut emitted) = (handle.stream().unwrap(), Vec::new());
+    for input in inputs() {
+        stream.push(input, &mut |target| emitted.push(target)).unwrap();
+    }
+    stream.flush(&mut |target| emitted.push(target)).unwrap();
+    assert_eq!(emitted.iter().map(count).collect::<Vec<_>>(), [7.0, 2.0]);
+    assert_eq!(emitted[1].poses.header, Header::new(2, "camera"));
+}
+
+#[test]
+fn surfaces_see_what_it_can() {
+    let registry: Registry = crate::learners![Counter];
+    let entry = registry.find("CounterLearner").unwrap();
+    assert!(entry.capabilities.fit && entry.capabilities.streaming && entry.stateful);
+    assert_eq!(entry.fit_params[0].name, "epochs");
+    assert_eq!(
+        entry.ports.iter().map(|port| port.name).collect::<Vec<_>>(),
+        ["image", "detections", "first"]
+    );
+    assert!(entry.ports[2].init && entry.ports[2].optional);
+    assert_eq!(entry.outputs.iter().map(|output| output.name).collect::<Vec<_>>(), ["count", "poses"]);
+    let mut learner = entry.make(&ParamMap::new(), Device::Cpu).unwrap();
+    let output = scratch("fit").join("model");
+    let dataset: &dyn DatasetIterator = &Samples(5);
+    let job = FitJob::new(&output);
+    let params = ParamMap::from([("epochs".to_owned(), 4.into())]);
+    let statistics = learner.fit(&params, dataset.into(), None, &job).unwrap();
+    assert_eq!(statistics.curves["loss"].len(), 4);
+    let (image, found) = (picture(1), boxes(&[0.9]));
+    let ports = Ports::default().with("image", &image).with("detections", &found);
+    let error = learner.infer(&ports).unwrap_err();
+    assert!(error.to_string().contains("\"first\""), "{error}");
+    let outputs = learner.infer(&ports.clone().with("first", &found)).unwrap();
+    let Some(Value::BoundingBoxList(list)) = outputs.get("count") else { panic!("{outputs:?}") };
+    assert_eq!(list.boxes[0].left, 1.0 + 5.0 + 2.0);
+    learner.infer(&ports).unwrap();
+}
+
+#[test]
+fn a_model_of_another_learner_is_refused() {
+    let folder = scratch("other");
+    ModelWriter::new(folder.join("model"), Manifest::new("other", "")).unwrap().finish().unwrap();
+    let mut handle = Handle::<Counter>::new(CounterParams::default(), Device::Cpu).unwrap();
+    let error = handle.load(folder.join("model")).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidInput);
+    assert!(error.to_string().contains("\"other\""), "{error}");
+    assert!(registry_refuses_twice());
+}
+
+fn registry_refuses_twice() -> bool {
+    let registry = crate::learners![Counter];
+    registry.add(crate::learner::Entry::added(Counter::SPEC, &[], &[], &[], |_, _| unreachable!())).is_err()
+}

@@ -1,0 +1,204 @@
+//! The one list of data and target types: what surfaces convert, and all they know.
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::data::Image;
+use crate::target::{BoundingBoxList, PoseList};
+use crate::{Header, Result};
+
+/// A data or target type.
+pub trait Datum: Clone + Send + Sync + 'static {
+    /// Which one.
+    const TYPE: ValueType;
+
+    /// Time stamp and frame id.
+    fn header(&self) -> &Header;
+
+    /// Time stamp and frame id, to set them.
+    fn header_mut(&mut self) -> &mut Header;
+
+    /// This datum without its type.
+    fn as_value_ref(&self) -> ValueRef<'_>;
+
+    /// The datum, when it is of this type.
+    fn from_value_ref(value: ValueRef<'_>) -> Option<&Self>;
+}
+
+macro_rules! values {
+    (data { $($data:ident = $data_port:literal),* $(,)? } targets { $($target:ident = $target_port:literal),* $(,)? }) => {
+        /// The data and target types.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum ValueType { $(#[doc = concat!("[`", stringify!($data), "`]")] $data,)* $(#[doc = concat!("[`", stringify!($target), "`]")] $target,)* }
+
+        impl ValueType {
+            /// Every type.
+            pub const ALL: &'static [Self] = &[$(Self::$data,)* $(Self::$target,)*];
+
+            /// The name of the type, e.g. `"BoundingBoxList"`.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$data => stringify!($data),)* $(Self::$target => stringify!($target),)* }
+            }
+
+            /// The usual name of a port of the type, e.g. `"image"`.
+            pub const fn port(self) -> &'static str {
+                match self { $(Self::$data => $data_port,)* $(Self::$target => $target_port,)* }
+            }
+
+            /// Whether learners answer it (it then has a JSON form).
+            pub const fn is_target(self) -> bool {
+                match self { $(Self::$data => false,)* $(Self::$target => true,)* }
+            }
+        }
+
+        /// A datum or target of any type.
+        #[derive(Debug, Clone, PartialEq)]
+        #[non_exhaustive]
+        #[allow(missing_docs)]
+        pub enum Value { $($data($data),)* $($target($target),)* }
+
+        /// A borrowed [`Value`].
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        #[non_exhaustive]
+        #[allow(missing_docs)]
+        pub enum ValueRef<'a> { $($data(&'a $data),)* $($target(&'a $target),)* }
+
+        impl Value {
+            /// A borrow of it.
+            pub fn as_value_ref(&self) -> ValueRef<'_> {
+                match self { $(Self::$data(value) => ValueRef::$data(value),)* $(Self::$target(value) => ValueRef::$target(value),)* }
+            }
+
+            /// Time stamp and frame id.
+            pub fn header(&self) -> &Header {
+                match self { $(Self::$data(value) => value.header(),)* $(Self::$target(value) => value.header(),)* }
+            }
+
+            /// Time stamp and frame id, to set them.
+            pub fn header_mut(&mut self) -> &mut Header {
+                match self { $(Self::$data(value) => value.header_mut(),)* $(Self::$target(value) => value.header_mut(),)* }
+            }
+        }
+
+        impl<'a> ValueRef<'a> {
+            /// Which type it is of.
+            pub fn value_type(&self) -> ValueType {
+                match self { $(Self::$data(_) => ValueType::$data,)* $(Self::$target(_) => ValueType::$target,)* }
+            }
+
+            /// A copy of its own; bulky payloads stay shared.
+            pub fn to_value(self) -> Value {
+                match self { $(Self::$data(value) => Value::$data(value.clone()),)* $(Self::$target(value) => Value::$target(value.clone()),)* }
+            }
+        }
+
+        values!(@each $($data)* $($target)*);
+
+        /// The JSON form of targets: the fields of the target and its type under `"type"`.
+        #[derive(Serialize)]
+        #[serde(tag = "type")]
+        enum TargetJson<'a> { $($target(&'a $target),)* }
+
+        #[derive(Deserialize)]
+        #[serde(tag = "type")]
+        enum OwnedTargetJson { $($target($target),)* }
+
+        /// Targets only: data have no JSON form.
+        impl Serialize for ValueRef<'_> {
+            fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                match self {
+                    $(Self::$target(value) => TargetJson::$target(value).serialize(serializer),)*
+                    $(Self::$data(_) => {
+                        Err(serde::ser::Error::custom(concat!(stringify!($data), " has no JSON form; write it as a file")))
+                    })*
+                }
+            }
+        }
+
+        impl<'de> Deserialize<'de> for Value {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                Ok(match OwnedTargetJson::deserialize(deserializer)? {
+                    $(OwnedTargetJson::$target(value) => Self::$target(value),)*
+                })
+            }
+        }
+    };
+    (@each $($name:ident)*) => {$(
+        impl Datum for $name {
+            const TYPE: ValueType = ValueType::$name;
+
+            fn header(&self) -> &Header {
+                &self.header
+            }
+
+            fn header_mut(&mut self) -> &mut Header {
+                &mut self.header
+            }
+
+            fn as_value_ref(&self) -> ValueRef<'_> {
+                ValueRef::$name(self)
+            }
+
+            fn from_value_ref(value: ValueRef<'_>) -> Option<&Self> {
+                match value {
+                    ValueRef::$name(value) => Some(value),
+                    _ => None,
+                }
+            }
+        }
+
+        impl From<$name> for Value {
+            fn from(value: $name) -> Self {
+                Self::$name(value)
+            }
+        }
+
+        impl<'a> From<&'a $name> for ValueRef<'a> {
+            fn from(value: &'a $name) -> Self {
+                ValueRef::$name(value)
+            }
+        }
+    )*};
+}
+
+values! {
+    data { Image = "image" }
+    targets { BoundingBoxList = "boxes", PoseList = "poses" }
+}
+
+impl<'a> From<&'a Value> for ValueRef<'a> {
+    fn from(value: &'a Value) -> Self {
+        value.as_value_ref()
+    }
+}
+
+impl Serialize for Value {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.as_value_ref().serialize(serializer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::BoundingBox;
+
+    #[test]
+    fn json_round_trip() {
+        let mut boxes = BoundingBoxList::from(vec![BoundingBox::new(3, 1.0, 2.0, 3.5, 4.0, 0.9)]);
+        boxes.header = Header::new(5, "camera");
+        let value = Value::from(boxes);
+        let text = serde_json::to_string(&value).unwrap();
+        assert_eq!(
+            text,
+            r#"{"type":"BoundingBoxList","stamp_ns":5,"frame_id":"camera","boxes":[{"name":3,"left":1.0,"top":2.0,"width":3.5,"height":4.0,"confidence":0.9}]}"#
+        );
+        assert_eq!(serde_json::from_str::<Value>(&text).unwrap(), value);
+    }
+
+    #[test]
+    fn pictures_have_no_json_form() {
+        let image = Image::from_rgb8(vec![0; 3], 1, 1).unwrap();
+        assert!(serde_json::to_string(&Value::from(image)).is_err());
+    }
+}
