@@ -1,0 +1,135 @@
+//! From bytes to an [`Image`].
+
+use std::fs::File;
+use std::io::{Cursor, Read};
+use std::path::Path;
+
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use opendr_engine::data::{Image, Layout, PixelFormat};
+use opendr_engine::{Error, Result, ResultExt};
+
+use crate::codec::{finding, jpeg};
+
+/// Reads picture files within bounds.
+///
+/// What comes out is what the file holds, turned upright as its EXIF orientation says: `u8`, `HWC`, grey, RGB or
+/// RGBA. Palettes are resolved, 16-bit samples keep their high byte, grey with opacity becomes RGBA, CMYK and YCCK
+/// become RGB. Of an animation the first frame is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Decoder {
+    /// The largest picture that is read, in samples (width x height x channels); the header is asked before any
+    /// memory is taken. Files over twice as many bytes are not read at all.
+    pub max_samples: u64,
+}
+
+impl Default for Decoder {
+    /// Up to 2^28 samples: 89 megapixels of RGB.
+    fn default() -> Self {
+        Self { max_samples: 1 << 28 }
+    }
+}
+
+/// Reads the picture at `path` with the default [`Decoder`].
+///
+/// # Errors
+/// See [`Decoder::open`].
+pub fn open(path: impl AsRef<Path>) -> Result<Image> {
+    Decoder::default().open(path)
+}
+
+/// Reads the picture in `bytes` with the default [`Decoder`].
+///
+/// # Errors
+/// See [`Decoder::decode`].
+pub fn decode(bytes: &[u8]) -> Result<Image> {
+    Decoder::default().decode(bytes)
+}
+
+impl Decoder {
+    /// Reads the picture at `path`. The content decides on the format, not the name.
+    ///
+    /// # Errors
+    /// `NotFound` or `Io` when the file cannot be read, and those of [`Decoder::decode`]; all name the path.
+    pub fn open(&self, path: impl AsRef<Path>) -> Result<Image> {
+        let path = path.as_ref();
+        let picture = self.read(path).and_then(|bytes| self.decode(&bytes));
+        picture.context(|| format!("opening {}", path.display()))
+    }
+
+    /// Reads the picture in `bytes`.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the bytes are no picture, a damaged or a truncated one (nothing partial is returned:
+    /// half a scene is no basis for acting), or one over [`Decoder::max_samples`]; `Unsupported` for a format that
+    /// is known but not read.
+    pub fn decode(&self, bytes: &[u8]) -> Result<Image> {
+        let (mut picture, orientation) = match finding::format_of(bytes)? {
+            ImageFormat::Jpeg => jpeg::decode(bytes, self.max_samples)?,
+            format => self.decode_other(bytes, format)?,
+        };
+        picture.apply_orientation(orientation);
+        image_from_dynamic(picture)
+    }
+
+    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+        let limit = self.max_samples.saturating_mul(2).saturating_add(1 << 20);
+        let file = File::open(path)?;
+        if file.metadata()?.is_dir() {
+            return Err(Error::invalid_input("a folder, not a picture file; name a file in it"));
+        }
+        let mut bytes = Vec::new();
+        file.take(limit + 1).read_to_end(&mut bytes)?;
+        if bytes.len() as u64 > limit {
+            return Err(Error::invalid_input(format!(
+                "over {limit} bytes, too large for a picture; raise `Decoder::max_samples` if it is one"
+            )));
+        }
+        Ok(bytes)
+    }
+
+    fn decode_other(&self, bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orientation)> {
+        let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(self.max_samples.saturating_mul(2).saturating_add(1 << 20));
+        reader.limits(limits);
+        let damaged = |error| finding::damaged(format, error);
+        let mut decoder = reader.into_decoder().map_err(damaged)?;
+        let (width, height) = decoder.dimensions();
+        check_size(width, height, decoder.color_type().channel_count(), self.max_samples)?;
+        let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
+        Ok((DynamicImage::from_decoder(decoder).map_err(damaged)?, orientation))
+    }
+}
+
+/// Refuses a header that claims more than `max_samples`.
+pub(super) fn check_size(width: u32, height: u32, channels: u8, max_samples: u64) -> Result<()> {
+    let samples = u64::from(width) * u64::from(height) * u64::from(channels);
+    if samples <= max_samples {
+        return Ok(());
+    }
+    Err(Error::invalid_input(format!(
+        "the header claims {width}x{height} pixels of {channels} channels, {samples} samples, over the limit of \
+         {max_samples}; raise `Decoder::max_samples` if the file can be trusted"
+    )))
+}
+
+fn image_from_dynamic(picture: DynamicImage) -> Result<Image> {
+    let (width, height) = (picture.width() as usize, picture.height() as usize);
+    let high_bytes = |samples: Vec<u16>| samples.into_iter().map(|sample| (sample >> 8) as u8).collect();
+    let (format, samples) = match picture {
+        DynamicImage::ImageLuma8(grey) => (PixelFormat::Grey, grey.into_raw()),
+        DynamicImage::ImageRgb8(rgb) => (PixelFormat::Rgb, rgb.into_raw()),
+        DynamicImage::ImageRgba8(rgba) => (PixelFormat::Rgba, rgba.into_raw()),
+        DynamicImage::ImageLuma16(grey) => (PixelFormat::Grey, high_bytes(grey.into_raw())),
+        DynamicImage::ImageRgb16(rgb) => (PixelFormat::Rgb, high_bytes(rgb.into_raw())),
+        DynamicImage::ImageRgba16(rgba) => (PixelFormat::Rgba, high_bytes(rgba.into_raw())),
+        DynamicImage::ImageLumaA16(grey) => {
+            let pairs = grey.into_raw();
+            let rgba = pairs.chunks_exact(2).flat_map(|pair| [pair[0], pair[0], pair[0], pair[1]]);
+            (PixelFormat::Rgba, rgba.map(|sample| (sample >> 8) as u8).collect())
+        }
+        other => (PixelFormat::Rgba, other.into_rgba8().into_raw()),
+    };
+    Image::new(samples, width, height, format, Layout::Hwc)
+}

@@ -1,0 +1,124 @@
+//! From an [`Image`] to bytes.
+
+use std::borrow::Cow;
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::Path;
+
+use image::codecs::bmp::BmpEncoder;
+use image::codecs::jpeg::JpegEncoder;
+use image::codecs::png::PngEncoder;
+use image::codecs::webp::WebPEncoder;
+use image::{ExtendedColorType, ImageEncoder, ImageFormat};
+use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
+use opendr_engine::{Error, Result, ResultExt};
+
+use crate::codec::finding;
+
+/// Writes picture files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Encoder {
+    /// JPEG quality, 1 (small) to 100 (good).
+    pub jpeg_quality: u8,
+}
+
+impl Default for Encoder {
+    /// JPEG quality 90.
+    fn default() -> Self {
+        Self { jpeg_quality: 90 }
+    }
+}
+
+/// Writes `image` to `path` with the default [`Encoder`].
+///
+/// # Errors
+/// See [`Encoder::save`].
+pub fn save(image: &Image, path: impl AsRef<Path>) -> Result<()> {
+    Encoder::default().save(image, path)
+}
+
+impl Encoder {
+    /// Writes `image` to `path`; the extension (`jpg`, `jpeg`, `png`, `bmp`, `webp`) chooses the format.
+    ///
+    /// The file appears whole or not at all: it is written beside `path` and renamed. Grey stays grey; JPEG drops
+    /// opacity; WebP is lossless; samples become `u8` as [`Image::hwc_u8`] says.
+    ///
+    /// # Errors
+    /// `Unsupported` for another extension, `InvalidParam` for a JPEG quality outside 1..=100, `NotFound` or `Io`
+    /// when the folder cannot be written to; all name the path.
+    pub fn save(&self, image: &Image, path: impl AsRef<Path>) -> Result<()> {
+        let path = path.as_ref();
+        let written = format_of(path)
+            .and_then(|format| self.encode(image, format))
+            .and_then(|bytes| write_atomically(path, &bytes));
+        written.context(|| format!("saving {}", path.display()))
+    }
+
+    fn encode(&self, image: &Image, format: ImageFormat) -> Result<Vec<u8>> {
+        if !(1..=100).contains(&self.jpeg_quality) {
+            return Err(Error::invalid_param(format!(
+                "jpeg_quality is {}; give a number from 1 to 100",
+                self.jpeg_quality
+            )));
+        }
+        let (pixel, colour) = match image.format() {
+            PixelFormat::Grey => (PixelFormat::Grey, ExtendedColorType::L8),
+            PixelFormat::Rgba | PixelFormat::Bgra if format != ImageFormat::Jpeg => {
+                (PixelFormat::Rgba, ExtendedColorType::Rgba8)
+            }
+            _ => (PixelFormat::Rgb, ExtendedColorType::Rgb8),
+        };
+        let samples = match image.pixels() {
+            Pixels::U8(samples) if image.format() == pixel && image.layout() == Layout::Hwc => {
+                Cow::Borrowed(samples.as_slice())
+            }
+            _ => Cow::Owned(image.hwc_u8(pixel)),
+        };
+        let too_large =
+            |_| Error::invalid_input(format!("{} pixels a side", image.width().max(image.height())));
+        let width = u32::try_from(image.width()).map_err(too_large)?;
+        let height = u32::try_from(image.height()).map_err(too_large)?;
+        let mut out = Cursor::new(Vec::new());
+        let encoded = match format {
+            ImageFormat::Jpeg => JpegEncoder::new_with_quality(&mut out, self.jpeg_quality)
+                .write_image(&samples, width, height, colour),
+            ImageFormat::Png => PngEncoder::new(&mut out).write_image(&samples, width, height, colour),
+            ImageFormat::Bmp => BmpEncoder::new(&mut out).write_image(&samples, width, height, colour),
+            _ => WebPEncoder::new_lossless(&mut out).write_image(&samples, width, height, colour),
+        };
+        encoded.map_err(|error| {
+            let (width, height) = (image.width(), image.height());
+            Error::invalid_input(format!(
+                "{width}x{height} pixels do not fit a {} file",
+                finding::name(format)
+            ))
+            .with_source(error)
+        })?;
+        Ok(out.into_inner())
+    }
+}
+
+fn format_of(path: &Path) -> Result<ImageFormat> {
+    match ImageFormat::from_path(path) {
+        Ok(format) if format.writing_enabled() => Ok(format),
+        _ => Err(Error::unsupported(
+            "no format that is written; end the name with .jpg, .jpeg, .png, .bmp or .webp",
+        )),
+    }
+}
+
+/// Writes a file beside `path` and renames it; on failure nothing is left behind.
+fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    let name = path.file_name().ok_or_else(|| Error::invalid_input("no file name in the path"))?;
+    let mut temporary = name.to_owned();
+    temporary.push(format!(".{}.partial", std::process::id()));
+    let temporary = path.with_file_name(temporary);
+    let written = fs::File::create(&temporary)
+        .and_then(|mut file| file.write_all(bytes))
+        .and_then(|()| fs::rename(&temporary, path));
+    if written.is_err() {
+        // The first failure is the one to report.
+        let _ = fs::remove_file(&temporary);
+    }
+    Ok(written?)
+}

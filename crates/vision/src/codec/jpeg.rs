@@ -1,0 +1,71 @@
+//! JPEG through `zune-jpeg`: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK.
+
+use image::metadata::Orientation;
+use image::{DynamicImage, GrayImage, ImageFormat, RgbImage};
+use opendr_engine::{Error, Result};
+use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
+
+use crate::codec::decode::check_size;
+
+/// Decodes a JPEG of at most `max_samples` samples to grey or RGB, not yet turned upright.
+pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(DynamicImage, Orientation)> {
+    // Not strict: junk between markers is common and harmless. Truncation is what strictness would be for, and
+    // the decoder overlooks it in the last row of blocks even then, so the end marker is looked for here.
+    let options = DecoderOptions::default()
+        .set_strict_mode(false)
+        .set_max_width(usize::from(u16::MAX))
+        .set_max_height(usize::from(u16::MAX));
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(damaged)?;
+    let (width, height) = decoder.dimensions().unwrap_or_default();
+    let grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
+    check_size(width as u32, height as u32, if grey { 1 } else { 3 }, max_samples)?;
+    if !has_end(bytes) {
+        return Err(Error::invalid_input(format!(
+            "found a JPEG file of {width}x{height} pixels that is truncated after {} bytes; get it again",
+            bytes.len()
+        )));
+    }
+    let colours = if grey { ColorSpace::Luma } else { ColorSpace::RGB };
+    decoder.set_options(options.jpeg_set_out_colorspace(colours));
+    let samples = decoder.decode().map_err(damaged)?;
+    let orientation = decoder.exif().and_then(|exif| Orientation::from_exif_chunk(exif));
+    let (width, height) = (width as u32, height as u32);
+    let picture = if grey {
+        GrayImage::from_raw(width, height, samples).map(DynamicImage::ImageLuma8)
+    } else {
+        RgbImage::from_raw(width, height, samples).map(DynamicImage::ImageRgb8)
+    };
+    let picture = picture.ok_or_else(|| Error::internal("the JPEG decoder returned too few samples"))?;
+    Ok((picture, orientation.unwrap_or(Orientation::NoTransforms)))
+}
+
+/// Whether an end marker follows the start of the first scan. The segments before it are walked, because an
+/// embedded preview has markers of its own.
+fn has_end(bytes: &[u8]) -> bool {
+    let mut at = 2;
+    while let Some(&[prefix, marker, high, low]) = bytes.get(at..at + 4) {
+        at += match (prefix, marker) {
+            (0xff, 0xda) => return bytes[at..].windows(2).rev().any(|pair| pair == [0xff, 0xd9]),
+            (0xff, 0x02..=0xcf | 0xd8..=0xfe) => 2 + usize::from(u16::from_be_bytes([high, low])),
+            _ => 1,
+        };
+    }
+    false
+}
+
+fn damaged(error: DecodeErrors) -> Error {
+    match error {
+        DecodeErrors::Unsupported(scheme) => Error::unsupported(format!(
+            "found a {:?} file of an unusual kind ({scheme:?}); save it as a baseline JPEG",
+            ImageFormat::Jpeg
+        )),
+        other => {
+            Error::invalid_input("found a JPEG file, damaged or truncated; get it again").with_source(other)
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Picture files: JPEG, PNG, BMP and WebP, read and written.
+//!
+//! Files are hostile input: the size a header claims is checked before memory is taken, and every error names
+//! the path and what was found there.
+
+mod decode;
+mod encode;
+mod finding;
+mod jpeg;
+
+pub use decode::{Decoder, decode, open};
+pub use encode::{Encoder, save};

@@ -1,0 +1,10 @@
+//! Pictures for OpenDR: decoding and encoding, and the way from a camera frame to a network's input.
+
+pub mod codec;
+pub mod preprocess;
+mod resize;
+mod workers;
+
+pub use codec::{Decoder, Encoder, decode, open, save};
+pub use preprocess::{Anchor, ChannelOrder, InputGeometry, InputSample, Preprocess};
+pub use resize::resize;

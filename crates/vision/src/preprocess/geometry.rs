@@ -1,0 +1,103 @@
+//! Where a picture lies in a network's input, and the way back.
+
+/// Which part of the input a letterboxed picture touches; the rest is padding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Anchor {
+    /// Equal padding on opposite sides; an odd pixel goes to the right and the bottom.
+    Centre,
+    /// Padding on the right and at the bottom only.
+    TopLeft,
+}
+
+/// Maps positions in a network's input to the picture it was made from.
+///
+/// Positions are continuous: the left-top corner of the first pixel is (0, 0), its centre (0.5, 0.5).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InputGeometry {
+    /// Width and height of the picture, in its pixels.
+    pub image_size: [f32; 2],
+    /// Picture pixels per input pixel, along x and y.
+    pub scale: [f32; 2],
+    /// Left-top corner of the picture in the input, in input pixels.
+    pub offset: [f32; 2],
+}
+
+impl InputGeometry {
+    /// A point `[x, y]` of the input, in pixels of the picture; it may lie outside of it.
+    pub fn image_from_input(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        [(x - self.offset[0]) * self.scale[0], (y - self.offset[1]) * self.scale[1]]
+    }
+
+    /// A point `[x, y]` of the picture, in pixels of the input.
+    pub fn input_from_image(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        [x / self.scale[0] + self.offset[0], y / self.scale[1] + self.offset[1]]
+    }
+
+    /// A box `[left, top, right, bottom]` of the input, in pixels of the picture and cut at its border.
+    pub fn image_box_from_input(&self, [left, top, right, bottom]: [f32; 4]) -> [f32; 4] {
+        let [width, height] = self.image_size;
+        let [left, top] = self.image_from_input([left, top]);
+        let [right, bottom] = self.image_from_input([right, bottom]);
+        [left.clamp(0.0, width), top.clamp(0.0, height), right.clamp(0.0, width), bottom.clamp(0.0, height)]
+    }
+}
+
+/// The rectangle of the input that shows the picture, in input pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Placement {
+    pub(super) x: usize,
+    pub(super) y: usize,
+    pub(super) width: usize,
+    pub(super) height: usize,
+}
+
+impl Placement {
+    /// The picture fills the input; its aspect ratio changes.
+    pub(super) fn stretch([width, height]: [usize; 2]) -> Self {
+        Self { x: 0, y: 0, width, height }
+    }
+
+    /// The picture keeps its aspect ratio and fills the input along one axis.
+    pub(super) fn letterbox(source: [usize; 2], target: [usize; 2], anchor: Anchor) -> Self {
+        let scale = (target[0] as f64 / source[0] as f64).min(target[1] as f64 / source[1] as f64);
+        let side = |axis: usize| ((source[axis] as f64 * scale).round() as usize).clamp(1, target[axis]);
+        let (width, height) = (side(0), side(1));
+        let (x, y) = match anchor {
+            Anchor::Centre => ((target[0] - width) / 2, (target[1] - height) / 2),
+            Anchor::TopLeft => (0, 0),
+        };
+        Self { x, y, width, height }
+    }
+
+    /// The map from the input to a picture of `source` pixels that lies here.
+    pub(super) fn geometry(&self, source: [usize; 2]) -> InputGeometry {
+        InputGeometry {
+            image_size: source.map(|side| side as f32),
+            scale: [source[0] as f32 / self.width as f32, source[1] as f32 / self.height as f32],
+            offset: [self.x as f32, self.y as f32],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn letterbox_keeps_the_ratio_and_maps_back() {
+        let placement = Placement::letterbox([1920, 1080], [416, 416], Anchor::Centre);
+        assert_eq!(placement, Placement { x: 0, y: 91, width: 416, height: 234 });
+        let geometry = placement.geometry([1920, 1080]);
+        assert_eq!(geometry.image_from_input([208.0, 208.0]), [960.0, 540.0]);
+        assert_eq!(geometry.image_box_from_input([-5.0, 0.0, 416.0, 416.0]), [0.0, 0.0, 1920.0, 1080.0]);
+        let there = geometry.input_from_image([100.0, 200.0]);
+        let back = geometry.image_from_input(there);
+        assert!((back[0] - 100.0).abs() < 1e-3 && (back[1] - 200.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn slivers_keep_a_pixel() {
+        let placement = Placement::letterbox([10_000, 1], [64, 64], Anchor::TopLeft);
+        assert_eq!(placement, Placement { x: 0, y: 0, width: 64, height: 1 });
+    }
+}

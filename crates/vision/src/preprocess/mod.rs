@@ -1,0 +1,242 @@
+//! From a picture to a network's input in one pass: resize, letterbox, order of channels, normalisation, layout.
+//!
+//! # Dispatch
+//! Pictures of `u8` pixels whose 3 or 4 channels lie together run through AVX2 kernels where the processor has AVX2
+//! and FMA (asked at run time), else, and for all other pictures, through plain Rust. No code path is specific to
+//! other processors.
+
+mod band;
+mod geometry;
+#[cfg(target_arch = "x86_64")]
+mod kernels_x86;
+mod packed;
+mod plan;
+mod sample;
+mod source;
+mod strided;
+
+use std::sync::Arc;
+
+use opendr_engine::data::{ImageView, Layout};
+use opendr_engine::{Error, Result};
+
+use crate::workers;
+use band::{Band, MAX_BANDS};
+use geometry::Placement;
+pub use geometry::{Anchor, InputGeometry};
+use plan::{Plan, Plans, Sizes};
+pub use sample::InputSample;
+use source::Source;
+use strided::Finish;
+
+/// Pixels below which waking another thread costs more than it helps.
+const PIXELS_ALONE: usize = 96 * 96;
+
+/// The channels of a network's input.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ChannelOrder {
+    /// Red, green, blue.
+    Rgb,
+    /// Blue, green, red.
+    Bgr,
+    /// One channel: luminance by ITU-R BT.601.
+    Grey,
+}
+
+impl ChannelOrder {
+    /// How many channels there are.
+    pub const fn channels(self) -> usize {
+        match self {
+            Self::Rgb | Self::Bgr => 3,
+            Self::Grey => 1,
+        }
+    }
+}
+
+/// How pictures become the input of a network; built once a learner.
+///
+/// Scaling is bilinear with half-pixel centres and without antialiasing, as OpenCV's `INTER_LINEAR`. Pictures have
+/// levels of 0..=255: `u8` as they are, `u16` divided by 257, floats multiplied by 255; opacity is dropped. Tables
+/// for the sizes in use are kept, so that a stream of pictures allocates nothing; clones share them.
+///
+/// ```
+/// use opendr_engine::data::{Image, Layout};
+/// use opendr_vision::{Anchor, ChannelOrder, Preprocess};
+///
+/// let nanodet = Preprocess::new(416, 416)
+///     .letterbox(Anchor::Centre, 0.0)
+///     .order(ChannelOrder::Bgr)
+///     .normalise([103.53, 116.28, 123.675], [57.375, 57.12, 58.395]);
+/// let frame = Image::from_rgb8(vec![128; 640 * 480 * 3], 640, 480)?;
+/// let mut input = vec![0f32; nanodet.len()];
+/// let geometry = nanodet.run_into(frame.view(), &mut input)?;
+/// assert_eq!(geometry.image_from_input([208.0, 208.0]), [320.0, 240.0]);
+/// # Ok::<(), opendr_engine::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Preprocess {
+    size: [usize; 2],
+    /// Anchor and level of the padding; `None` stretches.
+    letterbox: Option<(Anchor, f32)>,
+    order: ChannelOrder,
+    scale: [f32; 3],
+    bias: [f32; 3],
+    layout: Layout,
+    threads: usize,
+    plans: Arc<Plans>,
+}
+
+impl Preprocess {
+    /// An input of `width` x `height` pixels: stretched, RGB, CHW, levels of 0..=255.
+    pub fn new(width: usize, height: usize) -> Self {
+        Self {
+            size: [width, height],
+            letterbox: None,
+            order: ChannelOrder::Rgb,
+            scale: [1.0; 3],
+            bias: [0.0; 3],
+            layout: Layout::Chw,
+            threads: workers::available(),
+            plans: Arc::default(),
+        }
+    }
+
+    /// Keeps the picture's aspect ratio; the rest of the input has the level `pad` (0..=255, then normalised).
+    #[must_use]
+    pub fn letterbox(self, anchor: Anchor, pad: f32) -> Self {
+        Self { letterbox: Some((anchor, pad)), ..self }
+    }
+
+    /// Fills the input; the picture's aspect ratio changes.
+    #[must_use]
+    pub fn stretch(self) -> Self {
+        Self { letterbox: None, ..self }
+    }
+
+    /// The channels of the input.
+    #[must_use]
+    pub fn order(self, order: ChannelOrder) -> Self {
+        Self { order, ..self }
+    }
+
+    /// Values are `(level - mean) / std`, for each channel in the input's order (grey has the first).
+    #[must_use]
+    pub fn normalise(self, mean: [f32; 3], std: [f32; 3]) -> Self {
+        let scale = std.map(|std| 1.0 / std);
+        Self { scale, bias: std::array::from_fn(|c| -mean[c] * scale[c]), ..self }
+    }
+
+    /// The order of the input's axes.
+    #[must_use]
+    pub fn layout(self, layout: Layout) -> Self {
+        Self { layout, ..self }
+    }
+
+    /// At most `threads` threads work on one picture; as many as the processor has cores (at most 8) otherwise.
+    #[must_use]
+    pub fn threads(self, threads: usize) -> Self {
+        Self { threads: threads.max(1), ..self }
+    }
+
+    /// The same for another size of the input, for networks that take several.
+    #[must_use]
+    pub fn with_size(&self, width: usize, height: usize) -> Self {
+        Self { size: [width, height], ..self.clone() }
+    }
+
+    /// Width and height of the input.
+    pub fn size(&self) -> [usize; 2] {
+        self.size
+    }
+
+    /// The input's dimensions with a batch of one: `[1, channels, height, width]`, or `[1, height, width, channels]`.
+    pub fn shape(&self) -> [usize; 4] {
+        let ([width, height], channels) = (self.size, self.order.channels());
+        match self.layout {
+            Layout::Chw => [1, channels, height, width],
+            Layout::Hwc => [1, height, width, channels],
+        }
+    }
+
+    /// How many samples the input has.
+    pub fn len(&self) -> usize {
+        self.shape().into_iter().fold(1, usize::saturating_mul)
+    }
+
+    /// Whether the input has no sample: nothing can run then.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Writes the input for `image` and tells where the picture lies in it.
+    ///
+    /// # Errors
+    /// `InvalidInput` when `out` has not [`Preprocess::len`] samples, `InvalidParam` when the input has no pixel.
+    pub fn run_into<T: InputSample>(&self, image: ImageView<'_>, out: &mut [T]) -> Result<InputGeometry> {
+        if self.is_empty() || out.len() != self.len() {
+            return Err(self.misfit(out.len()));
+        }
+        let source_size = [image.width(), image.height()];
+        let placement = match self.letterbox {
+            Some((anchor, _)) => Placement::letterbox(source_size, self.size, anchor),
+            None => Placement::stretch(self.size),
+        };
+        let source = Source::new(image, self.finish(&image));
+        let sizes =
+            Sizes { source: source_size, target: [placement.width, placement.height], step: source.step() };
+        self.plans.with(sizes, |plan| {
+            source.prepare(plan);
+            self.write(&source, plan, placement, out);
+        });
+        Ok(placement.geometry(source_size))
+    }
+
+    fn finish(&self, image: &ImageView<'_>) -> Finish {
+        let stride = image.strides()[2];
+        let [red, green, blue] = image.format().rgb_offsets().map(|channel| channel * stride);
+        let (channels, luminance) = match self.order {
+            ChannelOrder::Rgb => ([red, green, blue], false),
+            ChannelOrder::Bgr => ([blue, green, red], false),
+            ChannelOrder::Grey => ([red, green, blue], image.format().channels() > 1),
+        };
+        Finish { channels, luminance, scale: self.scale, bias: self.bias }
+    }
+
+    fn write<T: InputSample>(&self, source: &Source<'_>, plan: &Plan, placement: Placement, out: &mut [T]) {
+        let pad = self.letterbox.map_or(0.0, |(_, pad)| pad);
+        let padding = std::array::from_fn(|c| pad * self.scale[c] + self.bias[c]);
+        let Placement { x, y, width, height } = placement;
+        let columns = self.size[0];
+        let alone = self.threads == 1 || width * height < PIXELS_ALONE;
+        let bands = if alone { 1 } else { MAX_BANDS.min(self.threads * 4) };
+        let cut = Band::whole(out, self.size, self.order.channels(), self.layout).cut(bands);
+        workers::run(bands, self.threads, &|index| {
+            let Some(mut band) = cut[index].lock().ok().and_then(|mut band| band.take()) else { return };
+            band.for_each_row(|number, mut row| {
+                if number < y || number >= y + height {
+                    return row.fill(padding);
+                }
+                row.part(0..x).fill(padding);
+                row.part(x + width..columns).fill(padding);
+                row.part(x..x + width).fill_with(|range, mut part| {
+                    source.write(plan, number - y, range, &mut part);
+                });
+            });
+        });
+    }
+
+    #[cold]
+    fn misfit(&self, samples: usize) -> Error {
+        let shape = self.shape();
+        if self.is_empty() {
+            return Error::invalid_param(format!("a network input of shape {shape:?} has no pixel"));
+        }
+        Error::invalid_input(format!(
+            "the input buffer has {samples} samples, the shape {shape:?} needs {}",
+            self.len()
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests;

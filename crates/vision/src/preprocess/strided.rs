@@ -1,0 +1,82 @@
+//! The kernel for every picture: any sample type, any strides. Plain Rust, and what the packed kernels are tested
+//! against.
+
+use crate::preprocess::band::Row;
+use crate::preprocess::plan::Tap;
+
+/// A sample of a picture as a level, 0..=255.
+pub(super) trait Level: Copy + Sync {
+    /// The level: `u16` by 1/257, floats are taken as 0..=1.
+    fn level(self) -> f32;
+}
+
+impl Level for u8 {
+    fn level(self) -> f32 {
+        f32::from(self)
+    }
+}
+
+impl Level for u16 {
+    fn level(self) -> f32 {
+        f32::from(self) * (1.0 / 257.0)
+    }
+}
+
+impl Level for f32 {
+    fn level(self) -> f32 {
+        self * 255.0
+    }
+}
+
+/// What becomes of the levels of a pixel.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Finish {
+    /// Offsets in samples of the picture's channels, in the order of the input's.
+    pub(super) channels: [usize; 3],
+    /// Whether the three channels (red, green, blue) become one luminance.
+    pub(super) luminance: bool,
+    /// The value is `level * scale + bias`, for each channel of the input.
+    pub(super) scale: [f32; 3],
+    pub(super) bias: [f32; 3],
+}
+
+/// Luminance of red, green and blue by ITU-R BT.601.
+const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
+
+/// Blends row `tap` of a picture with `strides` (row, pixel) into `row`.
+pub(super) fn blend_row<S: Level>(
+    samples: &[S],
+    strides: [usize; 2],
+    tap: Tap,
+    columns: &[Tap],
+    finish: &Finish,
+    row: &mut Row<'_, f32>,
+) {
+    let upper = samples.get(tap.first as usize * strides[0]..).unwrap_or_default();
+    let lower = samples.get(tap.second as usize * strides[0]..).unwrap_or_default();
+    let blend = |column: &Tap, channel: usize| {
+        let (first, second) = (column.first as usize * strides[1], column.second as usize * strides[1]);
+        let mix = |from: f32, to: f32, weight: f32| from + (to - from) * weight;
+        let upper = mix(upper[first + channel].level(), upper[second + channel].level(), column.weight);
+        let lower = mix(lower[first + channel].level(), lower[second + channel].level(), column.weight);
+        mix(upper, lower, tap.weight)
+    };
+    let Finish { channels, scale, bias, .. } = *finish;
+    let Row { planes, interleaved, channels: count } = row;
+    if finish.luminance {
+        for (value, column) in planes[0].iter_mut().zip(columns) {
+            let weigh = |index: usize| LUMINANCE[index] * blend(column, channels[index]);
+            *value = (weigh(0) + weigh(1) + weigh(2)) * scale[0] + bias[0];
+        }
+    } else if *interleaved {
+        for (pixel, column) in planes[0].as_chunks_mut::<3>().0.iter_mut().zip(columns) {
+            *pixel = std::array::from_fn(|c| blend(column, channels[c]) * scale[c] + bias[c]);
+        }
+    } else {
+        for (c, plane) in planes.iter_mut().enumerate().take(*count) {
+            for (value, column) in plane.iter_mut().zip(columns) {
+                *value = blend(column, channels[c]) * scale[c] + bias[c];
+            }
+        }
+    }
+}
