@@ -1,0 +1,216 @@
+//! Tensors whose elements are known: weights, shapes and whatever follows from them.
+
+use opendr_engine::{Error, Result};
+
+use super::proto::{DataType, TensorProto};
+
+/// Number of elements of a tensor of these dimensions; `None` when it overflows.
+pub fn element_count(dims: &[usize]) -> Option<usize> {
+    dims.iter().try_fold(1usize, |count, &dim| count.checked_mul(dim))
+}
+
+/// The element types that occur. TensorFlow's integer types all become `Int`, which ONNX knows as int64:
+/// shapes and indices have to be that anyway.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// `f32`.
+    Float,
+    /// `i64`.
+    Int,
+    /// `bool`.
+    Bool,
+}
+
+impl Kind {
+    /// ONNX's number of this element type.
+    pub fn data_type(self) -> DataType {
+        match self {
+            Self::Float => DataType::Float,
+            Self::Int => DataType::Int64,
+            Self::Bool => DataType::Bool,
+        }
+    }
+}
+
+/// Elements in row-major order.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Data {
+    /// 32-bit floats.
+    Float(Vec<f32>),
+    /// Integers.
+    Int(Vec<i64>),
+    /// Truth values.
+    Bool(Vec<bool>),
+    /// Integers of which only some are known: the shape of a tensor with open dimensions.
+    Partial(Vec<Option<i64>>),
+}
+
+/// Runs one expression on the vector of whichever variant, wrapping the result in the same variant.
+macro_rules! map_data {
+    ($data:expr, $values:ident => $result:expr) => {
+        match $data {
+            Data::Float($values) => Data::Float($result),
+            Data::Int($values) => Data::Int($result),
+            Data::Bool($values) => Data::Bool($result),
+            Data::Partial($values) => Data::Partial($result),
+        }
+    };
+}
+pub(crate) use map_data;
+
+impl Data {
+    /// Number of elements.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Float(values) => values.len(),
+            Self::Int(values) => values.len(),
+            Self::Bool(values) => values.len(),
+            Self::Partial(values) => values.len(),
+        }
+    }
+
+    /// Whether there is no element.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Element type.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Float(_) => Kind::Float,
+            Self::Int(_) | Self::Partial(_) => Kind::Int,
+            Self::Bool(_) => Kind::Bool,
+        }
+    }
+}
+
+/// Dimensions and elements; there are always as many elements as the dimensions say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Array {
+    dims: Vec<usize>,
+    data: Data,
+}
+
+impl Array {
+    /// `None` when the number of elements does not fit the dimensions.
+    pub fn new(dims: Vec<usize>, data: Data) -> Option<Self> {
+        (element_count(&dims) == Some(data.len())).then_some(Self { dims, data })
+    }
+
+    /// A tensor of rank 0.
+    pub fn scalar(value: f32) -> Self {
+        Self { dims: Vec::new(), data: Data::Float(vec![value]) }
+    }
+
+    /// An integer of rank 0.
+    pub fn int(value: i64) -> Self {
+        Self { dims: Vec::new(), data: Data::Int(vec![value]) }
+    }
+
+    /// A list of integers, as shapes and axes are.
+    pub fn ints(values: Vec<i64>) -> Self {
+        Self { dims: vec![values.len()], data: Data::Int(values) }
+    }
+
+    /// A list of integers some of which are unknown.
+    pub fn partial(values: Vec<Option<i64>>) -> Self {
+        Self { dims: vec![values.len()], data: Data::Partial(values) }.completed()
+    }
+
+    /// Dimensions, row-major.
+    pub fn dims(&self) -> &[usize] {
+        &self.dims
+    }
+
+    /// Elements.
+    pub fn data(&self) -> &Data {
+        &self.data
+    }
+
+    /// Elements, to be changed in place but not in number.
+    pub(super) fn data_mut(&mut self) -> &mut Data {
+        &mut self.data
+    }
+
+    /// Element type.
+    pub fn kind(&self) -> Kind {
+        self.data.kind()
+    }
+
+    /// Whether every element is known.
+    pub fn is_complete(&self) -> bool {
+        !matches!(self.data, Data::Partial(_))
+    }
+
+    /// Partial data with no gap left becomes plain integers.
+    #[must_use]
+    pub fn completed(mut self) -> Self {
+        if let Data::Partial(values) = &self.data
+            && let Some(known) = values.iter().copied().collect::<Option<Vec<i64>>>()
+        {
+            self.data = Data::Int(known);
+        }
+        self
+    }
+
+    /// The floats, if they are floats.
+    pub fn as_floats(&self) -> Option<&[f32]> {
+        match &self.data {
+            Data::Float(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// The integers, if they are integers and all known.
+    pub fn as_ints(&self) -> Option<&[i64]> {
+        match &self.data {
+            Data::Int(values) => Some(values),
+            _ => None,
+        }
+    }
+
+    /// The same elements under other dimensions.
+    pub fn reshaped(self, dims: Vec<usize>) -> Option<Self> {
+        Self::new(dims, self.data)
+    }
+
+    /// As an initializer of a graph.
+    ///
+    /// # Errors
+    /// `Internal` for partial data, which has no value to write.
+    pub fn to_tensor(&self, name: &str) -> Result<TensorProto> {
+        let raw_data = match &self.data {
+            Data::Float(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            Data::Int(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
+            Data::Bool(values) => values.iter().map(|&value| u8::from(value)).collect(),
+            Data::Partial(_) => return Err(Error::internal(format!("shape {name:?} has unknown elements"))),
+        };
+        Ok(TensorProto {
+            name: name.to_owned(),
+            dims: self.dims.iter().map(|&dim| dim as i64).collect(),
+            data_type: self.kind().data_type() as i32,
+            raw_data,
+            ..TensorProto::default()
+        })
+    }
+
+    /// Reads an initializer of type float, int64 or bool; `None` for others and for inconsistent ones.
+    pub fn from_tensor(tensor: &TensorProto) -> Option<Self> {
+        let dims: Option<Vec<usize>> = tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect();
+        let raw = &tensor.raw_data;
+        let data = match DataType::try_from(tensor.data_type).ok()? {
+            DataType::Float if raw.is_empty() => Data::Float(tensor.float_data.clone()),
+            DataType::Float => {
+                Data::Float(raw.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect())
+            }
+            DataType::Int64 if raw.is_empty() => Data::Int(tensor.int64_data.clone()),
+            DataType::Int64 => Data::Int(raw.as_chunks().0.iter().map(|&b| i64::from_le_bytes(b)).collect()),
+            DataType::Bool if raw.is_empty() => {
+                Data::Bool(tensor.int32_data.iter().map(|&value| value != 0).collect())
+            }
+            DataType::Bool => Data::Bool(raw.iter().map(|&byte| byte != 0).collect()),
+            _ => return None,
+        };
+        Self::new(dims?, data)
+    }
+}

@@ -1,0 +1,220 @@
+//! Writes a graph node by node, evaluating what is known and never writing the same node twice.
+
+use std::collections::{BTreeMap, HashMap};
+
+use opendr_engine::{Error, Result};
+use prost::Message;
+
+use super::array::{Array, Kind};
+use super::fold;
+use super::operator::Operator;
+use super::proto::{
+    Dimension, DimensionValue, GraphProto, NodeProto, TensorProto, TensorShapeProto, TensorType, TypeProto,
+    TypeValue, ValueInfoProto,
+};
+use super::wire::{Dim, Wire};
+
+/// No real model comes near; a hostile one could ask for a node per element of a huge axis.
+const MAX_NODES: usize = 100_000;
+
+/// Elements that evaluation may produce over the whole graph; beyond, nodes are written instead.
+const MAX_FOLDED: usize = 1 << 26;
+
+/// Constants up to this size are compared by content, so that equal shapes share one initializer.
+const SMALL: usize = 16;
+
+/// A graph under construction.
+#[derive(Default)]
+pub struct Builder {
+    nodes: Vec<NodeProto>,
+    initializers: Vec<TensorProto>,
+    inputs: Vec<ValueInfoProto>,
+    outputs: Vec<ValueInfoProto>,
+    names: BTreeMap<String, usize>,
+    written: HashMap<Vec<u8>, Vec<Wire>>,
+    small_constants: HashMap<Vec<u8>, String>,
+    large_constants: HashMap<usize, (String, Wire)>,
+    folded: usize,
+}
+
+impl Builder {
+    /// An input of the graph; open dimensions get the names given, or none.
+    pub fn input(&mut self, name: &str, kind: Kind, dims: Vec<Dim>, open: &[&str]) -> Wire {
+        let name = self.unique(name);
+        self.inputs.push(value_info(&name, kind, &dims, open));
+        Wire::new(&name, kind, dims, None)
+    }
+
+    /// Declares an output. The tensor gets that name; one that has a name of its own already (an input, a
+    /// constant, another output) is passed through an `Identity`.
+    ///
+    /// # Errors
+    /// `Format` when the graph has grown too large.
+    pub fn output(&mut self, name: &str, wire: &Wire, doc: &str) -> Result<()> {
+        let source = self.source_name(wire)?;
+        let mut node = Operator::new("Identity").into_node(name);
+        node.input.push(source);
+        node.output.push(name.to_owned());
+        self.push(node)?;
+        let mut info = value_info(name, wire.kind(), wire.dims(), &[]);
+        info.doc_string = doc.to_owned();
+        self.outputs.push(info);
+        Ok(())
+    }
+
+    /// Adds one operator with one output, or evaluates it.
+    ///
+    /// # Errors
+    /// `Format` when the graph has grown too large.
+    pub fn add(
+        &mut self,
+        hint: &str,
+        operator: Operator,
+        inputs: &[&Wire],
+        kind: Kind,
+        dims: Vec<Dim>,
+    ) -> Result<Wire> {
+        let outputs = self.add_many(hint, operator, inputs, vec![(kind, dims)])?;
+        outputs.into_iter().next().ok_or_else(|| Error::internal("operator without output"))
+    }
+
+    /// Adds one operator with several outputs, or evaluates it.
+    ///
+    /// # Errors
+    /// `Format` when the graph has grown too large.
+    pub fn add_many(
+        &mut self,
+        hint: &str,
+        operator: Operator,
+        inputs: &[&Wire],
+        outputs: Vec<(Kind, Vec<Dim>)>,
+    ) -> Result<Vec<Wire>> {
+        let known = self.evaluate(&operator, inputs).filter(|known| known.len() == outputs.len());
+        if let Some(known) = &known
+            && known.iter().all(Array::is_complete)
+        {
+            return Ok(known.iter().cloned().map(Wire::constant).collect());
+        }
+        let mut node = operator.into_node("");
+        for input in inputs {
+            node.input.push(self.source_name(input)?);
+        }
+        let key = node.encode_to_vec();
+        if let Some(outputs) = self.written.get(&key) {
+            return Ok(outputs.clone());
+        }
+        let mut known = known.unwrap_or_default().into_iter();
+        let mut wires = Vec::with_capacity(outputs.len());
+        for (kind, dims) in outputs {
+            let name = self.unique(hint);
+            node.output.push(name.clone());
+            wires.push(Wire::new(&name, kind, dims, known.next()));
+        }
+        node.name = node.output.first().cloned().unwrap_or_default();
+        self.push(node)?;
+        self.written.insert(key, wires.clone());
+        Ok(wires)
+    }
+
+    fn push(&mut self, node: NodeProto) -> Result<()> {
+        if self.nodes.len() >= MAX_NODES {
+            return Err(Error::format(format!(
+                "the graph needs more than {MAX_NODES} nodes; it is damaged or hostile"
+            )));
+        }
+        self.nodes.push(node);
+        Ok(())
+    }
+
+    fn evaluate(&mut self, operator: &Operator, inputs: &[&Wire]) -> Option<Vec<Array>> {
+        let known = match operator.name() {
+            "Shape" => {
+                let dims = inputs.first()?.dims();
+                vec![Array::partial(
+                    dims.iter().map(|dim| dim.and_then(|dim| i64::try_from(dim).ok())).collect(),
+                )]
+            }
+            "Size" => vec![Array::int(i64::try_from(inputs.first()?.element_count()?).ok()?)],
+            _ => {
+                let unknown = |wire: &&Wire| !wire.name.is_empty() && wire.known().is_none();
+                if self.folded > MAX_FOLDED || inputs.iter().any(unknown) {
+                    return None;
+                }
+                fold::evaluate(operator, &inputs.iter().map(|wire| wire.known()).collect::<Vec<_>>())?
+            }
+        };
+        self.folded += known.iter().map(|array| array.data().len()).sum::<usize>();
+        Some(known)
+    }
+
+    /// The name by which a node refers to `wire`; constants become initializers here.
+    fn source_name(&mut self, wire: &Wire) -> Result<String> {
+        let Some(array) = wire.array() else { return Ok(wire.name.to_string()) };
+        let hint = if wire.name.is_empty() { "constant" } else { &*wire.name };
+        if array.data().len() <= SMALL {
+            let key = array.to_tensor("")?.encode_to_vec();
+            if let Some(name) = self.small_constants.get(&key) {
+                return Ok(name.clone());
+            }
+            let name = self.unique(hint);
+            self.initializers.push(array.to_tensor(&name)?);
+            self.small_constants.insert(key, name.clone());
+            return Ok(name);
+        }
+        if let Some((name, _)) = self.large_constants.get(&wire.address()) {
+            return Ok(name.clone());
+        }
+        let name = self.unique(hint);
+        self.initializers.push(array.to_tensor(&name)?);
+        self.large_constants.insert(wire.address(), (name.clone(), wire.clone()));
+        Ok(name)
+    }
+
+    /// `hint`, or `hint_2`, `hint_3` where it is taken.
+    fn unique(&mut self, hint: &str) -> String {
+        let hint = if hint.is_empty() { "tensor" } else { hint };
+        let mut name = hint.to_owned();
+        while self.names.contains_key(&name) {
+            let count = self.names.entry(hint.to_owned()).or_insert(1);
+            *count += 1;
+            name = format!("{hint}_{count}");
+        }
+        self.names.insert(name.clone(), 1);
+        name
+    }
+
+    /// Keeps a name free for an output.
+    pub fn reserve(&mut self, name: &str) {
+        self.names.insert(name.to_owned(), 1);
+    }
+
+    /// The finished graph.
+    pub fn finish(self, name: &str) -> GraphProto {
+        GraphProto {
+            name: name.to_owned(),
+            node: self.nodes,
+            initializer: self.initializers,
+            input: self.inputs,
+            output: self.outputs,
+            ..GraphProto::default()
+        }
+    }
+}
+
+fn value_info(name: &str, kind: Kind, dims: &[Dim], open: &[&str]) -> ValueInfoProto {
+    let dimension = |(axis, dim): (usize, &Dim)| {
+        let value = match (dim, open.get(axis)) {
+            (Some(dim), _) => Some(DimensionValue::Value(*dim as i64)),
+            (None, Some(name)) => Some(DimensionValue::Param((*name).to_owned())),
+            (None, None) => None,
+        };
+        Dimension { value, ..Dimension::default() }
+    };
+    let shape = TensorShapeProto { dim: dims.iter().enumerate().map(dimension).collect() };
+    let tensor = TensorType { elem_type: kind.data_type() as i32, shape: Some(shape) };
+    ValueInfoProto {
+        name: name.to_owned(),
+        r#type: Some(TypeProto { value: Some(TypeValue::Tensor(tensor)), ..TypeProto::default() }),
+        ..ValueInfoProto::default()
+    }
+}

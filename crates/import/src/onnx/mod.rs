@@ -1,0 +1,17 @@
+//! ONNX models: reading and writing them, building graphs, rewriting graphs.
+
+mod array;
+mod builder;
+mod fold;
+mod model;
+mod operator;
+pub mod passes;
+pub mod proto;
+mod wire;
+
+pub use array::{Array, Data, Kind, element_count};
+pub use builder::Builder;
+pub use fold::slice_range;
+pub use model::{decode_model, encode_model};
+pub use operator::Operator;
+pub use wire::{Dim, Wire};

@@ -1,0 +1,34 @@
+//! Removes what no output needs.
+
+use std::collections::HashSet;
+
+use crate::onnx::proto::{AttributeProto, GraphProto};
+
+/// Removes nodes and initializers that no output of the graph needs. Graph inputs stay, they are the interface.
+pub fn remove_dead_nodes(graph: &mut GraphProto) {
+    let mut needed: HashSet<String> = graph.output.iter().map(|output| output.name.clone()).collect();
+    // Nodes are in an order in which makers come before readers.
+    let mut keep = vec![false; graph.node.len()];
+    for (index, node) in graph.node.iter().enumerate().rev() {
+        if node.output.iter().any(|output| needed.contains(output)) {
+            keep[index] = true;
+            needed.extend(node.input.iter().cloned());
+            node.attribute.iter().for_each(|attribute| captured(attribute, &mut needed));
+        }
+    }
+    let mut keep = keep.into_iter();
+    graph.node.retain(|_| keep.next().unwrap_or(true));
+    graph.initializer.retain(|tensor| needed.contains(&tensor.name));
+    graph.value_info.retain(|info| needed.contains(&info.name));
+}
+
+/// Names that the subgraphs of loops and branches read, taking none for local.
+fn captured(attribute: &AttributeProto, needed: &mut HashSet<String>) {
+    for graph in attribute.g.iter().chain(&attribute.graphs) {
+        needed.extend(graph.output.iter().map(|output| output.name.clone()));
+        for node in &graph.node {
+            needed.extend(node.input.iter().cloned());
+            node.attribute.iter().for_each(|attribute| captured(attribute, needed));
+        }
+    }
+}

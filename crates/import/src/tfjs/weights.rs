@@ -1,0 +1,150 @@
+//! The binary weight files.
+
+use std::collections::BTreeMap;
+
+use opendr_engine::{Error, Result};
+
+use super::model_json::{ModelJson, Quantization, Weight};
+use crate::onnx::{Array, Data, element_count};
+
+/// Weights by name, decoded from the files of the manifest in its order. Every size is checked against the bytes
+/// there are before anything is allocated.
+///
+/// # Errors
+/// `Format` when files are missing or too short, `Unsupported` for an element type such as strings.
+pub fn read_weights(model: &ModelJson, files: &[&[u8]]) -> Result<BTreeMap<String, Array>> {
+    let expected: usize = model.weights_manifest.iter().map(|group| group.paths.len()).sum();
+    if expected != files.len() {
+        return Err(Error::format(format!(
+            "the manifest names {expected} weight files but {} are given",
+            files.len()
+        )));
+    }
+    let mut weights = BTreeMap::new();
+    let mut files = files.iter();
+    for group in &model.weights_manifest {
+        let shards: Vec<&[u8]> = files.by_ref().take(group.paths.len()).copied().collect();
+        let joined;
+        let mut bytes = match shards.as_slice() {
+            [single] => *single,
+            shards => {
+                joined = shards.concat();
+                joined.as_slice()
+            }
+        };
+        for weight in &group.weights {
+            let (array, rest) = decode(weight, bytes)?;
+            bytes = rest;
+            weights.insert(weight.name.clone(), array);
+        }
+    }
+    Ok(weights)
+}
+
+fn decode<'a>(weight: &Weight, bytes: &'a [u8]) -> Result<(Array, &'a [u8])> {
+    let Weight { name, shape, dtype, quantization } = weight;
+    let stored = quantization.as_ref().map_or(dtype.as_str(), |quantization| quantization.dtype.as_str());
+    let width = match stored {
+        "float32" | "int32" => 4,
+        "float16" | "uint16" => 2,
+        "uint8" | "bool" => 1,
+        _ => return Err(Error::unsupported(format!("weight {name:?} is of type {stored:?}"))),
+    };
+    let size = element_count(shape).and_then(|count| count.checked_mul(width));
+    let Some((own, rest)) = size.and_then(|size| bytes.split_at_checked(size)) else {
+        return Err(Error::format(format!(
+            "weight {name:?} of shape {shape:?} needs more than the {} bytes left in its file; get the file anew",
+            bytes.len()
+        )));
+    };
+    let data = match (stored, dtype.as_str()) {
+        ("float32", _) => Data::Float(own.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect()),
+        ("float16", _) => {
+            Data::Float(own.as_chunks().0.iter().map(|&b| f32_from_f16(u16::from_le_bytes(b))).collect())
+        }
+        ("int32", _) => Data::Int(own.as_chunks().0.iter().map(|&b| i32::from_le_bytes(b).into()).collect()),
+        ("bool", _) => Data::Bool(own.iter().map(|&byte| byte != 0).collect()),
+        ("uint8", _) => dequantized(dtype, quantization, own.iter().map(|&byte| byte.into())),
+        _ => {
+            dequantized(dtype, quantization, own.as_chunks().0.iter().map(|&b| u16::from_le_bytes(b).into()))
+        }
+    };
+    match Array::new(shape.clone(), data) {
+        Some(array) => Ok((array, rest)),
+        None => Err(Error::internal(format!("weight {name:?} decoded to a wrong size"))),
+    }
+}
+
+fn dequantized(dtype: &str, quantization: &Option<Quantization>, stored: impl Iterator<Item = f32>) -> Data {
+    let scale = quantization.as_ref().and_then(|quantization| quantization.scale).unwrap_or(1.0);
+    let min = quantization.as_ref().and_then(|quantization| quantization.min).unwrap_or(0.0);
+    let values = stored.map(|value| value * scale + min);
+    match dtype {
+        "int32" => Data::Int(values.map(|value| value.round() as i64).collect()),
+        _ => Data::Float(values.collect()),
+    }
+}
+
+/// Widens IEEE 754 half precision exactly.
+fn f32_from_f16(half: u16) -> f32 {
+    let sign = u32::from(half & 0x8000) << 16;
+    let exponent = u32::from(half >> 10 & 0x1f);
+    let fraction = u32::from(half & 0x3ff);
+    match exponent {
+        // Zero and subnormals are multiples of 2^-24.
+        0 => f32::from_bits(sign | (fraction as f32 * f32::from_bits(0x3380_0000)).to_bits()),
+        31 => f32::from_bits(sign | 0x7f80_0000 | fraction << 13),
+        _ => f32::from_bits(sign | (exponent + 112) << 23 | fraction << 13),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(weight: &str, bytes: &[u8]) -> Result<Array> {
+        let json = format!(
+            r#"{{"modelTopology": {{}}, "weightsManifest": [{{"paths": ["a", "b"], "weights": [{weight}]}}]}}"#
+        );
+        let (first, second) = bytes.split_at(bytes.len() / 2);
+        let mut weights = read_weights(&ModelJson::parse(json.as_bytes())?, &[first, second])?;
+        Ok(weights.remove("w").unwrap())
+    }
+
+    #[test]
+    fn half_precision_widens_exactly() {
+        let cases =
+            [(0x3c00, 1.0), (0xc000, -2.0), (0x7bff, 65504.0), (0x0001, 5.960_464_5e-8), (0x8000, -0.0)];
+        for (bits, value) in cases {
+            assert_eq!(f32_from_f16(bits).to_bits(), f32::to_bits(value), "{bits:#x}");
+        }
+        assert!(f32_from_f16(0x7e00).is_nan() && f32_from_f16(0xfc00) == f32::NEG_INFINITY);
+    }
+
+    #[test]
+    fn weights_may_cross_from_one_file_into_the_next() {
+        let array =
+            read(r#"{"name": "w", "shape": [1], "dtype": "float32"}"#, &1.5f32.to_le_bytes()).unwrap();
+        assert_eq!(array.as_floats(), Some(&[1.5][..]));
+    }
+
+    #[test]
+    fn quantised_weights_are_scaled() {
+        let weight = r#"{"name": "w", "shape": [2], "dtype": "float32",
+            "quantization": {"dtype": "uint8", "scale": 0.5, "min": -1}}"#;
+        assert_eq!(read(weight, &[0, 4]).unwrap().as_floats(), Some(&[-1.0, 1.0][..]));
+        let weight = weight.replace("uint8", "uint16").replace("float32", "int32");
+        assert_eq!(read(&weight, &[4, 0, 0, 1]).unwrap().as_ints(), Some(&[1, 127][..]));
+    }
+
+    #[test]
+    fn sizes_are_checked_before_allocating() {
+        for shape in ["[2]", "[4294967296, 4294967296]", "[18446744073709551615]"] {
+            let weight = format!(r#"{{"name": "w", "shape": {shape}, "dtype": "float32"}}"#);
+            let error = read(&weight, &[0; 4]).unwrap_err();
+            assert_eq!(error.kind(), opendr_engine::ErrorKind::Format, "{error}");
+        }
+        let error = read(r#"{"name": "w", "shape": [1], "dtype": "string"}"#, &[0; 4]).unwrap_err();
+        assert_eq!(error.kind(), opendr_engine::ErrorKind::Unsupported);
+    }
+}
