@@ -3,6 +3,7 @@
 // Derived code names this crate as `opendr_engine`, here too.
 extern crate self as opendr_engine;
 
+mod cache;
 mod device;
 mod error;
 mod header;
@@ -20,6 +21,7 @@ pub mod model;
 pub mod params;
 pub mod target;
 
+pub use cache::cache_dir;
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};
 pub use header::Header;

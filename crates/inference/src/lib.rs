@@ -1,7 +1,6 @@
 //! Inference module: sessions over ONNX Runtime or the built-in runtime, one interface for both.
 
 mod builtin;
-mod cache;
 mod onnx_header;
 mod onnx_runtime;
 mod protobuf;
@@ -13,7 +12,6 @@ mod tensor;
 pub mod timing;
 
 pub use builtin::Builtin;
-pub use cache::cache_dir;
 pub use onnx_runtime::OnnxRuntime;
 pub use runtime::{Engine, Runtime, SessionOptions, Sink};
 pub use selection::{default_runtime, describe, runtimes};

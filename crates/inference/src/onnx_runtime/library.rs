@@ -5,12 +5,11 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, Result, cache_dir};
 use ort::environment::Environment;
 use ort::logging::LogLevel;
 
 use super::python;
-use crate::cache::cache_dir;
 
 /// The oldest ONNX Runtime that works, as minor version of 1.x: what ort's feature `api-23` asks for.
 pub(crate) const OLDEST_MINOR: u32 = 23;

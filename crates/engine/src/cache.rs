@@ -3,7 +3,7 @@
 use std::env;
 use std::path::PathBuf;
 
-use opendr_engine::{Error, Result};
+use crate::{Error, Result};
 
 /// The cache folder: `OPENDR_CACHE`, or `opendr` in the user's cache folder. It need not exist yet.
 ///
