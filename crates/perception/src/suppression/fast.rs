@@ -1,0 +1,11 @@
+use super::{Candidate, keep_unmarked, overlap};
+
+/// A box is dropped when any better box overlaps it, be that one dropped itself or not.
+pub fn suppress(candidates: &mut Vec<Candidate>, dropped: &mut Vec<bool>, limit: f32) {
+    dropped.clear();
+    dropped.extend((0..candidates.len()).map(|at| {
+        let (better, this) = (&candidates[..at], &candidates[at]);
+        better.iter().any(|candidate| overlap(candidate, this, limit))
+    }));
+    keep_unmarked(candidates, dropped);
+}
