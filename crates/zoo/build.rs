@@ -1,0 +1,54 @@
+//! Lists the model cards, so that a new card is one new file and no other edit.
+
+use std::fmt::Write;
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::{env, fs, io};
+
+fn main() -> io::Result<()> {
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    let mut code = String::new();
+    for (constant, folder, ending) in
+        [("CARDS", models.clone(), "toml"), ("CLASS_LISTS", models.join("classes"), "txt")]
+    {
+        println!("cargo::rerun-if-changed={}", folder.display());
+        let _ = writeln!(code, "pub(crate) const {constant}: &[(&str, &str)] = &[");
+        for path in files(&folder, ending)? {
+            let name = path.file_stem().unwrap_or_default();
+            let _ = writeln!(code, "({:?}, include_str!({:?})),", name.display().to_string(), path);
+        }
+        code.push_str("];\n");
+    }
+    println!("cargo::rustc-env=OPENDR_IMPORTER={}", importer()?);
+    let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
+    fs::write(Path::new(&out).join("embedded.rs"), code)
+}
+
+/// The importer's version with a fingerprint of its sources, where they are beside this crate.
+fn importer() -> io::Result<String> {
+    let mut hasher = DefaultHasher::new();
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../import/src")];
+    while let Some(folder) = folders.pop().filter(|folder| folder.is_dir()) {
+        println!("cargo::rerun-if-changed={}", folder.display());
+        let mut paths =
+            fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+        paths.sort();
+        for path in paths {
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                fs::read(&path)?.hash(&mut hasher);
+            }
+        }
+    }
+    Ok(format!("opendr-import {}+{:08x}", env!("CARGO_PKG_VERSION"), hasher.finish() as u32))
+}
+
+fn files(folder: &Path, ending: &str) -> io::Result<Vec<PathBuf>> {
+    let mut paths = fs::read_dir(fs::canonicalize(folder)?)?
+        .map(|entry| Ok(entry?.path()))
+        .collect::<io::Result<Vec<_>>>()?;
+    paths.retain(|path| path.extension().is_some_and(|found| found == ending));
+    paths.sort();
+    Ok(paths)
+}

@@ -1,0 +1,140 @@
+//! Takes members out of packages, which may come from anyone: nothing is written by a name in them, links and names
+//! that leave their folder are refused, and what unpacks without end is stopped.
+
+use std::fs::File;
+use std::io::{self, BufReader, Read, Seek};
+use std::path::Path;
+
+use flate2::read::GzDecoder;
+use opendr_engine::model::member_path;
+use opendr_engine::{Error, Result, ResultExt};
+use tar::EntryType;
+use zip::ZipArchive;
+
+const MAX_MEMBERS: usize = 200_000;
+
+/// An archive may unpack to so many times its own size; weights hardly shrink at all.
+const MAX_RATIO: u64 = 20;
+
+/// Which member of how many bytes is wanted, by name; `None` for those that are not.
+pub(crate) type Wanted<'a> = &'a dyn Fn(&str) -> Option<u64>;
+
+/// Hands every wanted member's name and bytes to `take`, in the archive's order. The kind (`.tgz`, `.whl`, `.zip`) is
+/// told by the first bytes.
+///
+/// # Errors
+/// `Integrity` when the archive is damaged or hostile, `Format` when it is neither kind, those of `take`.
+pub(crate) fn extract(
+    archive: &Path,
+    wanted: Wanted<'_>,
+    take: &mut dyn FnMut(&str, Vec<u8>) -> Result<()>,
+) -> Result<()> {
+    let mut read = || -> Result<()> {
+        let mut file = File::open(archive)?;
+        let budget = file.metadata()?.len().saturating_mul(MAX_RATIO).saturating_add(1 << 20);
+        let mut start = [0; 2];
+        file.read_exact(&mut start)?;
+        file.rewind()?;
+        match &start {
+            [0x1f, 0x8b] => extract_tgz(BufReader::new(file), budget, wanted, take),
+            b"PK" => extract_zip(BufReader::new(file), budget, wanted, take),
+            _ => Err(Error::format("neither a .tgz nor a .zip")),
+        }
+    };
+    read().context(|| archive.display().to_string())
+}
+
+fn extract_tgz(
+    file: BufReader<File>,
+    budget: u64,
+    wanted: Wanted<'_>,
+    take: &mut dyn FnMut(&str, Vec<u8>) -> Result<()>,
+) -> Result<()> {
+    let mut archive = tar::Archive::new(Bounded { reader: GzDecoder::new(file), left: budget });
+    for (count, entry) in archive.entries().map_err(damaged)?.enumerate() {
+        let entry = entry.map_err(damaged)?;
+        check_count(count)?;
+        let kind = entry.header().entry_type();
+        if kind == EntryType::XGlobalHeader {
+            continue;
+        }
+        let name = String::from_utf8(entry.path_bytes().into_owned())
+            .map_err(|_| Error::integrity("a member's name is no UTF-8"))?;
+        let name = if kind.is_dir() { name.trim_end_matches('/') } else { &name };
+        member_path(name)?;
+        if !kind.is_dir() && !kind.is_file() {
+            return Err(refused_link(name));
+        }
+        if let Some(size) = wanted(name).filter(|_| kind.is_file()) {
+            take(name, read_member(entry, name, size)?)?;
+        }
+    }
+    Ok(())
+}
+
+fn extract_zip(
+    file: BufReader<File>,
+    mut budget: u64,
+    wanted: Wanted<'_>,
+    take: &mut dyn FnMut(&str, Vec<u8>) -> Result<()>,
+) -> Result<()> {
+    let mut archive = ZipArchive::new(file).map_err(|error| damaged(error.into()))?;
+    check_count(archive.len())?;
+    for index in 0..archive.len() {
+        let entry = archive.by_index(index).map_err(|error| damaged(error.into()))?;
+        let name = entry.name().map_err(|error| damaged(error.into()))?.into_owned();
+        let name = if entry.is_dir() { name.trim_end_matches('/') } else { &name };
+        member_path(name)?;
+        if entry.is_symlink() {
+            return Err(refused_link(name));
+        }
+        if let Some(size) = wanted(name).filter(|_| entry.is_file()) {
+            budget = budget.checked_sub(size).ok_or_else(endless)?;
+            take(name, read_member(entry, name, size)?)?;
+        }
+    }
+    Ok(())
+}
+
+fn read_member(entry: impl Read, name: &str, size: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    entry.take(size + 1).read_to_end(&mut bytes).map_err(damaged).context(|| name)?;
+    if bytes.len() as u64 == size {
+        return Ok(bytes);
+    }
+    let found = if bytes.len() as u64 > size { format!("over {size}") } else { bytes.len().to_string() };
+    Err(Error::integrity(format!("the member {name:?} has {found} bytes instead of {size}")))
+}
+
+/// Fails when more than `left` bytes come.
+struct Bounded<R> {
+    reader: R,
+    left: u64,
+}
+
+impl<R: Read> Read for Bounded<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.left = self.left.checked_sub(count as u64).ok_or_else(|| io::Error::other(endless()))?;
+        Ok(count)
+    }
+}
+
+fn endless() -> Error {
+    Error::integrity(format!("it unpacks to more than {MAX_RATIO} times its size: refused"))
+}
+
+fn check_count(count: usize) -> Result<()> {
+    if count <= MAX_MEMBERS {
+        return Ok(());
+    }
+    Err(Error::integrity(format!("more than {MAX_MEMBERS} members: refused")))
+}
+
+fn refused_link(name: &str) -> Error {
+    Error::integrity(format!("the member {name:?} is a link or device: refused"))
+}
+
+fn damaged(error: io::Error) -> Error {
+    Error::integrity("the archive is damaged").with_source(error)
+}

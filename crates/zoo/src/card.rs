@@ -1,0 +1,171 @@
+//! Model cards: what a learner's models are, under which terms, and where they come from.
+
+use opendr_engine::model::{Licence, Sha256};
+use opendr_engine::params::ParamMap;
+use opendr_engine::{Error, Result, Task};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+
+use crate::check::check_card;
+use crate::source::Source;
+
+/// One file `models/<learner>.toml`. `models/README.md` describes the format.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Card {
+    /// What its items are.
+    #[serde(default)]
+    pub kind: ItemKind,
+    /// Registry name of the learner; for samples the name of the collection.
+    pub learner: String,
+    /// What the learner is for.
+    #[serde(default)]
+    pub task: Option<Task>,
+    /// The learner in one line.
+    pub description: String,
+    /// The variants, of which one is the default.
+    pub variants: Vec<Variant>,
+}
+
+/// What the items of a card are.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum ItemKind {
+    /// Models for the card's learner.
+    #[default]
+    Model,
+    /// Pictures and recordings to try a learner on.
+    Sample,
+}
+
+/// One item of a card.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Variant {
+    /// The name after the slash, e.g. `"coco_416"`.
+    pub name: String,
+    /// Whether it is meant when no variant is named.
+    #[serde(default)]
+    pub default: bool,
+    /// What distinguishes it, in one line.
+    #[serde(default)]
+    pub description: String,
+    /// Name of the list in `models/classes` that names its classes.
+    #[serde(default)]
+    pub classes: Option<String>,
+    /// The learner's parameters that belong to these weights.
+    #[serde(default)]
+    pub params: ParamMap,
+    /// Layout, size and normalisation of the inputs.
+    #[serde(default)]
+    pub inputs: Map<String, Value>,
+    /// Terms of use.
+    pub licence: Licence,
+    /// Accuracy on named data.
+    #[serde(default)]
+    pub metrics: Map<String, Value>,
+    /// What `opendr bench` measured.
+    #[serde(default)]
+    pub speed: Option<Speed>,
+    /// The files to get.
+    pub files: Vec<CardFile>,
+    /// How the model's one file is made from them; absent when they are the model.
+    #[serde(default)]
+    pub import: Option<Import>,
+    /// Where the files are, in the order in which to try.
+    pub sources: Vec<Source>,
+}
+
+/// Speed and memory, as `opendr bench` measured them.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct Speed {
+    /// Frames a second from decoded picture to targets.
+    pub fps: f64,
+    /// Peak memory of the process in MB (10^6 bytes).
+    pub peak_mb: f64,
+    /// Processor, threads, runtime.
+    pub on: String,
+}
+
+/// One file that an item needs.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[non_exhaustive]
+pub struct CardFile {
+    /// Name inside the container.
+    pub name: String,
+    /// Bytes.
+    pub size: u64,
+    /// Checksum.
+    pub sha256: Sha256,
+}
+
+/// How files of another format become one ONNX file.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(tag = "format", rename_all = "snake_case", deny_unknown_fields)]
+#[non_exhaustive]
+pub enum Import {
+    /// A TensorFlow.js graph model: the first of the files is its JSON, the others are its weights in the JSON's order.
+    Tfjs {
+        /// Name of the file that is made.
+        #[serde(default = "model_onnx")]
+        output: String,
+        /// Height and width of an image input whose size the model leaves open.
+        #[serde(default)]
+        image_size: Option<(usize, usize)>,
+        /// Outputs to keep; all when empty.
+        #[serde(default)]
+        outputs: Vec<String>,
+    },
+}
+
+fn model_onnx() -> String {
+    "model.onnx".to_owned()
+}
+
+impl Card {
+    /// Reads a card and checks that everything in it is sound: names, paths, addresses, sizes, one default.
+    ///
+    /// # Errors
+    /// `Format` when it is no card, `Integrity` when a name in it could leave its folder.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        if text.len() > MAX_CARD_BYTES {
+            return Err(Error::format(format!("a card of {} bytes: at most {MAX_CARD_BYTES}", text.len())));
+        }
+        let card: Self = toml::from_str(text)
+            .map_err(|error| Error::format("the card does not fit").with_source(error))?;
+        check_card(&card).map_err(|error| error.context(format!("the card {:?}", card.learner)))?;
+        Ok(card)
+    }
+
+    /// The variant called `name`, or the default one.
+    ///
+    /// # Errors
+    /// `NotFound`, naming those there are.
+    pub fn variant(&self, name: Option<&str>) -> Result<&Variant> {
+        let wanted = |variant: &&Variant| name.map_or(variant.default, |name| variant.name == name);
+        self.variants.iter().find(wanted).ok_or_else(|| {
+            let names: Vec<_> = self.variants.iter().map(|variant| variant.name.as_str()).collect();
+            Error::not_found(format!(
+                "{} has no variant {:?}; there are {}",
+                self.learner,
+                name.unwrap_or("default"),
+                names.join(", ")
+            ))
+        })
+    }
+}
+
+impl Variant {
+    /// What its files take together, in bytes; a package that carries them may be larger.
+    pub fn size(&self) -> u64 {
+        self.files.iter().map(|file| file.size).sum()
+    }
+}
+
+const MAX_CARD_BYTES: usize = 1 << 20;

@@ -1,0 +1,129 @@
+//! What a card must hold to before anything in it is used.
+
+use std::collections::HashSet;
+
+use opendr_engine::model::member_path;
+use opendr_engine::{Error, Result, ResultExt};
+
+use crate::card::{Card, Import, ItemKind, Variant};
+use crate::embedded::classes;
+use crate::source::{Package, Places, Source};
+
+/// No file or package of the zoo is larger.
+const MAX_BYTES: u64 = 2 << 30;
+
+pub(crate) fn check_card(card: &Card) -> Result<()> {
+    check_name("learner", &card.learner)?;
+    ensure(card.kind == ItemKind::Sample || card.task.is_some(), || "a model's card names its task".into())?;
+    let mut names = HashSet::new();
+    for variant in &card.variants {
+        ensure(names.insert(&variant.name), || format!("two variants are called {:?}", variant.name))?;
+        check_variant(card.kind, variant).context(|| format!("variant {:?}", variant.name))?;
+    }
+    let defaults = card.variants.iter().filter(|variant| variant.default).count();
+    ensure(defaults == 1, || format!("{defaults} variants are marked as default: mark one"))
+}
+
+fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
+    check_name("variant", &variant.name)?;
+    let mut names = HashSet::new();
+    for file in &variant.files {
+        member_path(&file.name)?;
+        ensure(names.insert(file.name.to_lowercase()), || format!("two files are called {:?}", file.name))?;
+        check_size(file.size).context(|| file.name.clone())?;
+    }
+    if let Some(list) = &variant.classes {
+        ensure(classes(list).is_some(), || format!("there is no models/classes/{list}.txt"))?;
+    }
+    match &variant.import {
+        Some(Import::Tfjs { output, .. }) => {
+            member_path(output)?;
+            ensure(variant.files.len() >= 2, || "a TensorFlow.js model has a JSON and weights".into())?;
+        }
+        None if kind == ItemKind::Sample => {
+            ensure(variant.files.len() == 1, || "a sample is one file".into())?;
+        }
+        None => ensure(!variant.files.is_empty(), || "no files".into())?,
+    }
+    ensure(!variant.sources.is_empty(), || "no sources".into())?;
+    variant.sources.iter().try_for_each(|source| {
+        let complete = source.files().len() == variant.files.len()
+            && variant.files.iter().all(|file| source.files().contains_key(&file.name));
+        ensure(complete, || "the source must name a place for each file and for no other".into())
+            .and_then(|()| check_source(source))
+            .context(|| source.to_string())
+    })
+}
+
+fn check_source(source: &Source) -> Result<()> {
+    match source {
+        Source::Repository { files } => check_paths(files),
+        Source::Url { files } => files.values().try_for_each(|address| {
+            let sound = ["http://", "https://"].iter().any(|scheme| address.starts_with(scheme))
+                && address.len() <= 2048
+                && address.chars().all(|c| c.is_ascii_graphic());
+            ensure(sound, || format!("{address:?} is no http or https address"))
+        }),
+        Source::Github { repository, commit, files } => {
+            let parts: Vec<_> = repository.split('/').collect();
+            ensure(parts.len() == 2 && parts.iter().all(|part| is_word(part)), || {
+                format!("{repository:?} is not owner/name")
+            })?;
+            let digits = commit.bytes().all(|byte| byte.is_ascii_hexdigit());
+            ensure(digits && (12..=40).contains(&commit.len()), || format!("{commit:?} is no commit"))?;
+            check_paths(files)
+        }
+        Source::Npm(package) => {
+            let name = package.package.strip_prefix('@').unwrap_or(&package.package);
+            let parts: Vec<_> = name.split('/').collect();
+            let scoped = package.package.starts_with('@');
+            ensure(parts.len() == 1 + usize::from(scoped) && parts.iter().all(|part| is_word(part)), || {
+                format!("{:?} is no npm package name", package.package)
+            })?;
+            ensure(package.python.is_none() && package.platform.is_none(), || {
+                "python and platform are for PyPI only".into()
+            })?;
+            check_package(package)
+        }
+        Source::Pypi(package) => {
+            let options = [&package.python, &package.platform].into_iter().flatten();
+            for word in options.chain([&package.package]) {
+                ensure(is_word(word), || format!("{word:?} is no name, version or platform"))?;
+            }
+            check_package(package)
+        }
+    }
+}
+
+fn check_package(package: &Package) -> Result<()> {
+    let version = &package.version;
+    ensure(is_word(version), || format!("{version:?} is no version"))?;
+    check_size(package.size)?;
+    check_paths(&package.files)
+}
+
+fn check_paths(places: &Places) -> Result<()> {
+    places.values().try_for_each(|place| member_path(place).map(drop))
+}
+
+// Words become arguments of the package clients, so none may look like an option.
+fn is_word(text: &str) -> bool {
+    (1..=100).contains(&text.len())
+        && text.starts_with(|c: char| c.is_ascii_alphanumeric())
+        && text.bytes().all(|byte| byte.is_ascii_alphanumeric() || b"._-+".contains(&byte))
+}
+
+// Names become folders of the cache.
+fn check_name(what: &str, name: &str) -> Result<()> {
+    let sound = (1..=64).contains(&name.len())
+        && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_');
+    ensure(sound, || format!("{what} {name:?}: up to 64 of a-z, 0-9 and _ make a name"))
+}
+
+fn check_size(size: u64) -> Result<()> {
+    ensure((1..=MAX_BYTES).contains(&size), || format!("{size} bytes: a size is 1 to {MAX_BYTES}"))
+}
+
+fn ensure(holds: bool, message: impl FnOnce() -> String) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::format(message())) }
+}

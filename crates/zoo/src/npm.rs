@@ -1,0 +1,20 @@
+//! Packages of the npm registry, by the installed npm.
+
+use std::path::PathBuf;
+use std::process::Command;
+
+use opendr_engine::{Progress, Result};
+
+use crate::client::Call;
+use crate::source::Package;
+use crate::work_folder::WorkFolder;
+
+/// Gets the package's archive into the work folder; nothing in it is run.
+pub(crate) fn npm_archive(package: &Package, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
+    let output = work.folder("out")?;
+    let what = format!("{}@{}", package.package, package.version);
+    let mut command = Command::new(if cfg!(windows) { "npm.cmd" } else { "npm" });
+    command.args(["pack", "--ignore-scripts", "--loglevel=error", "--pack-destination"]).arg(&output);
+    command.arg("--cache").arg(work.folder("cache")?).arg("--").arg(&what);
+    Call { command, what: format!("npm package {what}"), size: package.size, output, work }.run(progress)
+}

