@@ -34,7 +34,8 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     let rank = weights.dims().len();
     let mut affine = Affine { scale: vec![1.0; filters], shift: bias };
     let mut folded = false;
-    while let Some(reader) = following(graph, conv).filter(|&reader| affine.follow(graph, conv, reader, rank).is_some())
+    while let Some(reader) =
+        following(graph, conv).filter(|&reader| affine.follow(graph, conv, reader, rank).is_some())
     {
         graph.absorb(conv, reader);
         folded = true;
@@ -48,7 +49,8 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     let output = graph.node(conv)?.output.first()?.clone();
     let weights = Array::new(weights.dims().to_vec(), Data::Float(scaled))?;
     let weights = graph.add_constant(&format!("{output}/weights"), &weights)?;
-    let bias = graph.add_constant(&format!("{output}/bias"), &Array::new(vec![filters], Data::Float(affine.shift))?)?;
+    let bias = graph
+        .add_constant(&format!("{output}/bias"), &Array::new(vec![filters], Data::Float(affine.shift))?)?;
     graph.set_input(conv, 1, &weights);
     graph.set_input(conv, 2, &bias);
     Some(())
@@ -76,7 +78,9 @@ impl Affine {
         match (node.op_type.as_str(), x == output) {
             ("Add", _) => pairs.for_each(|((_, shift), other)| *shift += other),
             ("Sub", true) => pairs.for_each(|((_, shift), other)| *shift -= other),
-            ("Mul", _) => pairs.for_each(|((scale, shift), other)| (*scale, *shift) = (*scale * other, *shift * other)),
+            ("Mul", _) => {
+                pairs.for_each(|((scale, shift), other)| (*scale, *shift) = (*scale * other, *shift * other))
+            }
             ("Div", true) => {
                 pairs.for_each(|((scale, shift), other)| (*scale, *shift) = (*scale / other, *shift / other));
             }

@@ -12,7 +12,8 @@ pub fn remove_identities(graph: &mut GraphProto) {
     // What each tensor is to be called. Makers come before readers, so that chains resolve in one sweep.
     let mut names: HashMap<String, String> = HashMap::new();
     for node in &graph.node {
-        let ("Identity", [source], [copy]) = (node.op_type.as_str(), node.input.as_slice(), node.output.as_slice())
+        let ("Identity", [source], [copy]) =
+            (node.op_type.as_str(), node.input.as_slice(), node.output.as_slice())
         else {
             continue;
         };

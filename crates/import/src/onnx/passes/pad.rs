@@ -29,7 +29,9 @@ fn fold_one(graph: &mut Rewriter, reader: usize, op: &str) -> Option<()> {
     }
     let sum: Vec<i64> = own.iter().zip(&outer).map(|(own, outer)| own + outer).collect();
     let (before, after) = sum.split_at(kernel.len());
-    if op == "MaxPool" && kernel.iter().zip(before.iter().zip(after)).any(|(kernel, (a, b))| a >= kernel || b >= kernel) {
+    if op == "MaxPool"
+        && kernel.iter().zip(before.iter().zip(after)).any(|(kernel, (a, b))| a >= kernel || b >= kernel)
+    {
         return None;
     }
     graph.node_mut(reader)?.set_ints("pads", sum);

@@ -27,7 +27,8 @@ impl<'a> Rewriter<'a> {
                 readers.entry(input.clone()).or_default().push(index);
             }
         }
-        let initializers = graph.initializer.iter().enumerate().map(|(i, tensor)| (tensor.name.clone(), i)).collect();
+        let initializers =
+            graph.initializer.iter().enumerate().map(|(i, tensor)| (tensor.name.clone(), i)).collect();
         let given_out = graph.output.iter().map(|output| output.name.clone()).collect();
         Self { graph, producers, readers, initializers, given_out, removed: HashSet::new() }
     }
@@ -111,7 +112,9 @@ impl<'a> Rewriter<'a> {
     /// Removes node `gone`, whose only output `keeper` makes from now on.
     pub fn absorb(&mut self, keeper: usize, gone: usize) {
         self.remove(gone);
-        let Some(output) = self.graph.node.get(gone).and_then(|node| node.output.first()).cloned() else { return };
+        let Some(output) = self.graph.node.get(gone).and_then(|node| node.output.first()).cloned() else {
+            return;
+        };
         if let Some(slot) = self.graph.node.get_mut(keeper).and_then(|node| node.output.first_mut()) {
             *slot = output.clone();
         }

@@ -27,7 +27,10 @@ fn align(ctx: &mut Lowering, values: &[&Value]) -> Result<Aligned> {
     let mut wires = Vec::with_capacity(values.len());
     let mut dims: Vec<Dim> = Vec::new();
     for value in values {
-        let wire = ctx.broadcastable(value, &order)?;
+        let wire = match largest {
+            Some(_) => ctx.broadcastable(value, &order)?,
+            None => ctx.plain(value)?,
+        };
         wires.push(if float && value.kind() == Kind::Int { ctx.cast(&wire, Kind::Float)? } else { wire });
         dims = broadcast(&dims, &value.dims())?;
     }
@@ -56,6 +59,12 @@ pub fn apply(ctx: &mut Lowering, call: &Call, name: &'static str, x: &Value, y: 
     let comparison =
         matches!(name, "Equal" | "Less" | "LessOrEqual" | "Greater" | "GreaterOrEqual" | "And" | "Or");
     let kind = if comparison { Kind::Bool } else { wires[0].kind() };
+    // rten 0.27 gives the quotient the rank of the dividend where the divisor has one element.
+    if name == "Div" && kind == Kind::Float && wires[0].rank() < wires[1].rank() {
+        let divisor = Value::new(wires[1].clone(), order);
+        let inverse = apply_unary(ctx, call, Operator::new("Reciprocal"), &divisor)?;
+        return apply(ctx, call, "Mul", x, &inverse);
+    }
     ctx.emit(call, Operator::new(name), &[&wires[0], &wires[1]], kind, &dims, order)
 }
 

@@ -13,6 +13,7 @@ use crate::tfjs::value::Value;
 pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let epilogue = Epilogue::of(call)?;
     let (a, b) = (call.input(0)?, call.input(1)?);
+    let kind = a.kind();
     if a.rank() != 2 || b.rank() != 2 {
         return Err(Error::format(format!("matrix product of ranks {} and {}", a.rank(), b.rank())));
     }
@@ -29,12 +30,13 @@ pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
             epilogue.add_bias(ctx, call, product)?
         }
     };
-    Ok(vec![epilogue.activate(ctx, call, product)?])
+    let product = epilogue.activate(ctx, call, product)?;
+    Ok(vec![Value::plain(ctx.cast(&product.wire, kind)?)])
 }
 
 pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (a, b) = (call.input(0)?, call.input(1)?);
-    let rank = a.rank().max(b.rank());
+    let (kind, rank) = (a.kind(), a.rank().max(b.rank()));
     if a.rank() < 2 || b.rank() < 2 {
         return Err(Error::format(format!("matrix product of ranks {} and {}", a.rank(), b.rank())));
     }
@@ -48,17 +50,19 @@ pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     };
     let mut dims: Vec<Dim> = (0..rank - 2).map(batch).collect();
     dims.extend([a.dims()[a.rank() - 2], b.dims()[b.rank() - 1]]);
-    Ok(vec![ctx.emit_plain(call, Operator::new("MatMul"), &[&a, &b], Kind::Float, &dims)?])
+    let product = ctx.emit_plain(call, Operator::new("MatMul"), &[&a, &b], Kind::Float, &dims)?;
+    Ok(vec![Value::plain(ctx.cast(&product.wire, kind)?)])
 }
 
-/// A matrix, or one per batch element, with rows and columns exchanged if asked.
+/// A matrix, or one per batch element, with rows and columns exchanged if asked. Runtimes multiply floats only.
 fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<Wire> {
     let mut perm: Vec<usize> = (0..x.rank()).collect();
     if transposed {
         perm.swap(x.rank() - 2, x.rank() - 1);
     }
     let value = Value::new(x.wire.clone(), x.order.transposed(&perm));
-    ctx.ordered(&value, &Order::plain(x.rank()))
+    let wire = ctx.ordered(&value, &Order::plain(x.rank()))?;
+    ctx.cast(&wire, Kind::Float)
 }
 
 fn check_inner(columns: Dim, rows: Dim) -> Result<()> {
