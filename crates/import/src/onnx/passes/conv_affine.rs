@@ -14,7 +14,7 @@ struct Affine {
 /// of the `Conv` before them.
 pub fn fold_affine_into_conv(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
-    for index in 0..graph.len() {
+    for index in 0..graph.node_count() {
         fold_one(&mut graph, index);
     }
     graph.finish();

@@ -6,7 +6,7 @@ use crate::onnx::proto::GraphProto;
 /// Folds a `Pad` of height and width into every `Conv` that reads it (zeros) or `MaxPool` (the lowest number).
 pub fn fold_padding(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
-    for index in 0..graph.len() {
+    for index in 0..graph.node_count() {
         for op in ["Conv", "MaxPool"] {
             fold_one(&mut graph, index, op);
         }

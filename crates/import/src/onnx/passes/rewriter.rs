@@ -34,7 +34,7 @@ impl<'a> Rewriter<'a> {
     }
 
     /// Number of nodes, those removed included.
-    pub fn len(&self) -> usize {
+    pub fn node_count(&self) -> usize {
         self.graph.node.len()
     }
 
