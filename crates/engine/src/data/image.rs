@@ -176,6 +176,15 @@ impl Image {
         &self.pixels
     }
 
+    /// The `u8` samples, to change in place; copied first when another [`Image`] shares them. `None` when the
+    /// samples are of another type.
+    pub fn bytes_mut(&mut self) -> Option<&mut [u8]> {
+        match &mut self.pixels {
+            Pixels::U8(data) => Some(Arc::make_mut(data).as_mut_slice()),
+            _ => None,
+        }
+    }
+
     /// Gives the samples back, for a source that fills the same memory again.
     pub fn into_pixels(self) -> Pixels {
         self.pixels
@@ -250,6 +259,16 @@ mod tests {
             assert_eq!(image.hwc_u8(PixelFormat::Bgr), [3, 2, 1, 6, 5, 4]);
             assert_eq!(image.hwc_u8(PixelFormat::Rgba), [1, 2, 3, 255, 4, 5, 6, 255]);
         }
+    }
+
+    #[test]
+    fn change_in_place_leaves_copies_alone() {
+        let mut image = Image::from_rgb8(vec![1, 2, 3], 1, 1).unwrap();
+        let before = image.clone();
+        image.bytes_mut().unwrap()[0] = 9;
+        assert_eq!((image.chw_u8(), before.chw_u8()), (vec![9, 2, 3], vec![1, 2, 3]));
+        let mut depth = Image::new(vec![1.0f32], 1, 1, PixelFormat::Grey, Layout::Hwc).unwrap();
+        assert!(depth.bytes_mut().is_none());
     }
 
     #[test]

@@ -1,0 +1,71 @@
+//! Persons as skeletons.
+
+use opendr_engine::data::Image;
+use opendr_engine::target::{Keypoint, Pose, PoseList};
+
+use crate::draw::canvas::Canvas;
+use crate::draw::label::Labels;
+use crate::draw::palette::{Colour, colour_of_index};
+use crate::draw::style::Style;
+
+const LEFT: Colour = [255, 138, 48];
+const RIGHT: Colour = [48, 160, 255];
+const MIDDLE: Colour = [140, 230, 90];
+
+/// Draws the bones and joints that were found: left ones orange, right ones blue, those between green.
+///
+/// Persons with a track id carry it as a label. `image` becomes RGB `u8` where it is not; later persons of the list
+/// lie below earlier ones.
+pub fn draw_poses(image: &mut Image, poses: &PoseList, style: &Style) {
+    let mut canvas = Canvas::over(image);
+    let (thickness, unit) = (style.thickness(&canvas), style.letter_unit(&canvas));
+    for pose in poses.poses.iter().rev() {
+        draw_skeleton(&mut canvas, pose, thickness, style);
+    }
+    let mut labels = Labels::default();
+    for pose in poses.poses.iter().filter(|_| style.labels) {
+        if let (Some(id), Some([left, top, width, height])) = (pose.id, pose.bounding_box()) {
+            let colour = style.colour.unwrap_or_else(|| colour_of_index(id));
+            let corners = [left, top - 4.0 * thickness, left + width, top + height];
+            let text = id.to_string();
+            labels.draw(&mut canvas, [&text, &text], corners, [unit, thickness], colour);
+        }
+    }
+}
+
+fn draw_skeleton(canvas: &mut Canvas<'_>, pose: &Pose, thickness: f32, style: &Style) {
+    let found = |index: usize| {
+        let shown = |joint: &&Keypoint| joint.is_found() && joint.confidence >= style.min_joint_confidence;
+        pose.keypoints.get(index).filter(shown).map(|joint| [joint.x, joint.y])
+    };
+    let side = |index: usize| {
+        let name = pose.skeleton.joints().get(index).copied().unwrap_or_default();
+        name.chars().next().filter(|_| name.starts_with("l_") || name.starts_with("r_"))
+    };
+    let colour = |side: Option<char>| {
+        style.colour.unwrap_or(match side {
+            Some('l') => LEFT,
+            Some(_) => RIGHT,
+            None => MIDDLE,
+        })
+    };
+    let bones =
+        pose.skeleton.bones().iter().filter_map(|&[a, b]| Some((found(a)?, found(b)?, side(a), side(b))));
+    for (from, to, ..) in bones.clone() {
+        canvas.line(from, to, thickness + 2.0, [0; 3], 0.3);
+    }
+    for (from, to, a, b) in bones {
+        // Between a left and a right joint lies the trunk; a bone to the neck or nose belongs to its other end.
+        let bone = match (a, b) {
+            (Some(a), Some(b)) if a != b => None,
+            (a, b) => a.or(b),
+        };
+        canvas.line(from, to, thickness, colour(bone), 1.0);
+    }
+    for index in 0..pose.keypoints.len() {
+        if let Some(joint) = found(index) {
+            canvas.disc(joint, thickness * 1.1 + 0.5, [255; 3], 1.0);
+            canvas.disc(joint, thickness * 0.8, colour(side(index)), 1.0);
+        }
+    }
+}
