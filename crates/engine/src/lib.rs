@@ -7,6 +7,8 @@ mod cache;
 mod device;
 mod error;
 mod header;
+#[allow(dead_code)]
+mod numpy_text;
 mod pool;
 mod progress;
 mod statistics;
