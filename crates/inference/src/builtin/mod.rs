@@ -1,6 +1,8 @@
 //! The built-in runtime: pure Rust (rten), so that a bare binary always works.
 
 mod engine;
+mod repair;
+mod substitute;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -40,10 +42,11 @@ impl Runtime for Builtin {
             )));
         }
         let header = OnnxHeader::read(model)?;
+        let model = repair::repaired(model)?.into_owned();
         let mut load = ModelOptions::with_all_ops();
         load.prepack_weights(true);
         // rten checks most of what it reads, not all: what is left panics, and must not take the process along.
-        let model = catch_unwind(AssertUnwindSafe(|| load.load(model.to_vec())))
+        let model = catch_unwind(AssertUnwindSafe(|| load.load(model)))
             .map_err(|_| {
                 Error::format("the built-in runtime cannot read the ONNX model: its graph is damaged")
             })?
