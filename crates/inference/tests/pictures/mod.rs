@@ -35,12 +35,6 @@ impl Scale {
     }
 }
 
-/// A photograph.
-pub struct Photo {
-    pub name: String,
-    pub pixels: RgbImage,
-}
-
 /// An input tensor with its elements.
 pub enum Tensor {
     F32(Vec<usize>, Vec<f32>),
@@ -72,20 +66,9 @@ pub fn test_data() -> Option<PathBuf> {
     None
 }
 
-/// Every photograph there is, by name.
-pub fn photos(root: &Path) -> Vec<Photo> {
-    let mut paths: Vec<_> = std::fs::read_dir(root.join("data/photos"))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "jpg" || extension == "png"))
-        .collect();
-    paths.sort();
-    assert!(paths.len() >= 5, "photographs are missing in {}", root.display());
-    let photo = |path: &PathBuf| Photo {
-        name: path.file_name().unwrap().to_string_lossy().into_owned(),
-        pixels: image::open(path).unwrap().to_rgb8(),
-    };
-    paths.iter().map(photo).collect()
+/// Decodes a picture.
+pub fn read(path: &Path) -> RgbImage {
+    image::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).to_rgb8()
 }
 
 /// The picture, squeezed to the size of `input`; free sizes become 256, further channels repeat the first ones.
