@@ -1,5 +1,6 @@
 //! TensorFlow.js models of a few nodes, written by the tests themselves, and the runtime that judges the import.
 #![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "test support")]
 
 use opendr_engine::Result;
 use opendr_import::onnx::{decode_model, proto::NodeProto};
