@@ -69,6 +69,8 @@ fn extract_tgz(
             take(name, read_member(entry, name, size)?)?;
         }
     }
+    // The checksum of the whole stands at the end.
+    io::copy(&mut archive.into_inner(), &mut io::sink()).map_err(damaged)?;
     Ok(())
 }
 
@@ -138,3 +140,6 @@ fn refused_link(name: &str) -> Error {
 fn damaged(error: io::Error) -> Error {
     Error::integrity("the archive is damaged").with_source(error)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,7 +1,7 @@
 //! Runs the installed client of a package registry, watching what it brings.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
@@ -50,8 +50,8 @@ impl Call<'_> {
         let status = self.watch(child, progress);
         progress.end();
         if !status?.success() {
-            let words = last_words(&log);
-            return Err(Error::new(kind_of(&words), format!("{program} failed: {words}")));
+            let text = read_log(&log);
+            return Err(Error::new(kind_of(&text), format!("{program} failed: {}", quoted(&text))));
         }
         one_file(&self.output)
     }
@@ -96,26 +96,37 @@ fn one_file(folder: &Path) -> Result<PathBuf> {
     }
 }
 
-/// The end of what the client wrote, on one line.
-fn last_words(log: &Path) -> String {
-    let text = fs::read(log).map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default();
-    let lines: Vec<&str> = text
+/// All that the client wrote, within reason.
+fn read_log(log: &Path) -> String {
+    let mut bytes = Vec::new();
+    // What cannot be read is not quoted.
+    let _ = File::open(log).and_then(|file| file.take(1 << 20).read_to_end(&mut bytes));
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// The first lines (npm's reason) and the last ones (pip's), on one line.
+fn quoted(text: &str) -> String {
+    let lines: Vec<String> = text
         .lines()
         .map(str::trim)
-        .filter(|line| {
-            !line.is_empty() && !line.contains("complete log of this run") && !line.contains("_logs")
-        })
+        .filter(|line| !line.is_empty() && !line.contains("complete log of this run"))
+        .map(|line| line.chars().take(240).collect())
         .collect();
-    let last = lines[lines.len().saturating_sub(8)..].join("; ");
-    let start = last.char_indices().rev().nth(800).map_or(0, |(index, _)| index);
-    if last.is_empty() { "it says nothing".to_owned() } else { last[start..].to_owned() }
+    match lines.as_slice() {
+        [] => "it says nothing".to_owned(),
+        [first @ .., _, _, _] if first.len() > 3 => {
+            format!("{}; ...; {}", lines[..3].join("; "), lines[lines.len() - 3..].join("; "))
+        }
+        all => all.join("; "),
+    }
 }
 
 /// Whether the registry was reached and has no such thing, or could not be reached.
-fn kind_of(words: &str) -> ErrorKind {
-    let unreachable = ["NewConnectionError", "ConnectTimeout", "Temporary failure", "ENOTFOUND", "EAI_AGAIN"];
+fn kind_of(text: &str) -> ErrorKind {
+    let unreachable =
+        ["NewConnectionError", "ConnectTimeout", "NameResolutionError", "ENOTFOUND", "EAI_AGAIN"];
     let absent = ["E404", "ETARGET", "No matching distribution"];
-    let says = |marks: &[&str]| marks.iter().any(|mark| words.contains(mark));
+    let says = |marks: &[&str]| marks.iter().any(|mark| text.contains(mark));
     if !says(&unreachable) && says(&absent) { ErrorKind::NotFound } else { ErrorKind::Network }
 }
 
@@ -172,6 +183,14 @@ mod tests {
         // It would take an hour if it were not killed.
         let error = call(&work(), "sleep", &["3600"]).run(&Stop).unwrap_err();
         assert!(error.to_string().contains("stopped"), "{error}");
+    }
+
+    #[test]
+    fn long_complaints_keep_their_beginning_and_end() {
+        assert_eq!(quoted("\n a \nb\n"), "a; b");
+        assert_eq!(quoted("1\n2\n3\n4\n5\n6"), "1; 2; 3; 4; 5; 6");
+        assert_eq!(quoted("1\n2\n3\n4\n5\n6\n7\n8"), "1; 2; 3; ...; 6; 7; 8");
+        assert!(quoted(&"x".repeat(10_000)).len() < 300);
     }
 
     #[test]

@@ -30,7 +30,7 @@ impl Fetch<'_> {
     /// The manifest of the repository's container of the item, with its files in the cache.
     pub(crate) fn container(&self, item: &Item<'_>) -> Result<Option<Manifest>> {
         match self.repository {
-            Some(repository) if repository.is_remote() => {
+            Some(repository) if repository.address().is_some() => {
                 self.online()?;
                 repository.fetch_container(item, self.http, self.cache, self.progress)
             }
@@ -44,7 +44,7 @@ impl Fetch<'_> {
             Source::Repository { files } => {
                 let repository =
                     self.repository.ok_or_else(|| Error::not_found("OPENDR_MODEL_REPOSITORY is not set"))?;
-                if repository.is_remote() {
+                if repository.address().is_some() {
                     self.online()?;
                 }
                 self.each(item, files, |place, file| {

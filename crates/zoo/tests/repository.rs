@@ -53,7 +53,10 @@ fn container_of_a_folder_comes_before_everything() {
     let zoo = zoo(&place, folder.to_str().unwrap(), &card(&bytes, FROM_REPOSITORY));
     let path = zoo.get("test", &Silent).unwrap();
     assert_eq!(path, folder.join("test/one"), "used where it lies");
-    assert_eq!(Model::open(path).unwrap().onnx().unwrap(), b"my own");
+    assert_eq!(Model::open(&path).unwrap().onnx().unwrap(), b"my own");
+    fs::write(path.join("model.onnx"), b"my 0wn").unwrap();
+    assert_eq!(zoo.download("test", None, &Silent).unwrap_err().kind(), ErrorKind::Integrity);
+    assert!(path.join("model.onnx").exists(), "what is the user's stays");
 }
 
 #[test]
@@ -79,6 +82,7 @@ fn copy_is_a_repository_again() {
     assert_eq!(paths, ["/models/test/one/model.json", "/models/test/one/model.onnx"]);
     far.get("test", &Silent).unwrap();
     assert_eq!(server.requests(), []);
+    assert_eq!(other.zoo(&card).cached("test"), None, "it serves only while the repository is set");
 }
 
 #[test]

@@ -48,6 +48,7 @@ impl Place {
 }
 
 /// `count` bytes that do not shrink.
+#[allow(dead_code, reason = "each test file uses some")]
 pub fn noise(count: usize) -> Vec<u8> {
     let mut state = 1u32;
     let mut next = || {
