@@ -12,6 +12,8 @@ pub struct VideoInfo {
     pub rate: f64,
     /// How many frames there are, as far as the file tells.
     pub frames: Option<u64>,
+    /// How long it is, seconds, as far as the file tells.
+    pub duration_s: Option<f64>,
 }
 
 /// One picture of a [`crate::Source`].

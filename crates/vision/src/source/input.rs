@@ -2,41 +2,48 @@
 
 use std::path::{Path, PathBuf};
 
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, ErrorKind, Result, ResultExt};
 
+use crate::camera::Camera;
 use crate::source::folder::{files_of_folder, sort_naturally};
 use crate::source::glob::{files_of_pattern, is_pattern};
-use crate::source::kind::{FileKind, kind_of_file};
+use crate::source::kind::{FileKind, check_is_file, kind_of_file};
+use crate::source::{SourceOptions, VideoInfo};
+use crate::video::{self, Ffmpeg};
 
 /// A part of a source that one reader reads.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub(super) enum Segment {
     /// Picture files, in order.
     Pictures(Vec<PathBuf>),
-    /// A video file.
-    Video(PathBuf),
-    /// A camera device.
-    Camera(PathBuf),
+    /// A video file, and what it tells of itself or why it cannot be read.
+    Video(PathBuf, Result<VideoInfo>),
+    /// A camera that streams.
+    Camera(Box<Camera>),
 }
 
 /// The segments of several inputs; pictures that follow each other make one segment.
 ///
 /// # Errors
 /// `NotFound` when an input does not exist, or a folder or pattern holds nothing to read; `Io` when a folder cannot be
-/// read.
+/// read; `Unsupported` when there is a video and no program for it; what [`Camera::open`] says of cameras.
 pub(super) fn segments_of_inputs<P: AsRef<Path>>(
     inputs: impl IntoIterator<Item = P>,
+    options: &SourceOptions,
 ) -> Result<Vec<Segment>> {
     let mut segments: Vec<Segment> = Vec::new();
     for input in inputs {
         let input = input.as_ref();
         if let Some(device) = camera_of_text(input) {
-            segments.push(Segment::Camera(device));
+            segments.push(Segment::Camera(Box::new(Camera::open(&device, options)?)));
             continue;
         }
         for path in files_of_input(input)? {
             match (kind_of_file(&path), segments.last_mut()) {
-                (FileKind::Video, _) => segments.push(Segment::Video(path)),
+                (FileKind::Video, _) => {
+                    let info = probe_video(&path, options)?;
+                    segments.push(Segment::Video(path, info));
+                }
                 (FileKind::Picture, Some(Segment::Pictures(paths))) => paths.push(path),
                 (FileKind::Picture, _) => segments.push(Segment::Pictures(vec![path])),
             }
@@ -60,6 +67,17 @@ fn files_of_input(input: &Path) -> Result<Vec<PathBuf>> {
     };
     sort_naturally(&mut files);
     Ok(files)
+}
+
+/// Asks a video about itself. That it cannot be read is the video's affair; that no video can be is an error.
+fn probe_video(path: &Path, options: &SourceOptions) -> Result<Result<VideoInfo>> {
+    let info = check_is_file(path)
+        .context(|| format!("opening {}", path.display()))
+        .and_then(|()| video::probe(&Ffmpeg::default(), path, options.decoder.max_samples));
+    match info {
+        Err(error) if error.kind() == ErrorKind::Unsupported => Err(error),
+        info => Ok(info),
+    }
 }
 
 /// The device of `camera:N`, `camera:/dev/...` or `/dev/video...`.

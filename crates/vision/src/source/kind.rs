@@ -25,9 +25,9 @@ const VIDEOS: [&str; 13] =
 pub(super) fn kind_of_name(path: &Path) -> Option<FileKind> {
     let extension = path.extension()?.to_str()?;
     let is_one = |known: &&str| known.eq_ignore_ascii_case(extension);
-    if PICTURES.iter().any(|known| is_one(&known)) {
+    if PICTURES.iter().any(is_one) {
         Some(FileKind::Picture)
-    } else if VIDEOS.iter().any(|known| is_one(&known)) {
+    } else if VIDEOS.iter().any(is_one) {
         Some(FileKind::Video)
     } else {
         None

@@ -16,10 +16,13 @@ mod tests;
 use std::collections::VecDeque;
 use std::path::Path;
 
-use opendr_engine::Result;
+use opendr_engine::{Error, Result};
+
+use crate::video::{Ffmpeg, VideoReader};
 
 pub use frame::{Frame, VideoInfo};
 pub use options::SourceOptions;
+pub(crate) use threaded::FrameReader;
 
 use input::{Segment, segments_of_inputs};
 use pictures::Pictures;
@@ -45,6 +48,8 @@ pub struct Source {
 enum Reading {
     Pictures(Pictures),
     Threaded(Threaded),
+    /// A video that could not be opened.
+    Failed(Option<Error>),
 }
 
 impl Source {
@@ -70,7 +75,7 @@ impl Source {
         inputs: impl IntoIterator<Item = P>,
         options: SourceOptions,
     ) -> Result<Self> {
-        let segments = segments_of_inputs(inputs)?;
+        let segments = segments_of_inputs(inputs, &options)?;
         let mut source = Self {
             length: Some(0),
             live: false,
@@ -83,8 +88,12 @@ impl Source {
         for segment in &source.waiting {
             let length = match segment {
                 Segment::Pictures(paths) => Some(paths.len() as u64),
-                Segment::Video(_) | Segment::Camera(_) => None,
+                Segment::Video(_, Ok(info)) => info.frames,
+                // One error in its place.
+                Segment::Video(_, Err(_)) => Some(1),
+                Segment::Camera(_) => None,
             };
+            source.live |= matches!(segment, Segment::Camera(_));
             source.length = source.length.zip(length).map(|(sum, more)| sum + more);
         }
         source.start_next();
@@ -126,9 +135,16 @@ impl Source {
         self.reading = None;
         self.reading = self.waiting.pop_front().map(|segment| match segment {
             Segment::Pictures(paths) => Reading::Pictures(Pictures::new(paths, &self.options)),
-            Segment::Video(path) | Segment::Camera(path) => {
-                Reading::Pictures(Pictures::new(vec![path], &self.options))
+            Segment::Video(path, info) => {
+                let max_samples = self.options.decoder.max_samples;
+                let reader = info
+                    .and_then(|info| VideoReader::start(&Ffmpeg::default(), path.into(), info, max_samples));
+                match reader {
+                    Ok(reader) => Reading::Threaded(Threaded::new(reader, false, self.options.ahead)),
+                    Err(error) => Reading::Failed(Some(error)),
+                }
             }
+            Segment::Camera(camera) => Reading::Threaded(Threaded::new(*camera, true, 1)),
         });
     }
 }
@@ -141,6 +157,7 @@ impl Iterator for Source {
             let next = match self.reading.as_mut()? {
                 Reading::Pictures(pictures) => pictures.next(),
                 Reading::Threaded(threaded) => threaded.next(),
+                Reading::Failed(error) => error.take().map(Err),
             };
             let Some(frame) = next else {
                 self.start_next();

@@ -10,7 +10,7 @@ use crate::source::Frame;
 use crate::source::queue::{Queue, WhenFull};
 
 /// Where frames come from, one by one.
-pub(super) trait FrameReader: Iterator<Item = Result<Frame>> + Send + 'static {
+pub(crate) trait FrameReader: Iterator<Item = Result<Frame>> + Send + 'static {
     /// What makes a `next` that waits come back, from another thread.
     fn interrupt(&self) -> Box<dyn FnOnce() + Send>;
 }

@@ -1,0 +1,37 @@
+//! Systems whose cameras are not read.
+
+use std::path::Path;
+
+use opendr_engine::{Error, Result};
+
+use crate::source::{Frame, FrameReader, SourceOptions};
+
+/// No camera: there is no value of this type.
+#[derive(Debug)]
+pub(crate) enum Camera {}
+
+impl Camera {
+    /// # Errors
+    /// Always `Unsupported`.
+    pub(crate) fn open(path: &Path, _: &SourceOptions) -> Result<Self> {
+        Err(Error::unsupported(format!(
+            "the camera {} cannot be read on this system, only on 64-bit Linux; hand frames in with \
+             `Source::from_frames`, or read a video",
+            path.display()
+        )))
+    }
+}
+
+impl Iterator for Camera {
+    type Item = Result<Frame>;
+
+    fn next(&mut self) -> Option<Result<Frame>> {
+        match *self {}
+    }
+}
+
+impl FrameReader for Camera {
+    fn interrupt(&self) -> Box<dyn FnOnce() + Send> {
+        match *self {}
+    }
+}
