@@ -50,6 +50,9 @@ pub struct Variant {
     /// Whether it is meant when no variant is named.
     #[serde(default)]
     pub default: bool,
+    /// Whether `opendr demo` shows it: one model, and one picture.
+    #[serde(default)]
+    pub demo: bool,
     /// What distinguishes it, in one line.
     #[serde(default)]
     pub description: String,

@@ -1,0 +1,47 @@
+//! How long the stages of one call took.
+
+use std::time::{Duration, Instant};
+
+use opendr::Result;
+use opendr::inference::timing;
+use serde::Serialize;
+
+/// The stages of one call, in milliseconds.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct Timings {
+    /// From the call to the first run of a network.
+    pub pre: f64,
+    /// Inside networks.
+    pub session: f64,
+    /// The rest: between and after the networks.
+    pub post: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+impl Timings {
+    /// Runs `call` and measures it.
+    pub fn of<R>(call: impl FnOnce() -> Result<R>) -> Result<(R, Self)> {
+        let start = Instant::now();
+        timing::start();
+        let result = call();
+        let total = start.elapsed();
+        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        let timings = match timing::take() {
+            Some(runs) => {
+                let pre = runs.first_start - start;
+                let post = total.saturating_sub(pre).saturating_sub(runs.session);
+                Self { pre: ms(pre), session: ms(runs.session), post: ms(post), total: ms(total) }
+            }
+            None => Self { total: ms(total), ..Self::default() },
+        };
+        Ok((result?, timings))
+    }
+}
+
+impl std::fmt::Display for Timings {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { pre, session, post, total } = self;
+        write!(f, "pre {pre:.2} ms, session {session:.2} ms, post {post:.2} ms, total {total:.2} ms")
+    }
+}

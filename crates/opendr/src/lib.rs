@@ -1,0 +1,41 @@
+//! OpenDR in Rust: the open deep-learning toolkit for robotics.
+//!
+//! Learners by name, from a registry, as every surface has them:
+//!
+//! ```no_run
+//! # fn main() -> opendr::Result<()> {
+//! use opendr::learner::Ports;
+//!
+//! let mut detector = opendr::learner("centernet")?;   // downloads once, with checksum
+//! let image = opendr::vision::open("street.jpg")?;
+//! println!("{:#}", detector.infer(&Ports::one(&image))?);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! or by type, without a dispatch:
+//!
+//! ```no_run
+//! # fn main() -> opendr::Result<()> {
+//! use opendr::object_detection_2d::{Nanodet, NanodetParams};
+//! use opendr::{Device, learner::Handle};
+//!
+//! let params = NanodetParams { threshold: 0.5, ..NanodetParams::default() };
+//! let mut nanodet = Handle::<Nanodet>::new(params, Device::Auto)?;
+//! nanodet.load(opendr::download("nanodet")?)?;
+//! let image = opendr::vision::open("street.jpg")?;
+//! for found in &nanodet.infer(&image)?.boxes {
+//!     println!("{} {:?}", found.name, found.corners());
+//! }
+//! # Ok(())
+//! # }
+//! ```
+
+mod by_name;
+mod registry;
+
+pub use by_name::{download, learner, learner_with};
+pub use opendr_engine::*;
+pub use opendr_perception::{face_detection, object_detection_2d, pose_estimation, suppression};
+pub use registry::registry;
+pub use {opendr_inference as inference, opendr_vision as vision, opendr_zoo as zoo};

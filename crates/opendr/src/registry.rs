@@ -1,0 +1,24 @@
+//! The learners that are compiled in: one line each.
+
+use std::sync::OnceLock;
+
+use opendr_engine::learner::Registry;
+use opendr_engine::learners;
+use opendr_perception::face_detection::{UltraLightFace, Yunet};
+use opendr_perception::object_detection_2d::{CenterNet, Nanodet};
+use opendr_perception::pose_estimation::{Movenet, Posenet};
+
+/// Every learner: those compiled in, and those that the program adds.
+pub fn registry() -> &'static Registry {
+    static REGISTRY: OnceLock<Registry> = OnceLock::new();
+    REGISTRY.get_or_init(|| {
+        learners![
+            CenterNet,
+            Nanodet,
+            UltraLightFace,
+            Yunet,
+            Movenet,
+            Posenet,
+        ]
+    })
+}

@@ -1,0 +1,85 @@
+"""Accuracy through our pipeline on real pictures, scored with the field's own tools."""
+
+import json
+
+import cv2
+import numpy as np
+import pytest
+from coco128 import Coco128
+
+PERSON = [0]
+# COCO's 17 joints among OpenDR's 18.
+COCO_JOINTS = [0, 15, 14, 17, 16, 5, 2, 6, 3, 7, 4, 11, 8, 12, 9, 13, 10]
+# pycocotools' constants of the object keypoint similarity.
+SIGMAS = np.array([26, 25, 25, 35, 35, 79, 79, 72, 72, 62, 62, 107, 107, 87, 87, 89, 89]) / 1000
+
+
+@pytest.mark.parametrize(
+    ("learner", "all_classes", "person"), [("centernet", 0.52, 0.63), ("nanodet", 0.46, 0.63)]
+)
+def test_detectors_on_coco128(opendr, shared, learner, all_classes, person):
+    coco = Coco128(shared / "data/coco128")
+    lines = opendr.infer(learner, "--threshold", "0.01", *coco.pictures)
+    scores = coco.map50(lines), coco.map50(lines, PERSON)
+    print(f"{learner}: mAP50 {scores[0]:.3f}, person AP50 {scores[1]:.3f}")
+    assert scores[0] >= all_classes
+    assert scores[1] >= person
+
+
+def test_movenet_on_cropped_persons(opendr, shared, tmp_path):
+    folder = shared / "data/mmpose_samples/coco"
+    truth = json.loads((folder / "test_coco.json").read_text())
+    names = {image["id"]: image["file_name"] for image in truth["images"]}
+    persons, corners = [person for person in truth["annotations"] if person["num_keypoints"]], []
+    for number, person in enumerate(persons):
+        picture = cv2.imread(str(folder / names[person["image_id"]]))
+        left, top, width, height = (int(edge) for edge in person["bbox"])
+        cv2.imwrite(str(tmp_path / f"{number:02}.png"), picture[top : top + height, left : left + width])
+        corners.append((left, top))
+    lines = opendr.infer("movenet/lightning", "--threshold", "0", "--keypoint-threshold", "0", tmp_path)
+    similarities = []
+    for person, corner, line in zip(persons, corners, lines, strict=True):
+        joints = np.array(person["keypoints"], dtype=float).reshape(17, 3)
+        found = line["outputs"]["poses"]["poses"][0]["keypoints"]
+        points = np.array([[found[joint]["x"], found[joint]["y"]] for joint in COCO_JOINTS]) + corner
+        distances = ((points - joints[:, :2]) ** 2).sum(axis=1)
+        similarity = np.exp(-distances / (2 * SIGMAS) ** 2 / person["area"] / 2)
+        similarities.append(similarity[joints[:, 2] > 0].mean())
+    print(f"movenet: mean OKS {np.mean(similarities):.3f} over {len(similarities)} persons")
+    assert np.mean(similarities) >= 0.75
+
+
+@pytest.mark.parametrize(("picture", "faces"), [("t1.jpg", 6), ("zidane.jpg", 2), ("astronaut.png", 1)])
+def test_yunet_counts_faces(opendr, shared, picture, faces):
+    [line] = opendr.infer("yunet/640", shared / "data/photos" / picture)
+    found = line["outputs"]["boxes"]["boxes"]
+    assert len(found) == faces
+    assert all(len(face["landmarks"]) == 5 for face in found)
+
+
+@pytest.mark.parametrize(("picture", "faces"), [("t1.jpg", 6), ("zidane.jpg", 2), ("astronaut.png", 1)])
+def test_ultra_light_counts_faces(opendr, shared, picture, faces):
+    [line] = opendr.infer("ultra_light_face", shared / "data/photos" / picture)
+    assert len(line["outputs"]["boxes"]["boxes"]) == faces
+
+
+@pytest.mark.parametrize("learner", ["movenet/multipose", "posenet"])
+def test_multi_person_poses_stand_on_the_persons(opendr, shared, learner):
+    """Of the annotated persons, most have a pose whose joints are theirs (OKS of at least 0.5)."""
+    folder = shared / "data/mmpose_samples/coco"
+    truth = json.loads((folder / "test_coco.json").read_text())
+    lines = opendr.infer(learner, "--keypoint-threshold", "0", *sorted(folder.glob("*.jpg")))
+    poses = {line["input"].rsplit("/", 1)[-1]: line["outputs"]["poses"]["poses"] for line in lines}
+    names = {image["id"]: image["file_name"] for image in truth["images"]}
+    persons, hits = [person for person in truth["annotations"] if person["num_keypoints"] >= 10], 0
+    for person in persons:
+        joints = np.array(person["keypoints"], dtype=float).reshape(17, 3)
+        best = 0.0
+        for pose in poses[names[person["image_id"]]]:
+            points = np.array([[pose["keypoints"][j]["x"], pose["keypoints"][j]["y"]] for j in COCO_JOINTS])
+            distances = ((points - joints[:, :2]) ** 2).sum(axis=1)
+            similarity = np.exp(-distances / (2 * SIGMAS) ** 2 / person["area"] / 2)
+            best = max(best, similarity[joints[:, 2] > 0].mean())
+        hits += best >= 0.5
+    print(f"{learner}: {hits} of {len(persons)} persons")
+    assert hits >= 0.6 * len(persons)

@@ -1,0 +1,66 @@
+//! `cargo xtask realtime`: the paper's promise of 25 frames a second in at most 1 GB, for every task.
+
+use std::collections::BTreeMap;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::shell::{Result, command, output, target};
+
+const FRAMES_PER_SECOND: f64 = 25.0;
+const MEGABYTES: f64 = 1000.0;
+const CORES: &str = "0,1";
+
+/// Measures every model that is cached or near, and fails when a task has none that keeps the promise.
+pub fn run() -> Result<()> {
+    run_with(|_| {})
+}
+
+/// As [`run`], with an environment for every program that it starts.
+pub fn run_with(environment: impl Fn(&mut Command)) -> Result<()> {
+    let opendr = |arguments: &[&str]| {
+        let mut opendr = bounded_opendr();
+        opendr.args(arguments);
+        environment(&mut opendr);
+        opendr
+    };
+    let models = json(&mut opendr(&["models", "--json"]))?;
+    let mut best = BTreeMap::<String, Vec<String>>::new();
+    for model in models.as_array().into_iter().flatten() {
+        let [name, task] = ["model", "task"].map(|key| model[key].as_str().unwrap_or_default());
+        let kept = best.entry(task.to_owned()).or_default();
+        let report = match json(&mut opendr(&["bench", name, "--frames", "40", "--warmup", "5", "--json", "--quiet"])) {
+            Ok(report) => report,
+            Err(error) => {
+                println!("{task}: {name}: not measured ({error})");
+                continue;
+            }
+        };
+        let number = |key: &str| report[key].as_f64().unwrap_or(f64::NAN);
+        let (fps, peak) = (number("frames_per_second"), number("peak_memory_mb"));
+        println!("{task}: {name}: {fps:.0} frames a second, {peak:.0} MB, {}", report["runtime"]);
+        if fps >= FRAMES_PER_SECOND && peak <= MEGABYTES {
+            kept.push(name.to_owned());
+        }
+    }
+    let slow: Vec<_> = best.iter().filter(|(_, kept)| kept.is_empty()).map(|(task, _)| task.as_str()).collect();
+    match slow.is_empty() {
+        true => Ok(()),
+        false => Err(format!(
+            "no learner at {FRAMES_PER_SECOND} frames a second in {MEGABYTES} MB for {}",
+            slow.join(", ")
+        )),
+    }
+}
+
+/// The release binary on two cores.
+fn bounded_opendr() -> Command {
+    let binary = target().join("release/opendr");
+    let mut opendr = command("taskset");
+    opendr.args(["--cpu-list", CORES]).arg(binary).env("OPENDR_THREADS", "2");
+    opendr
+}
+
+fn json(command: &mut Command) -> Result<Value> {
+    serde_json::from_str(&output(command)?).map_err(|error| error.to_string())
+}

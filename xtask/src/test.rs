@@ -1,0 +1,72 @@
+//! `cargo xtask test`: everything that CI checks.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::realtime;
+use crate::shell::{Result, command, is_installed, root, step, target};
+use crate::tools::{Python, install_debian};
+
+/// Runs every check; the first that fails ends it.
+pub fn run() -> Result<()> {
+    install_debian()?;
+    let python = Python::install()?;
+    let environment = Environment { library: python.onnxruntime()?, data: test_data(), cache: cache()? };
+    if environment.data.is_none() {
+        println!("skipped: no OPENDR_TEST_DATA (tests with real models and pictures)");
+    }
+    let cargo = |arguments: &[&str]| {
+        let mut cargo = command("cargo");
+        cargo.args(arguments);
+        environment.apply(&mut cargo);
+        cargo
+    };
+    step("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    step("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "--deny", "warnings"]))?;
+    if is_installed("cargo-nextest") {
+        step("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast"]))?;
+    } else {
+        step("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests"]))?;
+    }
+    step("documentation tests", &mut cargo(&["test", "--workspace", "--doc"]))?;
+    step("documentation", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"))?;
+    step("release build", &mut cargo(&["build", "--release"]))?;
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
+    environment.apply(&mut pytest);
+    step("tests from outside", &mut pytest)?;
+    if environment.data.is_some() {
+        realtime::run_with(|bench| environment.apply(bench))?;
+    }
+    println!("\nall checks passed");
+    Ok(())
+}
+
+struct Environment {
+    library: PathBuf,
+    data: Option<PathBuf>,
+    cache: PathBuf,
+}
+
+impl Environment {
+    fn apply(&self, command: &mut Command) {
+        command.env("ORT_DYLIB_PATH", &self.library).env("OPENDR_TEST_CACHE", &self.cache);
+        if let Some(data) = &self.data {
+            command.env("OPENDR_TEST_DATA", data);
+        }
+    }
+}
+
+/// `OPENDR_TEST_DATA`, or `../shared` beside the repository.
+fn test_data() -> Option<PathBuf> {
+    let named = std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
+    let data = named.or_else(|| root().parent().map(|folder| folder.join("shared")))?;
+    data.join("models").is_dir().then_some(data)
+}
+
+/// Where packages that tests download stay from run to run.
+fn cache() -> Result<PathBuf> {
+    let cache = std::env::var_os("OPENDR_TEST_CACHE").map_or_else(|| target().join("test-cache"), PathBuf::from);
+    std::fs::create_dir_all(&cache).map_err(|error| format!("{}: {error}", cache.display()))?;
+    Ok(Path::new(&cache).to_owned())
+}

@@ -1,0 +1,71 @@
+//! What the tests need beyond Rust, Python and npm.
+
+use std::fs;
+use std::path::PathBuf;
+
+use crate::shell::{Result, command, is_installed, root, step, target};
+
+/// Debian packages by the program that they bring.
+const DEBIAN: [(&str, &str); 1] = [("ffmpeg", "ffmpeg")];
+
+/// A Python environment with the packages of `tests/python/requirements.txt`.
+pub struct Python {
+    folder: PathBuf,
+}
+
+impl Python {
+    /// Makes the environment, or brings it up to date when the requirements have changed.
+    pub fn install() -> Result<Self> {
+        let python = Self { folder: target().join("test-venv") };
+        let requirements = root().join("tests/python/requirements.txt");
+        let wanted = fs::read_to_string(&requirements).map_err(|error| error.to_string())?;
+        let stamp = python.folder.join("requirements.installed");
+        if fs::read_to_string(&stamp).ok().as_deref() == Some(wanted.as_str()) {
+            return Ok(python);
+        }
+        step("python environment", command("python3").args(["-m", "venv", "--clear"]).arg(&python.folder))?;
+        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"];
+        step("python packages", command(python.program()).args(pip).arg(&requirements))?;
+        fs::write(&stamp, wanted).map_err(|error| error.to_string())?;
+        Ok(python)
+    }
+
+    /// Its interpreter.
+    pub fn program(&self) -> PathBuf {
+        self.folder.join("bin/python")
+    }
+
+    /// ONNX Runtime's library out of its wheel.
+    pub fn onnxruntime(&self) -> Result<PathBuf> {
+        let lib = self.folder.join("lib");
+        let pythons = fs::read_dir(&lib).map_err(|error| format!("{}: {error}", lib.display()))?.flatten();
+        let folders = pythons.map(|python| python.path().join("site-packages/onnxruntime/capi"));
+        let files = folders.flat_map(fs::read_dir).flatten().flatten().map(|entry| entry.path());
+        let mut libraries = files.filter(|path| {
+            path.file_name().is_some_and(|name| name.to_string_lossy().starts_with("libonnxruntime.so"))
+        });
+        libraries.next().ok_or_else(|| format!("no libonnxruntime.so under {}", lib.display()))
+    }
+}
+
+/// Installs the Debian packages that are missing.
+pub fn install_debian() -> Result<()> {
+    let missing: Vec<_> = DEBIAN.iter().filter(|(program, _)| !is_installed(program)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let packages: Vec<_> = missing.iter().map(|(_, package)| *package).collect();
+    if !is_installed("apt-get") {
+        return Err(format!("install {} and run again: there is no apt-get here", packages.join(", ")));
+    }
+    let apt = || {
+        let mut apt = if is_installed("sudo") { command("sudo") } else { command("apt-get") };
+        if is_installed("sudo") {
+            apt.arg("apt-get");
+        }
+        apt.env("DEBIAN_FRONTEND", "noninteractive");
+        apt
+    };
+    step("debian lists", apt().args(["update", "--quiet"]))?;
+    step("debian packages", apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(packages))
+}
