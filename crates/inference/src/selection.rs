@@ -58,14 +58,16 @@ pub fn default_runtime(device: Device) -> Result<Arc<dyn Runtime>> {
     }
 }
 
-/// One line for people about the runtime in use: `ONNX Runtime 1.31.1 (/path, cpu, 2 threads)`.
+/// One line for people about the runtime in use: `ONNX Runtime 1.31.1 (/path/libonnxruntime.so), cpu, 2 threads`.
 ///
 /// # Errors
 /// As [`default_runtime`].
 pub fn describe(options: impl Into<SessionOptions>) -> Result<String> {
     let options = options.into();
-    let device = options.device.or_environment()?;
-    let runtime = default_runtime(device)?;
+    let wanted = options.device.or_environment()?;
+    let runtime = default_runtime(wanted)?;
+    let best = || runtime.devices().first().copied().unwrap_or(Device::Cpu);
+    let device = if wanted == Device::Auto { best() } else { wanted };
     let threads = options.thread_count()?;
     let plural = if threads == 1 { "" } else { "s" };
     let mut line = format!("{}, {device}, {threads} thread{plural}", runtime.describe());

@@ -17,8 +17,8 @@ pub(crate) struct Call<'a> {
     pub(crate) command: Command,
     /// What it gets, for people.
     pub(crate) what: String,
-    /// Bytes that it gets.
-    pub(crate) size: u64,
+    /// Bytes that it gets, when known.
+    pub(crate) size: Option<u64>,
     /// Where it puts the file.
     pub(crate) output: PathBuf,
     /// What grows while it works.
@@ -46,7 +46,7 @@ impl Call<'_> {
             io::ErrorKind::NotFound => Error::unsupported(format!("{program} is not installed")),
             _ => Error::io(format!("{program} does not start")).with_source(error),
         })?;
-        progress.begin(&self.what, Some(self.size), Unit::Bytes);
+        progress.begin(&self.what, self.size, Unit::Bytes);
         let status = self.watch(child, progress);
         progress.end();
         if !status?.success() {
@@ -60,7 +60,7 @@ impl Call<'_> {
         let mut told = 0;
         loop {
             if let Some(status) = child.try_wait()? {
-                progress.advance(self.size.saturating_sub(told));
+                progress.advance(self.size.unwrap_or(told).saturating_sub(told));
                 return Ok(status);
             }
             if progress.stopped() {
@@ -69,7 +69,7 @@ impl Call<'_> {
                 return Err(stopped());
             }
             // Clients keep a second copy at the end, so what lies there can exceed what came.
-            let there = size_below(self.work.path(), 12).min(self.size);
+            let there = size_below(self.work.path(), 12).min(self.size.unwrap_or(u64::MAX));
             progress.advance(there.saturating_sub(told));
             told = told.max(there);
             std::thread::sleep(Duration::from_millis(100));
@@ -139,7 +139,7 @@ mod tests {
         let mut command = Command::new(program);
         command.args(arguments);
         let output = work.folder("out").unwrap();
-        Call { command, what: "a test".into(), size: 10, output, work }
+        Call { command, what: "a test".into(), size: Some(10), output, work }
     }
 
     fn work() -> WorkFolder {

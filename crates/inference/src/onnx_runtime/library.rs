@@ -9,24 +9,21 @@ use opendr_engine::{Error, Result, cache_dir};
 use ort::environment::Environment;
 use ort::logging::LogLevel;
 
-use super::python;
-
-/// The oldest ONNX Runtime that works, as minor version of 1.x: what ort's feature `api-23` asks for.
-pub(crate) const OLDEST_MINOR: u32 = 23;
+use super::{OnnxRuntime, python};
 
 /// A release of ONNX Runtime.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Version([u32; 3]);
+pub(super) struct Version([u32; 3]);
 
 impl Version {
-    /// Reads `libonnxruntime.so.1.31.1`, `libonnxruntime.1.31.1.dylib`; `None` when the name states no version.
-    pub(crate) fn from_file_name(name: &str) -> Option<Self> {
-        let mut numbers = name.split('.').filter_map(|part| part.parse().ok());
+    /// Reads `1.31.1`, `libonnxruntime.so.1.31.1`, `libonnxruntime.1.31.1.dylib`; `None` when no version is in it.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        let mut numbers = text.split('.').filter_map(|part| part.parse().ok());
         Some(Self([numbers.next()?, numbers.next()?, numbers.next()?]))
     }
 
-    pub(crate) fn is_supported(self) -> bool {
-        self >= Self([1, OLDEST_MINOR, 0])
+    pub(super) fn is_supported(self) -> bool {
+        self >= Self([1, 23, 0])
     }
 }
 
@@ -54,7 +51,11 @@ pub(super) fn find(skipped: &mut Vec<String>) -> Option<Library> {
     }
     files.extend(python::onnxruntime_folders().iter().flat_map(|folder| libraries_in(folder)));
     files.extend(
-        cache_dir().ok().map(|cache| cache_folder(&cache)).iter().flat_map(|folder| libraries_in(folder)),
+        cache_dir()
+            .ok()
+            .map(|cache| OnnxRuntime::cache_folder(&cache))
+            .iter()
+            .flat_map(|folder| libraries_in(folder)),
     );
     for file in files {
         match load(&file) {
@@ -65,19 +66,14 @@ pub(super) fn find(skipped: &mut Vec<String>) -> Option<Library> {
     load_from_system(skipped)
 }
 
-/// Where `opendr runtime install` puts the library.
-pub(crate) fn cache_folder(cache: &Path) -> PathBuf {
-    cache.join("onnxruntime")
-}
-
 /// The libraries of ONNX Runtime in a folder, newest first.
-pub(crate) fn libraries_in(folder: &Path) -> Vec<PathBuf> {
+pub(super) fn libraries_in(folder: &Path) -> Vec<PathBuf> {
     let Ok(entries) = fs::read_dir(folder) else { return Vec::new() };
     let mut found: Vec<_> = entries
         .flatten()
         .filter_map(|entry| {
             let name = entry.file_name().into_string().ok()?;
-            is_library(&name).then(|| (Version::from_file_name(&name), entry.path()))
+            is_library(&name).then(|| (Version::parse(&name), entry.path()))
         })
         .collect();
     found.sort();
@@ -86,7 +82,7 @@ pub(crate) fn libraries_in(folder: &Path) -> Vec<PathBuf> {
 
 /// `libonnxruntime.so`, `libonnxruntime.so.1.31.1`, `libonnxruntime.1.31.1.dylib`, `onnxruntime.dll`; not the libraries
 /// of its providers.
-pub(crate) fn is_library(name: &str) -> bool {
+pub(super) fn is_library(name: &str) -> bool {
     let Some(rest) = name.strip_prefix(consts::DLL_PREFIX).and_then(|name| name.strip_prefix("onnxruntime"))
     else {
         return false;
@@ -105,7 +101,7 @@ pub(super) fn load(path: &Path) -> Result<Library> {
     let path = path.canonicalize().map_err(|error| {
         Error::not_found(format!("no ONNX Runtime library at {}", path.display())).with_source(error)
     })?;
-    let version = path.file_name().and_then(|name| Version::from_file_name(&name.to_string_lossy()));
+    let version = path.file_name().and_then(|name| Version::parse(&name.to_string_lossy()));
     if let Some(version) = version.filter(|version| !version.is_supported()) {
         return Err(too_old(&version.to_string(), &path));
     }
@@ -149,8 +145,9 @@ fn start(path: &Path) -> Result<Environment> {
 
 fn too_old(version: &str, path: &Path) -> Error {
     Error::unsupported(format!(
-        "ONNX Runtime {version} at {} is older than 1.{OLDEST_MINOR}; update it or run \"opendr runtime install\"",
-        path.display()
+        "ONNX Runtime {version} at {} is older than {}; update it or run \"opendr runtime install\"",
+        path.display(),
+        OnnxRuntime::OLDEST
     ))
 }
 
@@ -178,7 +175,7 @@ mod tests {
 
     #[test]
     fn version_comes_from_the_name() {
-        let version = |name| Version::from_file_name(name);
+        let version = |name| Version::parse(name);
         assert_eq!(version("libonnxruntime.so.1.31.1"), Some(Version([1, 31, 1])));
         assert_eq!(version("libonnxruntime.1.23.0.dylib"), Some(Version([1, 23, 0])));
         assert_eq!(version("libonnxruntime.so"), None);

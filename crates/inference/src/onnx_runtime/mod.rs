@@ -5,7 +5,7 @@ mod library;
 mod provider;
 mod python;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::{Device, Error, Result};
@@ -15,7 +15,7 @@ use ort::session::builder::{GraphOptimizationLevel, SessionBuilder};
 use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use engine::OnnxRuntimeEngine;
-use library::Library;
+use library::{Library, Version};
 
 /// ONNX Runtime: the fastest runtime on every device, when its library is installed.
 ///
@@ -78,6 +78,37 @@ impl OnnxRuntime {
     /// Libraries that the search passed over, and why, one line each: worth showing to the user once.
     pub fn skipped() -> Vec<String> {
         SEARCH.lock().unwrap_or_else(PoisonError::into_inner).skipped.clone()
+    }
+
+    /// The oldest version that works.
+    pub const OLDEST: &str = "1.23";
+
+    /// Whether a version, e.g. `"1.31.1"`, works.
+    pub fn is_supported(version: &str) -> bool {
+        Version::parse(version).is_some_and(Version::is_supported)
+    }
+
+    /// Where in a cache folder the search looks for the library.
+    pub fn cache_folder(cache: &Path) -> PathBuf {
+        cache.join("onnxruntime")
+    }
+
+    /// Whether a file is named as ONNX Runtime's library is on this system: `libonnxruntime.so.1.31.1`, not the
+    /// libraries of its providers.
+    pub fn is_library(file_name: &str) -> bool {
+        library::is_library(file_name)
+    }
+
+    /// The libraries of ONNX Runtime in a folder, newest first.
+    pub fn libraries_in(folder: &Path) -> Vec<PathBuf> {
+        library::libraries_in(folder)
+    }
+
+    /// Lets the next [`OnnxRuntime::find`] search again, if none was found so far: one was just installed.
+    pub fn search_again() {
+        let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
+        search.done = search.found.is_some();
+        search.skipped.clear();
     }
 
     /// Where the library lies.
@@ -150,9 +181,7 @@ impl Runtime for OnnxRuntime {
     }
 
     fn version(&self) -> String {
-        self.0
-            .version
-            .map_or_else(|| format!("1.{} or later", library::OLDEST_MINOR), |version| version.to_string())
+        self.0.version.map_or_else(|| format!("{} or later", Self::OLDEST), |version| version.to_string())
     }
 
     fn devices(&self) -> Vec<Device> {
