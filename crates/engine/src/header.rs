@@ -13,7 +13,7 @@ pub struct Header {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stamp_ns: Option<i64>,
     /// The coordinate frame (ROS's `frame_id`, e.g. `"camera_link"`); `None` when unknown.
-    #[serde(default, skip_serializing_if = "Option::is_none", with = "frame_id")]
+    #[serde(default, skip_serializing_if = "Option::is_none", with = "optional_text")]
     pub frame_id: Option<Arc<str>>,
 }
 
@@ -24,18 +24,24 @@ impl Header {
     }
 }
 
-mod frame_id {
+/// Shared text that may be absent, in JSON.
+pub(crate) mod optional_text {
     use super::Arc;
     use serde::{Deserialize, Deserializer, Serializer};
 
-    pub fn serialize<S: Serializer>(value: &Option<Arc<str>>, serializer: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(
+        value: &Option<Arc<str>>,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
         match value {
             Some(text) => serializer.serialize_str(text),
             None => serializer.serialize_none(),
         }
     }
 
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Arc<str>>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<Option<Arc<str>>, D::Error> {
         Ok(Option::<String>::deserialize(deserializer)?.map(Arc::from))
     }
 }

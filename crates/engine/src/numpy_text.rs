@@ -122,7 +122,9 @@ impl<'a> Printer<'a> {
         if self.shape.contains(&0) {
             return "[]".to_owned();
         }
-        self.nested(0, 0, &" ".repeat(self.indent + 1), LINE)
+        // The bracket that ends `repr` takes a place.
+        let width = LINE - usize::from(self.indent > 0);
+        self.nested(0, 0, &" ".repeat(self.indent + 1), width)
     }
 
     fn nested(&self, axis: usize, at: usize, hanging: &str, width: usize) -> String {
@@ -267,8 +269,14 @@ fn special_text(value: f64) -> &'static str {
 
 /// `str(list)` of numbers: what Python prints of each, between commas.
 pub(crate) fn python_float(value: f32) -> String {
+    if value != 0.0 && value.is_finite() && !(1e-4..1e16).contains(&value.abs()) {
+        let text = format!("{value:e}");
+        let (mantissa, power) = text.split_once('e').unwrap_or((&text, "0"));
+        let power: i32 = power.parse().unwrap_or(0);
+        return format!("{mantissa}e{}{:02}", if power < 0 { '-' } else { '+' }, power.abs());
+    }
     let text = value.to_string();
-    if text.contains(['.', 'n', 'i']) { text } else { text + ".0" }
+    if text.contains(['.', 'N', 'i']) { text.to_lowercase() } else { text + ".0" }
 }
 
 #[cfg(test)]

@@ -1,9 +1,14 @@
 //! The one list of data and target types: what surfaces convert, and all they know.
 
+use std::fmt;
+
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::data::Image;
-use crate::target::{BoundingBoxList, PoseList};
+use crate::target::{
+    BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, SpeechCommand,
+    TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
+};
 use crate::{Header, Result};
 
 /// A data or target type.
@@ -92,6 +97,13 @@ macro_rules! values {
             }
         }
 
+        /// OpenDR's text; with `{:#}`, a readable line per item.
+        impl fmt::Display for ValueRef<'_> {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self { $(Self::$data(value) => value.fmt(f),)* $(Self::$target(value) => value.fmt(f),)* }
+            }
+        }
+
         values!(@each $($data)* $($target)*);
 
         /// The JSON form of targets: the fields of the target and its type under `"type"`.
@@ -163,12 +175,30 @@ macro_rules! values {
 
 values! {
     data { Image = "image" }
-    targets { BoundingBoxList = "boxes", PoseList = "poses" }
+    targets {
+        BoundingBoxList = "boxes",
+        TrackingAnnotationList = "tracks",
+        BoundingBox3DList = "boxes_3d",
+        TrackingAnnotation3DList = "tracks_3d",
+        PoseList = "poses",
+        Category = "category",
+        Heatmap = "heatmap",
+        SpeechCommand = "command",
+        BaseTranscription = "transcription",
+        WhisperTranscription = "transcription",
+        VoskTranscription = "transcription",
+    }
 }
 
 impl<'a> From<&'a Value> for ValueRef<'a> {
     fn from(value: &'a Value) -> Self {
         value.as_value_ref()
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.as_value_ref().fmt(f)
     }
 }
 

@@ -1,9 +1,11 @@
 //! Pictures: what users see is CHW RGB `u8`; what is stored may be any order, so that a camera frame is never
 //! transposed for nothing.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::data::image_view::{ImageView, Samples};
+use crate::numpy_text::{Number, array_str};
 use crate::{Error, Header, Result};
 
 /// The channels of a pixel, in their order in memory.
@@ -244,6 +246,34 @@ impl Image {
     }
 }
 
+/// OpenDR's text: `[channels, height, width]`, RGB, as NumPy prints it; `{:#}` gives size, channels and samples.
+impl fmt::Display for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (width, height, format) = (self.width, self.height, self.format);
+        if f.alternate() {
+            let samples = match self.pixels {
+                Pixels::U8(_) => "u8",
+                Pixels::U16(_) => "u16",
+                Pixels::F32(_) => "f32",
+            };
+            return writeln!(f, "{width}x{height} picture, {format:?}, {samples}");
+        }
+        let [row, column, channel] = self.view().strides();
+        let [red, green, blue] = format.rgb_offsets();
+        let number = |at: usize| {
+            let (plane, y, x) = (at / (width * height), at / width % height, at % width);
+            let plane = [red, green, blue, 3][plane];
+            let at = y * row + x * column + plane * channel;
+            match &self.pixels {
+                Pixels::U8(data) => Number::Int(data[at].into()),
+                Pixels::U16(data) => Number::Int(data[at].into()),
+                Pixels::F32(data) => Number::F32(data[at]),
+            }
+        };
+        f.write_str(&array_str(&[self.channels(), height, width], &number))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -257,6 +287,7 @@ mod tests {
         for image in [&rgb, &bgr, &chw] {
             assert_eq!(image.chw_u8(), [1, 4, 2, 5, 3, 6]);
             assert_eq!(image.hwc_u8(PixelFormat::Bgr), [3, 2, 1, 6, 5, 4]);
+            assert_eq!(image.to_string(), "[[[1 4]]\n\n [[2 5]]\n\n [[3 6]]]");
             assert_eq!(image.hwc_u8(PixelFormat::Rgba), [1, 2, 3, 255, 4, 5, 6, 255]);
         }
     }

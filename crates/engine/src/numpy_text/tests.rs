@@ -1,4 +1,4 @@
-use super::{Number, array_repr, array_str};
+use super::{Number, array_repr, array_str, python_float};
 
 /// Shape, type, values (or none for 0, 1, 2, ...), and what NumPy 2.4 prints of it.
 type Case = (&'static [usize], &'static str, &'static [f64], &'static str);
@@ -199,4 +199,22 @@ fn repr_is_numpys() {
     let values: &[f64] = &[];
     let text = array_repr(&[0], &|at| number("f64", values, at));
     assert_eq!(text, "array([], dtype=float64)");
+}
+
+#[test]
+fn floats_as_python_prints_them() {
+    for (value, text) in [
+        (1.0, "1.0"),
+        (-0.0, "-0.0"),
+        (0.9, "0.9"),
+        (1e-4, "0.0001"),
+        (1e-5, "1e-05"),
+        (1.25e-5, "1.25e-05"),
+        (1e16, "1e+16"),
+        (9e15, "9000000000000000.0"),
+        (f32::NAN, "nan"),
+        (f32::NEG_INFINITY, "-inf"),
+    ] {
+        assert_eq!(python_float(value), text);
+    }
 }

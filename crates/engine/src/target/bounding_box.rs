@@ -6,34 +6,46 @@ use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 
 use crate::Header;
-use crate::target::{Action, Classes, Name};
+use crate::numpy_text::{Number, array_str};
+use crate::target::json_number::null_as_nan;
+use crate::target::{Action, Classes, Name, Segment, mean};
 
 /// A box in a picture: left-top corner and size in pixels.
+///
+/// With a [`Segment`] it is OpenDR's `CocoBoundingBox`. Printed, it is OpenDR's text (`mot()`, or `coco()` with a
+/// segment); `{:#}` gives a readable line.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoundingBox {
     /// Class number or label.
     pub name: Name,
     /// Left edge, pixels.
+    #[serde(deserialize_with = "null_as_nan")]
     pub left: f32,
     /// Upper edge, pixels.
+    #[serde(deserialize_with = "null_as_nan")]
     pub top: f32,
     /// Pixels to the right edge.
+    #[serde(deserialize_with = "null_as_nan")]
     pub width: f32,
     /// Pixels to the lower edge.
+    #[serde(deserialize_with = "null_as_nan")]
     pub height: f32,
     /// Score, 0..=1.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "null_as_nan")]
     pub confidence: f32,
     /// Points that belong to the box (eyes, nose, corners of the mouth of a face), `[x, y]` in pixels.
     /// Up to five lie in place, so that filling a list of faces allocates nothing.
-    #[serde(default, skip_serializing_if = "SmallVec::is_empty")]
+    #[serde(default, skip_serializing_if = "SmallVec::is_empty", deserialize_with = "null_as_nan")]
     pub landmarks: SmallVec<[[f32; 2]; 5]>,
+    /// Outline of the object, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub segment: Option<Box<Segment>>,
 }
 
 impl BoundingBox {
     /// A box from its left-top corner and size.
     pub fn new(name: impl Into<Name>, left: f32, top: f32, width: f32, height: f32, confidence: f32) -> Self {
-        Self { name: name.into(), left, top, width, height, confidence, landmarks: SmallVec::new() }
+        Self { name: name.into(), left, top, width, height, confidence, ..Self::default() }
     }
 
     /// A box from two corners `[x0, y0, x1, y1]`.
@@ -50,9 +62,33 @@ impl BoundingBox {
     pub fn area(&self) -> f32 {
         self.width.max(0.0) * self.height.max(0.0)
     }
+
+    /// Score and place, after the label on a readable line.
+    pub(super) fn write_place(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { left, top, width, height, confidence, .. } = self;
+        write!(f, " {confidence:.2} at left {left:.1} top {top:.1} width {width:.1} height {height:.1}")
+    }
+}
+
+impl fmt::Display for BoundingBox {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.alternate() {
+            Classes::default().write_label(&self.name, f)?;
+            return self.write_place(f);
+        }
+        match &self.segment {
+            Some(_) => self.coco(true).fmt(f),
+            None => {
+                let row = self.mot(None);
+                f.write_str(&array_str(&[row.len()], &|at| Number::F32(row[at])))
+            }
+        }
+    }
 }
 
 /// The boxes found in one picture, best first.
+///
+/// Printed, it is OpenDR's text (rows of `mot()`); `{:#}` gives a readable line per box.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoundingBoxList {
     /// Of the picture.
@@ -72,22 +108,13 @@ pub struct BoundingBoxList {
 }
 
 impl BoundingBoxList {
-    /// Mean score of the boxes, 0 when there is none.
-    pub fn confidence(&self) -> f32 {
-        if self.boxes.is_empty() {
-            return 0.0;
-        }
-        self.boxes.iter().map(|found| found.confidence).sum::<f32>() / self.boxes.len() as f32
-    }
-
     /// The label of a box of this list: its own, or the class name under its number.
     pub fn label<'a>(&'a self, found: &'a BoundingBox) -> Option<&'a str> {
-        match &found.name {
-            Name::Label(label) => Some(label),
-            Name::Index(index) => self.classes.name(*index).map(AsRef::as_ref),
-        }
+        self.classes.label(&found.name)
     }
 }
+
+target!(BoundingBoxList, |list| Some(mean(list.boxes.iter().map(|found| found.confidence))));
 
 impl From<Vec<BoundingBox>> for BoundingBoxList {
     fn from(boxes: Vec<BoundingBox>) -> Self {
@@ -97,16 +124,13 @@ impl From<Vec<BoundingBox>> for BoundingBoxList {
 
 impl fmt::Display for BoundingBoxList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !f.alternate() {
+            return crate::target::write_rows(&self.mot(None), f);
+        }
         for found in &self.boxes {
-            match self.label(found) {
-                Some(label) => write!(f, "{label}")?,
-                None => write!(f, "class {}", found.name)?,
-            }
-            writeln!(
-                f,
-                " {:.2} at left {:.1} top {:.1} width {:.1} height {:.1}",
-                found.confidence, found.left, found.top, found.width, found.height
-            )?;
+            self.classes.write_label(&found.name, f)?;
+            found.write_place(f)?;
+            writeln!(f)?;
         }
         Ok(())
     }

@@ -1,8 +1,11 @@
 //! What the class numbers of a model mean.
 
+use std::fmt;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
+
+use crate::target::Name;
 
 /// The class names of a model, shared by every target that it answers; cloning allocates nothing.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -18,6 +21,22 @@ impl Classes {
     /// The number of the class called `name`.
     pub fn index(&self, name: &str) -> Option<i64> {
         self.iter().position(|class| class == name).map(|index| index as i64)
+    }
+
+    /// What a box calls its class: its own label, or the class name under its number.
+    pub fn label<'a>(&'a self, name: &'a Name) -> Option<&'a str> {
+        match name {
+            Name::Label(label) => Some(label),
+            Name::Index(index) => self.name(*index).map(AsRef::as_ref),
+        }
+    }
+
+    /// The label, or `class 3`.
+    pub(super) fn write_label(&self, name: &Name, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.label(name) {
+            Some(label) => f.write_str(label),
+            None => write!(f, "class {name}"),
+        }
     }
 
     /// How many classes are named.

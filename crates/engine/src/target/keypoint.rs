@@ -1,16 +1,23 @@
 //! A point found in a picture.
 
+use std::fmt;
+
 use serde::{Deserialize, Serialize};
 
-/// A point in a picture, in pixels; `(-1, -1)` means not found.
+use crate::numpy_text::python_float;
+use crate::target::json_number::null_as_nan;
+
+/// A point in a picture, in pixels; `(-1, -1)` means not found. Printed, it is `[x, y]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Keypoint {
     /// Pixels from the left edge.
+    #[serde(deserialize_with = "null_as_nan")]
     pub x: f32,
     /// Pixels from the upper edge.
+    #[serde(deserialize_with = "null_as_nan")]
     pub y: f32,
     /// Score, 0..=1.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "null_as_nan")]
     pub confidence: f32,
 }
 
@@ -27,5 +34,11 @@ impl Keypoint {
 impl Default for Keypoint {
     fn default() -> Self {
         Self::MISSING
+    }
+}
+
+impl fmt::Display for Keypoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "[{}, {}]", python_float(self.x), python_float(self.y))
     }
 }

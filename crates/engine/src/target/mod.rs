@@ -1,17 +1,96 @@
 //! What learners answer. One file per type.
+//!
+//! Printed with `{}`, a target gives OpenDR's own text; with `{:#}`, a readable line per item, each ended by a
+//! line feed. `docs/json.md` shows the JSON of each.
+
+use std::fmt;
+
+use crate::Datum;
+use crate::numpy_text::{Number, array_str};
+
+/// Whatever can stand beside a datum, as an annotation or as an answer.
+///
+/// Types that only annotate implement this and not [`Target`].
+pub trait BaseTarget: Datum + fmt::Debug + fmt::Display {}
+
+/// What can be both an annotation and the answer of a learner.
+pub trait Target: BaseTarget {
+    /// Score: that of the whole, or the mean over a list (0 when it is empty); `None` where there is none.
+    fn confidence(&self) -> Option<f32>;
+
+    /// How the robot should move to see better.
+    fn action(&self) -> Option<&Action>;
+
+    /// Sets the action.
+    fn set_action(&mut self, action: Option<Action>);
+}
+
+/// [`Target`] of a type with a field `action`, its score given by a closure.
+macro_rules! target {
+    ($type:ty, |$target:pat_param| $confidence:expr) => {
+        impl $crate::target::BaseTarget for $type {}
+
+        impl $crate::target::Target for $type {
+            fn confidence(&self) -> Option<f32> {
+                let $target = self;
+                $confidence
+            }
+
+            fn action(&self) -> Option<&$crate::target::Action> {
+                self.action.as_ref()
+            }
+
+            fn set_action(&mut self, action: Option<$crate::target::Action>) {
+                self.action = action;
+            }
+        }
+    };
+}
 
 mod action;
 mod bounding_box;
+mod bounding_box_3d;
+mod category;
 mod classes;
+mod convert;
+mod heatmap;
+mod json_number;
 mod keypoint;
 mod name;
 mod pose;
+mod rle;
+mod segment;
 mod skeleton;
+mod speech_command;
+mod tracking_annotation;
+mod tracking_annotation_3d;
+mod transcription;
 
 pub use action::{Action, ActionBase};
 pub use bounding_box::{BoundingBox, BoundingBoxList};
+pub use bounding_box_3d::{BoundingBox3D, BoundingBox3DList};
+pub use category::Category;
 pub use classes::Classes;
+pub use convert::{CocoAnnotation, KittiColumns};
+pub use heatmap::{Heatmap, HeatmapValues};
 pub use keypoint::Keypoint;
 pub use name::Name;
 pub use pose::{Pose, PoseList};
+pub use rle::Rle;
+pub use segment::{Segment, Segmentation};
 pub use skeleton::Skeleton;
+pub use speech_command::SpeechCommand;
+pub use tracking_annotation::{TrackingAnnotation, TrackingAnnotationList};
+pub use tracking_annotation_3d::{TrackingAnnotation3D, TrackingAnnotation3DList};
+pub use transcription::{BaseTranscription, VoskTranscription, WhisperSegment, WhisperTranscription};
+
+/// Mean of scores, 0 when there is none.
+fn mean(scores: impl ExactSizeIterator<Item = f32>) -> f32 {
+    let count = scores.len().max(1);
+    scores.sum::<f32>() / count as f32
+}
+
+/// A two-dimensional array as NumPy prints it.
+fn write_rows<const N: usize>(rows: &[[f32; N]], f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    f.write_str(&array_str(&[rows.len(), N], &|at| Number::F32(rows[at / N][at % N])))
+}

@@ -1,0 +1,96 @@
+//! Boxes with an identity: 2D tracking.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::Header;
+use crate::numpy_text::{Number, array_str};
+use crate::target::{Action, BoundingBox, BoundingBoxList, Classes, mean};
+
+/// A box of one object that is followed through a video.
+///
+/// Printed, it is OpenDR's text (`mot()`); `{:#}` gives a readable line.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrackingAnnotation {
+    /// Where it is.
+    #[serde(flatten)]
+    pub bounding_box: BoundingBox,
+    /// The object's number, the same in every picture; -1 when it is not known.
+    pub id: i64,
+    /// Number of the picture in its video, where it has one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frame: Option<i64>,
+}
+
+impl TrackingAnnotation {
+    fn write_line(&self, classes: &Classes, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{} ", self.id)?;
+        classes.write_label(&self.bounding_box.name, f)?;
+        self.bounding_box.write_place(f)
+    }
+}
+
+impl fmt::Display for TrackingAnnotation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.alternate() {
+            return self.write_line(&Classes::default(), f);
+        }
+        let row = self.mot();
+        f.write_str(&array_str(&[row.len()], &|at| Number::F32(row[at])))
+    }
+}
+
+/// The followed objects of one picture, or of a whole video.
+///
+/// Printed, it is OpenDR's text (rows of `mot()`); `{:#}` gives a readable line per object.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct TrackingAnnotationList {
+    /// Of the picture.
+    #[serde(flatten)]
+    pub header: Header,
+    /// The objects.
+    pub annotations: Vec<TrackingAnnotation>,
+    /// What class numbers mean.
+    #[serde(default, skip_serializing_if = "Classes::is_empty")]
+    pub classes: Classes,
+    /// How to move to see better.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub action: Option<Action>,
+}
+
+impl TrackingAnnotationList {
+    /// The boxes without their identities.
+    pub fn bounding_box_list(&self) -> BoundingBoxList {
+        BoundingBoxList {
+            header: self.header.clone(),
+            boxes: self.annotations.iter().map(|track| track.bounding_box.clone()).collect(),
+            classes: self.classes.clone(),
+            image_id: None,
+            action: self.action,
+        }
+    }
+}
+
+target!(TrackingAnnotationList, |list| {
+    Some(mean(list.annotations.iter().map(|track| track.bounding_box.confidence)))
+});
+
+impl From<Vec<TrackingAnnotation>> for TrackingAnnotationList {
+    fn from(annotations: Vec<TrackingAnnotation>) -> Self {
+        Self { annotations, ..Self::default() }
+    }
+}
+
+impl fmt::Display for TrackingAnnotationList {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !f.alternate() {
+            return crate::target::write_rows(&self.mot(), f);
+        }
+        for track in &self.annotations {
+            track.write_line(&self.classes, f)?;
+            writeln!(f)?;
+        }
+        Ok(())
+    }
+}
