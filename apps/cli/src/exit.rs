@@ -1,10 +1,11 @@
 //! How the command ends.
 
+use std::io;
 use std::process::ExitCode;
 
 use opendr::{Error, ErrorKind, Result};
 
-use crate::progress_bar;
+use crate::progress_bar::interrupted;
 
 /// What a command that ran to its end has to say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,20 +16,23 @@ pub enum Outcome {
     SomeFailed,
 }
 
+/// The exit codes, for `--help`. Usage errors exit with 2 before anything is run.
+pub const CODES: &str = "\
+Exit codes: 0 done; 1 some inputs failed, the rest is done; 2 wrong usage; 11 InvalidInput, 12 InvalidParam,
+13 NotFound, 14 Io, 15 Network, 16 Integrity, 17 Format, 18 Unsupported, 19 Device, 20 Internal; 130 Ctrl-C.";
+
 /// Exit code of a command stopped by Ctrl-C, as shells have it.
 const INTERRUPTED: u8 = 130;
-/// Errors exit with this plus the number of their kind: 11 `InvalidInput`, 12 `InvalidParam`, ...
+/// Errors exit with this plus the number of their kind.
 const ERRORS: u8 = 10;
 
-/// Prints the error, once, and picks the exit code. Usage errors exit with 2 before that.
+/// Prints the error, once, and picks the exit code.
 pub fn code_from(result: Result<Outcome>) -> ExitCode {
-    if progress_bar::interrupted() {
-        return ExitCode::from(INTERRUPTED);
-    }
     match result {
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        _ if interrupted() => ExitCode::from(INTERRUPTED),
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::FAILURE,
-        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
             ExitCode::from(ERRORS + error.kind() as u8)
@@ -38,7 +42,30 @@ pub fn code_from(result: Result<Outcome>) -> ExitCode {
 
 /// Whoever read the output has read enough (`| head`).
 fn is_closed_pipe(error: &Error) -> bool {
-    use std::io;
     let source = std::error::Error::source(error).and_then(|source| source.downcast_ref::<io::Error>());
     error.kind() == ErrorKind::Io && source.is_some_and(|source| source.kind() == io::ErrorKind::BrokenPipe)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_lists_the_code_of_every_kind() {
+        for kind in [
+            ErrorKind::InvalidInput,
+            ErrorKind::InvalidParam,
+            ErrorKind::NotFound,
+            ErrorKind::Io,
+            ErrorKind::Network,
+            ErrorKind::Integrity,
+            ErrorKind::Format,
+            ErrorKind::Unsupported,
+            ErrorKind::Device,
+            ErrorKind::Internal,
+        ] {
+            let listed = format!("{} {kind}", ERRORS + kind as u8);
+            assert!(CODES.contains(&listed), "{listed}");
+        }
+    }
 }

@@ -1,31 +1,33 @@
 //! Command-line flags out of a learner's tables: one per parameter, one per further port.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::Result;
 use opendr::learner::{Entry, Port};
 use opendr::params::{Field, ParamKind, ParamMap};
-use opendr::{Error, Result, ResultExt, Value};
+
+use crate::port_file::PortFile;
 
 /// Adds the learner's flags to a command.
 pub fn add(command: Command, entry: &'static Entry) -> Command {
-    let params = entry.params.iter().map(param_flag);
+    let params = entry.params.iter().map(|field| param_flag(entry, field));
     let ports = entry.ports.iter().skip(1).map(port_flag);
-    command.args(params.chain(ports)).after_help(format!("{}: {}", entry.spec.class, entry.spec.about))
+    let about = format!("{}: {}", entry.spec.class, entry.spec.about);
+    command.args(params.chain(ports)).before_help(about)
 }
 
-fn param_flag(field: &'static Field) -> Arg {
-    let mut help = field.doc.to_owned();
+fn param_flag(entry: &'static Entry, field: &'static Field) -> Arg {
+    let mut help = format!("{} [default: {}]", field.doc.trim_end_matches('.'), (field.default)());
     if let Some(range) = field.range {
-        help += &format!(" [range: {range}{}{}]", if field.unit.is_empty() { "" } else { " " }, field.unit);
+        let unit = if field.unit.is_empty() { String::new() } else { format!(" {}", field.unit) };
+        help += &format!(" [range: {} to {}{unit}]", range.low, range.high);
     }
-    help += &format!(" [default: {}]", (field.default)());
     let flag = Arg::new(field.name)
         .long(dashed(field.name))
         .help(help)
-        .help_heading("Parameters")
+        .help_heading(format!("Parameters of {}", entry.spec.name))
         .allow_negative_numbers(true)
         .value_name(value_name(field.kind));
     if field.choices.is_empty() { flag } else { flag.value_parser(PossibleValuesParser::new(field.choices)) }
@@ -34,8 +36,12 @@ fn param_flag(field: &'static Field) -> Arg {
 fn port_flag(port: &'static Port) -> Arg {
     Arg::new(port.name)
         .long(dashed(port.name))
-        .help(format!("{} (a {} in a JSON file)", port.doc, port.value_type.name()))
-        .help_heading("Inputs")
+        .help(format!(
+            "{} [a {} as JSON, or lines of \"opendr infer --json\"]",
+            port.doc,
+            port.value_type.name()
+        ))
+        .help_heading("Further inputs")
         .required(!port.optional || port.init)
         .value_parser(value_parser!(PathBuf))
         .value_name("FILE")
@@ -57,24 +63,20 @@ fn value_name(kind: ParamKind) -> &'static str {
 }
 
 /// The parameters that the user set.
+///
+/// # Errors
+/// `InvalidParam` for a value of the wrong type; ranges are checked where the learner is made.
 pub fn params(entry: &'static Entry, matches: &ArgMatches) -> Result<ParamMap> {
-    let mut params = ParamMap::new();
-    for field in entry.params {
-        if let Some(text) = matches.get_one::<String>(field.name) {
-            params.insert(field.name.to_owned(), field.parse(text)?);
-        }
-    }
-    Ok(params)
+    let given = entry.params.iter().filter_map(|field| Some((field, matches.get_one::<String>(field.name)?)));
+    given.map(|(field, text)| Ok((field.name.to_owned(), field.parse(text)?))).collect()
 }
 
-/// The values of the further ports, read from their JSON files.
-pub fn ports(entry: &'static Entry, matches: &ArgMatches) -> Result<Vec<(&'static str, Value)>> {
-    let given = entry.ports.iter().skip(1).filter_map(|port| Some((port, matches.get_one::<PathBuf>(port.name)?)));
-    let read = |(port, path): (&'static Port, &PathBuf)| {
-        let text = fs::read(path).context(|| format!("reading {}", path.display()))?;
-        let value: Value = serde_json::from_slice(&text)
-            .map_err(|error| Error::format(format!("{}: {error}", path.display())))?;
-        Ok((port.name, value))
-    };
-    given.map(read).collect()
+/// The files of the further ports.
+///
+/// # Errors
+/// As [`PortFile::read`].
+pub fn port_files(entry: &'static Entry, matches: &ArgMatches) -> Result<Vec<PortFile>> {
+    let further = entry.ports.iter().skip(1);
+    let given = further.filter_map(|port| Some((port, matches.get_one::<PathBuf>(port.name)?)));
+    given.map(|(port, path)| PortFile::read(port, path)).collect()
 }

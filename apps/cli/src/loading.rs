@@ -3,70 +3,109 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
-use opendr::inference::SessionOptions;
 use opendr::learner::{AnyLearner, Entry};
+use opendr::params::ParamMap;
 use opendr::zoo::{Zoo, ZooOptions};
 use opendr::{Device, Progress, Result};
 
-use crate::learner_flags;
+/// The id of the argument that names the learner.
+pub const LEARNER: &str = "learner";
+
+/// The argument that names the learner.
+pub fn learner() -> Arg {
+    Arg::new(LEARNER)
+        .required(true)
+        .value_name("LEARNER[/VARIANT]")
+        .help("What to run (see \"opendr models\")")
+}
 
 /// The flags of every command that runs a learner.
 pub fn flags() -> [Arg; 5] {
     [
-        Arg::new("device").long("device").default_value("auto").value_name("DEVICE").help(format!(
-            "Where to run: {}",
-            Device::NAMES.join(", ")
-        )),
-        Arg::new("threads").long("threads").value_parser(value_parser!(usize)).value_name("N").help(
-            "Threads that work on one picture; 0 takes all cores [env: OPENDR_THREADS]",
-        ),
-        Arg::new("model").long("model").value_parser(value_parser!(PathBuf)).value_name("PATH").help(
-            "A model container of your own instead of the pretrained one",
-        ),
-        Arg::new("offline").long("offline").action(ArgAction::SetTrue).help("Never use the network"),
-        Arg::new("quiet").long("quiet").short('q').action(ArgAction::SetTrue).help("Print results and errors only"),
+        Arg::new("device")
+            .long("device")
+            .default_value("auto")
+            .value_name("DEVICE")
+            .help(format!("Where to run: {}", Device::NAMES.join(", "))),
+        Arg::new("threads")
+            .long("threads")
+            .value_parser(value_parser!(u16))
+            .value_name("N")
+            .help("Threads that work on one picture, 0 for all cores [env: OPENDR_THREADS]"),
+        Arg::new("model")
+            .long("model")
+            .value_parser(value_parser!(PathBuf))
+            .value_name("PATH")
+            .help("A model container of your own instead of the pretrained one"),
+        offline(),
+        quiet(),
     ]
 }
 
+/// The flag that keeps off the network.
+pub fn offline() -> Arg {
+    Arg::new("offline").long("offline").action(ArgAction::SetTrue).help("Never use the network")
+}
+
+/// The flag that hides progress.
+pub fn quiet() -> Arg {
+    Arg::new("quiet")
+        .long("quiet")
+        .short('q')
+        .action(ArgAction::SetTrue)
+        .help("Print results and errors only")
+}
+
 /// The learner that the user named, by its registry or class name, with or without a variant.
+///
+/// # Errors
+/// `NotFound`, with the names that there are.
 pub fn entry(spec: &str) -> Result<&'static Entry> {
     opendr::registry().find(spec.split('/').next().unwrap_or(spec))
 }
 
 /// The zoo as environment and flags set it up.
+///
+/// # Errors
+/// `NotFound` when there is no folder for the cache.
 pub fn zoo(matches: &ArgMatches) -> Result<Zoo> {
     let mut options = ZooOptions::from_env()?;
     options.offline |= matches.get_flag("offline");
     Zoo::new(options)
 }
 
-/// The device that the user named.
+/// The device that environment and flags name.
+///
+/// # Errors
+/// `InvalidParam` for what is no device.
 pub fn device(matches: &ArgMatches) -> Result<Device> {
-    let name = matches.get_one::<String>("device").map_or("auto", String::as_str);
-    name.parse::<Device>()?.or_environment()
+    let device: Device = matches.get_one::<String>("device").map_or("auto", String::as_str).parse()?;
+    device.or_environment()
 }
 
-/// Puts `--threads` where sessions look for it. Called before any thread is started.
-pub fn set_threads(matches: &ArgMatches) {
-    if let Some(threads) = matches.get_one::<usize>("threads") {
-        // SAFETY: the command is still single-threaded here.
+/// Puts `--threads`, where a command has it, into the environment, which every session asks.
+///
+/// # Safety
+/// The process has one thread.
+pub unsafe fn set_threads(matches: &ArgMatches) {
+    if let Ok(Some(threads)) = matches.try_get_one::<u16>("threads") {
+        // SAFETY: nobody reads the environment meanwhile, as the caller says.
         unsafe { std::env::set_var("OPENDR_THREADS", threads.to_string()) };
     }
 }
 
-/// One line: which runtime runs on how many threads.
-pub fn runtime(matches: &ArgMatches) -> Result<String> {
-    opendr::inference::describe(SessionOptions::from(device(matches)?))
-}
-
 /// Makes and loads the learner, downloading its model where it is not cached.
+///
+/// # Errors
+/// `InvalidParam` for a parameter that does not fit, else what kept the model from being got or loaded.
 pub fn load(
     spec: &str,
-    entry: &'static Entry,
+    params: &ParamMap,
     matches: &ArgMatches,
     progress: &dyn Progress,
 ) -> Result<Box<dyn AnyLearner>> {
-    let mut learner = entry.make(&learner_flags::params(entry, matches)?, device(matches)?)?;
+    let entry = entry(spec)?;
+    let mut learner = entry.make(params, device(matches)?)?;
     let path = match matches.get_one::<PathBuf>("model") {
         Some(path) => path.clone(),
         None => {

@@ -4,8 +4,12 @@ mod command;
 mod exit;
 mod learner_flags;
 mod loading;
+mod peak_memory;
+mod port_file;
 mod progress_bar;
-mod record;
+mod progress_lines;
+mod report;
+mod stdout;
 mod timings;
 mod writer;
 
@@ -14,13 +18,16 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let matches = match command::grammar(&arguments).try_get_matches_from(&arguments) {
-        Ok(matches) => matches,
+    let grammar = match command::grammar(&arguments) {
+        Ok(grammar) => grammar,
+        Err(error) => return exit::code_from(Err(error)),
+    };
+    match grammar.try_get_matches_from(&arguments) {
+        Ok(matches) => exit::code_from(command::run(&matches)),
         Err(error) => {
             // Printing fails only when nobody reads.
             error.print().ok();
-            return ExitCode::from(error.exit_code() as u8);
+            ExitCode::from(error.exit_code() as u8)
         }
-    };
-    exit::code_from(command::run(&matches))
+    }
 }

@@ -1,6 +1,7 @@
 //! Annotated pictures and videos, drawn and encoded on a thread of their own while the next frame is inferred.
 
 use std::collections::HashSet;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -8,124 +9,235 @@ use std::thread::{self, JoinHandle};
 
 use opendr::learner::Outputs;
 use opendr::vision::draw::{Style, draw};
-use opendr::vision::{Frame, Source, VideoWriter, save};
+use opendr::vision::{Frame, VideoWriter, save};
 use opendr::{Error, Result, ResultExt};
 
 /// Frames that may wait to be written; more would only hold memory.
-const WAITING: usize = 4;
+const WAITING: usize = 2;
+/// Extensions of an output that is a video.
+const VIDEOS: [&str; 3] = ["mp4", "mov", "mkv"];
+/// Frames a second of a video made of pictures.
+const RATE_OF_PICTURES: f64 = 25.0;
+
+/// What could not be written, and why.
+pub type Failures = Vec<(PathBuf, Error)>;
 
 /// Writes annotated frames.
 pub struct Writer {
     jobs: SyncSender<(Frame, Outputs)>,
-    thread: JoinHandle<Vec<(String, Error)>>,
+    thread: JoinHandle<Failures>,
 }
 
 impl Writer {
-    /// A writer to `out`: a file for a source of one picture or of a video, when `out` has an extension; else a folder,
-    /// which is made.
+    /// A writer of `frames` frames (`None`: nobody knows) to `out`: one video when its name ends as that of a video,
+    /// one picture when it has another extension, else a folder, which is made.
     ///
     /// # Errors
-    /// `InvalidParam` when several pictures are to go into one file, `Io` when the folder cannot be made.
-    pub fn new(out: &Path, source: &Source) -> Result<Self> {
-        let is_file = out.extension().is_some() && !out.is_dir();
-        if is_file && source.len_hint().is_some_and(|count| count > 1) {
+    /// `InvalidParam` when several frames are to go into one picture, `Io` when the folder cannot be made.
+    pub fn new(out: &Path, frames: Option<u64>) -> Result<Self> {
+        let place = Place::new(out);
+        if matches!(place, Place::Picture(_)) && frames != Some(1) {
             return Err(Error::invalid_param(format!(
-                "{} is one file and the input holds several pictures; give a folder",
+                "{} is one picture, and there may be several frames; give a folder, or a video (.mp4, .mov, .mkv)",
                 out.display()
             )));
         }
-        let folder = if is_file { out.parent().unwrap_or(Path::new("")) } else { out };
-        if !folder.as_os_str().is_empty() {
-            std::fs::create_dir_all(folder).context(|| format!("making the folder {}", folder.display()))?;
+        let folder = if matches!(place, Place::Folder { .. }) { Some(out) } else { out.parent() };
+        if let Some(folder) = folder.filter(|folder| !folder.as_os_str().is_empty()) {
+            fs::create_dir_all(folder).context(|| format!("making the folder {}", folder.display()))?;
         }
         let (jobs, receiver) = sync_channel(WAITING);
-        let mut place = Place { out: out.to_owned(), is_file, taken: HashSet::new(), video: None };
-        Ok(Self { jobs, thread: thread::spawn(move || place.write_all(&receiver)) })
+        Ok(Self { jobs, thread: thread::spawn(move || write_all(place, &receiver)) })
     }
 
-    /// Hands a frame on to be drawn and written.
+    /// Hands a frame on to be drawn and written; waits while the thread is behind.
     ///
     /// # Errors
     /// `Internal` when the writing thread is gone.
     pub fn put(&self, frame: Frame, outputs: Outputs) -> Result<()> {
-        self.jobs.send((frame, outputs)).map_err(|_| Error::internal("the writer is gone"))
+        self.jobs
+            .send((frame, outputs))
+            .map_err(|_| Error::internal("the thread that writes pictures is gone"))
     }
 
-    /// Waits until all is written; what could not be, and why.
-    pub fn finish(self) -> Vec<(String, Error)> {
+    /// Waits until all is written.
+    pub fn finish(self) -> Failures {
         drop(self.jobs);
-        self.thread.join().unwrap_or_else(|_| vec![(String::new(), Error::internal("the writer panicked"))])
+        let panicked =
+            |_| vec![(PathBuf::new(), Error::internal("the thread that writes pictures panicked"))];
+        self.thread.join().unwrap_or_else(panicked)
     }
 }
 
 /// Where frames go.
-struct Place {
-    out: PathBuf,
-    is_file: bool,
-    taken: HashSet<PathBuf>,
-    video: Option<Video>,
+enum Place {
+    Picture(PathBuf),
+    Video(PathBuf, Video),
+    Folder { path: PathBuf, taken: HashSet<PathBuf>, video: Option<(Arc<Path>, Video)> },
 }
 
-/// The video in hand; without a writer when it could not be begun, which is said once.
-struct Video {
-    input: Arc<Path>,
-    writer: Option<VideoWriter>,
+fn write_all(mut place: Place, jobs: &Receiver<(Frame, Outputs)>) -> Failures {
+    let mut failures = Vec::new();
+    for (mut frame, outputs) in jobs {
+        outputs.iter().for_each(|(_, value)| draw(&mut frame.image, value, &Style::default()));
+        let input = frame.path.to_path_buf();
+        if let Err(error) = place.write(frame) {
+            failures.push((input, error));
+        }
+    }
+    if let Err(error) = place.close() {
+        failures.push((PathBuf::new(), error));
+    }
+    failures
 }
 
 impl Place {
-    fn write_all(&mut self, jobs: &Receiver<(Frame, Outputs)>) -> Vec<(String, Error)> {
-        let mut failures = Vec::new();
-        for (mut frame, outputs) in jobs {
-            outputs.iter().for_each(|(_, value)| draw(&mut frame.image, value, &Style::default()));
-            let input = frame.path.display().to_string();
-            if let Err(error) = self.write(frame) {
-                failures.push((input, error));
-            }
+    fn new(out: &Path) -> Self {
+        let extension = out.extension().filter(|_| !out.is_dir());
+        let is_video = |extension: &str| VIDEOS.iter().any(|known| known.eq_ignore_ascii_case(extension));
+        match extension.map(|extension| extension.to_str().is_some_and(is_video)) {
+            Some(true) => Self::Video(out.to_owned(), Video::Unopened),
+            Some(false) => Self::Picture(out.to_owned()),
+            None => Self::Folder { path: out.to_owned(), taken: HashSet::new(), video: None },
         }
-        if let Err(error) = self.close() {
-            failures.push((self.out.display().to_string(), error));
-        }
-        failures
     }
 
     fn write(&mut self, frame: Frame) -> Result<()> {
-        let Some(info) = frame.video else {
-            let path = if self.is_file { self.out.clone() } else { self.free_name(&frame.path, None) };
-            return save(&frame.image, &path);
-        };
-        if self.video.as_ref().is_none_or(|video| video.input != frame.path) {
-            self.close()?;
-            let path = if self.is_file { self.out.clone() } else { self.free_name(&frame.path, Some("mp4")) };
-            self.video = Some(Video { input: frame.path, writer: None });
-            let writer = VideoWriter::create(&path, info.rate)?;
-            self.video.as_mut().map(|video| video.writer.insert(writer));
-        }
-        match self.video.as_mut().and_then(|video| video.writer.as_mut()) {
-            Some(writer) => writer.write(&frame.image),
-            None => Ok(()),
+        match self {
+            Self::Picture(path) => save_beside(&frame, path),
+            Self::Video(path, video) => video.write(&frame, path),
+            Self::Folder { path: folder, taken, .. } if frame.video.is_none() => {
+                save_beside(&frame, &free_name(folder, taken, &frame.path, extension_of_picture(&frame.path)))
+            }
+            Self::Folder { path: folder, taken, video } => {
+                let (path, video) = match video {
+                    Some((path, video)) if video.is_of(&frame) => (path, video),
+                    _ => {
+                        if let Some((_, last)) = video.take() {
+                            last.close()?;
+                        }
+                        let path = free_name(folder, taken, &frame.path, VIDEOS[0]);
+                        let (path, video) = video.insert((path.into(), Video::Unopened));
+                        (path, video)
+                    }
+                };
+                video.write(&frame, path)
+            }
         }
     }
 
-    fn close(&mut self) -> Result<()> {
-        self.video.take().and_then(|video| video.writer).map_or(Ok(()), VideoWriter::finish)
+    fn close(self) -> Result<()> {
+        match self {
+            Self::Video(_, video) | Self::Folder { video: Some((_, video)), .. } => video.close(),
+            Self::Picture(_) | Self::Folder { video: None, .. } => Ok(()),
+        }
+    }
+}
+
+/// A video on its way.
+enum Video {
+    Unopened,
+    Open(Arc<Path>, VideoWriter),
+    /// It failed, and that was said.
+    Failed(Arc<Path>),
+}
+
+impl Video {
+    /// Whether it is made of the input that `frame` comes from.
+    fn is_of(&self, frame: &Frame) -> bool {
+        matches!(self, Self::Open(input, _) | Self::Failed(input) if *input == frame.path)
     }
 
-    /// The input's own name in the folder, with a number where two inputs have the same. Formats that are not written
-    /// become PNG.
-    fn free_name(&mut self, input: &Path, extension: Option<&'static str>) -> PathBuf {
-        let stem = input.file_stem().map_or("frame".into(), |stem| stem.to_string_lossy()).replace(':', "-");
-        let extension = extension.unwrap_or_else(|| match input.extension().and_then(|known| known.to_str()) {
-            Some("jpg" | "jpeg" | "JPG" | "JPEG") => "jpg",
-            Some("bmp") => "bmp",
-            Some("webp") => "webp",
-            _ => "png",
-        });
-        let mut path = self.out.join(format!("{stem}.{extension}"));
-        let mut number = 1;
-        while !self.taken.insert(path.clone()) {
-            number += 1;
-            path = self.out.join(format!("{stem}-{number}.{extension}"));
+    fn write(&mut self, frame: &Frame, path: &Path) -> Result<()> {
+        let written = self.try_write(frame, path);
+        if written.is_err() {
+            *self = Self::Failed(frame.path.clone());
         }
-        path
+        written
+    }
+
+    fn try_write(&mut self, frame: &Frame, path: &Path) -> Result<()> {
+        if let Self::Unopened = self {
+            check_is_other(&frame.path, path)?;
+            let rate = frame.video.as_ref().map_or(RATE_OF_PICTURES, |video| video.rate);
+            *self = Self::Open(frame.path.clone(), VideoWriter::create(path, rate)?);
+        }
+        match self {
+            Self::Open(_, writer) => writer.write(&frame.image),
+            Self::Unopened | Self::Failed(_) => Ok(()),
+        }
+    }
+
+    fn close(self) -> Result<()> {
+        match self {
+            Self::Open(_, writer) => writer.finish(),
+            Self::Unopened | Self::Failed(_) => Ok(()),
+        }
+    }
+}
+
+fn save_beside(frame: &Frame, path: &Path) -> Result<()> {
+    check_is_other(&frame.path, path)?;
+    save(&frame.image, path)
+}
+
+/// Refuses to write over the file that was read.
+fn check_is_other(input: &Path, output: &Path) -> Result<()> {
+    let same =
+        output.canonicalize().is_ok_and(|output| input.canonicalize().is_ok_and(|input| input == output));
+    if !same {
+        return Ok(());
+    }
+    Err(Error::invalid_param(format!("{} is the input itself; write to another folder", output.display())))
+}
+
+/// The format of a written picture: the input's where that is written, else PNG.
+fn extension_of_picture(input: &Path) -> &'static str {
+    let extension = input.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+    match extension.as_deref() {
+        Some("jpg" | "jpeg") => "jpg",
+        Some("bmp") => "bmp",
+        Some("webp") => "webp",
+        _ => "png",
+    }
+}
+
+/// The input's own name in `folder`, with a number where two inputs have the same.
+fn free_name(folder: &Path, taken: &mut HashSet<PathBuf>, input: &Path, extension: &str) -> PathBuf {
+    let stem = input.file_stem().unwrap_or_else(|| "frame".as_ref());
+    let mut number = 1;
+    loop {
+        let mut name = stem.to_owned();
+        if number > 1 {
+            name.push(format!("-{number}"));
+        }
+        name.push(".");
+        name.push(extension);
+        let path = folder.join(name);
+        if taken.insert(path.clone()) {
+            return path;
+        }
+        number += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_tell_what_is_written() {
+        assert!(matches!(Place::new(Path::new("seen")), Place::Folder { .. }));
+        assert!(matches!(Place::new(Path::new("seen.MP4")), Place::Video(..)));
+        assert!(matches!(Place::new(Path::new("seen.png")), Place::Picture(_)));
+        assert!(matches!(Place::new(&std::env::temp_dir()), Place::Folder { .. }));
+    }
+
+    #[test]
+    fn inputs_of_one_name_get_numbers() {
+        let mut taken = HashSet::new();
+        let mut name = |input: &str| free_name(Path::new("out"), &mut taken, Path::new(input), "png");
+        let names = ["a/1.png", "b/1.png", "b/2.x.tif"].map(&mut name);
+        assert_eq!(names, ["out/1.png", "out/1-2.png", "out/2.x.png"].map(PathBuf::from));
     }
 }

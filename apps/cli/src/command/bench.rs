@@ -4,42 +4,50 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::data::{Image, Layout, PixelFormat};
+use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Ports};
-use opendr::vision;
-use opendr::{Error, Progress, Result, Unit};
+use opendr::zoo::ItemKind;
+use opendr::{Error, Progress, Result, Unit, vision};
 use serde::Serialize;
 
 use crate::exit::Outcome;
+use crate::peak_memory::peak_memory_mb;
 use crate::progress_bar::Bar;
 use crate::timings::Timings;
-use crate::{learner_flags, loading};
+use crate::{learner_flags, loading, stdout};
+
+/// Size of the picture when none is given, pixels.
+const WIDTH: usize = 1920;
+const HEIGHT: usize = 1080;
 
 pub fn grammar() -> Command {
-    let count = |name: &'static str, default: &'static str, help: &'static str| {
-        Arg::new(name).long(name).value_parser(value_parser!(usize)).default_value(default).value_name("N").help(help)
+    let count = |name: &'static str, default: &'static str| {
+        let number = value_parser!(u32).range(1..=1_000_000);
+        Arg::new(name).long(name).value_parser(number).default_value(default).value_name("N")
     };
     Command::new("bench")
         .about("Measure a learner: p50 and p99 of each stage, frames a second, peak memory")
-        .arg(Arg::new("learner").required(true).value_name("LEARNER[/VARIANT]").help("What to measure"))
+        .arg(loading::learner())
         .arg(
             Arg::new("input")
                 .value_parser(value_parser!(PathBuf))
                 .value_name("PICTURE")
-                .help("What to run on; a drawn 1920x1080 picture otherwise"),
+                .help("What to run on; a sample of the zoo, or a drawn picture, at 1920x1080 otherwise"),
         )
-        .arg(count("frames", "100", "Frames to measure"))
-        .arg(count("warmup", "10", "Frames before that"))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON"))
+        .arg(count("frames", "100").help("Frames to measure"))
+        .arg(count("warmup", "10").help("Frames before that"))
+        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON (docs/json.md)"))
         .args(loading::flags())
-        .after_help("Examples:\n  opendr bench centernet\n  opendr bench yunet faces.jpg --threads 1 --json")
+        .after_help("Examples:\n  opendr bench LEARNER\n  opendr bench LEARNER faces.jpg --threads 1 --json")
 }
 
 #[derive(Serialize)]
-struct Report {
+struct Measurement {
     learner: String,
     runtime: String,
     device: String,
-    picture: [usize; 2],
+    threads: usize,
+    picture: Picture,
     frames: usize,
     frames_per_second: f64,
     p50_ms: Timings,
@@ -47,36 +55,69 @@ struct Report {
     peak_memory_mb: Option<f64>,
 }
 
+#[derive(Serialize)]
+struct Picture {
+    source: String,
+    width: usize,
+    height: usize,
+}
+
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    loading::set_threads(matches);
-    let spec = matches.get_one::<String>("learner").map_or("", String::as_str);
+    let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let [frames, warmup] = ["frames", "warmup"].map(|name| matches.get_one(name).copied().unwrap_or(1));
-    if frames == 0 {
-        return Err(Error::invalid_param("frames = 0: give at least 1"));
-    }
+    let options = SessionOptions::from(loading::device(matches)?);
     let bar = Bar::new(matches.get_flag("quiet"));
-    let mut learner = loading::load(spec, entry, matches, &bar)?;
-    let image = match matches.get_one::<PathBuf>("input") {
-        Some(path) => vision::open(path)?,
-        None => drawn_picture(1920, 1080)?,
-    };
-    let further = learner_flags::ports(entry, matches)?;
-    let ports = further.iter().fold(Ports::one(&image), |ports, (name, value)| ports.with(name, value));
+    let further = learner_flags::port_files(entry, matches)?;
+    let mut learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?;
+    let (source, image) = picture(matches, &bar)?;
+    let mut ports = Ports::one(&image);
+    for file in &further {
+        ports = ports.with(file.name(), file.value(0)?);
+    }
+    let [frames, warmup] =
+        ["frames", "warmup"].map(|name| matches.get_one::<u32>(name).map_or(1, |&count| count as usize));
     let timings = measure(learner.as_mut(), &ports, warmup, frames, &bar)?;
-    let report = Report {
+    let measurement = Measurement {
         learner: spec.to_owned(),
-        runtime: loading::runtime(matches)?,
+        runtime: describe(options)?,
         device: learner.device().to_string(),
-        picture: [image.width(), image.height()],
-        frames,
-        frames_per_second: 1e3 * frames as f64 / timings.iter().map(|one| one.total).sum::<f64>(),
+        threads: options.thread_count()?,
+        picture: Picture { source, width: image.width(), height: image.height() },
+        frames: timings.len(),
+        frames_per_second: 1e3 * timings.len() as f64 / timings.iter().map(|one| one.total).sum::<f64>(),
         p50_ms: percentile(&timings, 0.50),
         p99_ms: percentile(&timings, 0.99),
         peak_memory_mb: peak_memory_mb(),
     };
-    print(&report, matches.get_flag("json"))?;
+    print(&measurement, matches.get_flag("json"))?;
     Ok(Outcome::Done)
+}
+
+/// What to run on, and where it is from.
+fn picture(matches: &ArgMatches, bar: &Bar) -> Result<(String, Image)> {
+    if let Some(path) = matches.get_one::<PathBuf>("input") {
+        return Ok((path.display().to_string(), vision::open(path)?));
+    }
+    let zoo = loading::zoo(matches)?;
+    let samples = zoo.items().filter(|item| item.card.kind == ItemKind::Sample && item.variant.demo);
+    for sample in samples.map(|item| item.to_string()) {
+        match zoo.get(&sample, bar) {
+            Ok(path) => return Ok((sample, vision::resize(&vision::open(path)?, WIDTH, HEIGHT)?)),
+            Err(error) => bar.note(&format!("measuring on a drawn picture, since {error}")),
+        }
+    }
+    Ok(("drawn".to_owned(), drawn_picture()?))
+}
+
+/// Gradients and squares: nothing to find, everything to compute.
+fn drawn_picture() -> Result<Image> {
+    let pixel = |at: usize| {
+        let (x, y) = (at % WIDTH, at / WIDTH);
+        let square = if (x / 64 + y / 64) % 2 == 0 { 200 } else { 40 };
+        [(x * 255 / WIDTH) as u8, (y * 255 / HEIGHT) as u8, square]
+    };
+    let samples: Vec<u8> = (0..WIDTH * HEIGHT).flat_map(pixel).collect();
+    Image::new(samples, WIDTH, HEIGHT, PixelFormat::Rgb, Layout::Hwc)
 }
 
 fn measure(
@@ -102,47 +143,48 @@ fn measure(
     Ok(timings)
 }
 
-/// Each stage's own percentile.
+/// Each stage's own percentile (nearest rank).
 fn percentile(timings: &[Timings], part: f64) -> Timings {
     let of = |stage: fn(&Timings) -> f64| {
         let mut values: Vec<f64> = timings.iter().map(stage).collect();
         values.sort_by(f64::total_cmp);
-        let at = ((values.len() as f64 * part).ceil() as usize).clamp(1, values.len().max(1)) - 1;
-        values.get(at).copied().unwrap_or_default()
+        let rank = (values.len() as f64 * part).ceil() as usize;
+        values.get(rank.saturating_sub(1)).copied().unwrap_or_default()
     };
     Timings { pre: of(|t| t.pre), session: of(|t| t.session), post: of(|t| t.post), total: of(|t| t.total) }
 }
 
-fn print(report: &Report, json: bool) -> Result<()> {
+fn print(measurement: &Measurement, json: bool) -> Result<()> {
     if json {
-        let text = serde_json::to_string_pretty(report);
-        println!("{}", text.map_err(|error| Error::internal("no JSON").with_source(error))?);
-        return Ok(());
+        let text = serde_json::to_string_pretty(measurement);
+        return stdout::print(
+            text.map_err(|error| Error::internal("the figures have no JSON form").with_source(error))?,
+        );
     }
-    let Report { learner, runtime, picture: [width, height], frames, p50_ms, p99_ms, .. } = report;
-    println!("{learner} on {runtime}");
-    println!("{frames} frames of {width}x{height}: {:.1} frames a second", report.frames_per_second);
-    println!("p50: {p50_ms}\np99: {p99_ms}");
-    if let Some(peak) = report.peak_memory_mb {
-        println!("peak memory: {peak:.0} MB");
-    }
-    Ok(())
+    let Measurement { learner, runtime, picture, frames, frames_per_second, p50_ms, p99_ms, .. } =
+        measurement;
+    let Picture { source, width, height } = picture;
+    let memory =
+        measurement.peak_memory_mb.map_or_else(String::new, |peak| format!("\npeak memory: {peak:.0} MB"));
+    stdout::print(format_args!(
+        "{learner} on {runtime}\n\
+         {frames} frames of {width}x{height} ({source}): {frames_per_second:.1} frames a second\n\
+         p50: {p50_ms}\np99: {p99_ms}{memory}"
+    ))
 }
 
-/// Most memory that the process has had, in 10^6 bytes; Linux tells it.
-fn peak_memory_mb() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kilobytes * 1024.0 / 1e6)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-/// Gradients and bars: nothing to find, everything to compute.
-fn drawn_picture(width: usize, height: usize) -> Result<Image> {
-    let pixel = |at: usize| {
-        let (x, y) = (at % width, at / width);
-        [(x * 255 / width) as u8, (y * 255 / height) as u8, if x / 64 % 2 == y / 64 % 2 { 200 } else { 40 }]
-    };
-    let samples: Vec<u8> = (0..width * height).flat_map(pixel).collect();
-    Image::new(samples, width, height, PixelFormat::Rgb, Layout::Hwc)
+    #[test]
+    fn percentiles_are_those_of_each_stage() {
+        let timings: Vec<_> = (1..=100)
+            .map(|n| Timings { pre: f64::from(n), session: f64::from(101 - n), ..Timings::default() })
+            .collect();
+        let half = percentile(&timings, 0.5);
+        assert_eq!((half.pre, half.session), (50.0, 50.0));
+        assert_eq!(percentile(&timings, 0.99).session, 99.0);
+        assert_eq!(percentile(&timings[..1], 0.99).session, 100.0);
+    }
 }

@@ -1,21 +1,19 @@
 //! `opendr demo`: people in a photograph, from nothing.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::inference::describe;
 use opendr::learner::Ports;
+use opendr::params::ParamMap;
 use opendr::vision::draw::{Style, draw};
-use opendr::zoo::ItemKind;
+use opendr::zoo::{ItemKind, Zoo};
 use opendr::{Error, Result, vision};
 
 use crate::exit::Outcome;
-use crate::loading;
 use crate::progress_bar::Bar;
-use crate::record;
 use crate::timings::Timings;
-
-/// Where the annotated picture goes when nothing else is said.
-const OUT: &str = "opendr-demo.png";
+use crate::{loading, report, stdout};
 
 pub fn grammar() -> Command {
     Command::new("demo")
@@ -30,7 +28,7 @@ pub fn grammar() -> Command {
             Arg::new("out")
                 .long("out")
                 .short('o')
-                .default_value(OUT)
+                .default_value("opendr-demo.png")
                 .value_parser(value_parser!(PathBuf))
                 .value_name("FILE")
                 .help("Where to write the annotated picture"),
@@ -40,26 +38,29 @@ pub fn grammar() -> Command {
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    loading::set_threads(matches);
-    println!("runtime: {}", loading::runtime(matches)?);
+    stdout::print(format_args!("runtime: {}", describe(loading::device(matches)?)?))?;
     let bar = Bar::new(matches.get_flag("quiet"));
     let zoo = loading::zoo(matches)?;
-    let marked = |kind: ItemKind| {
-        let mut items = zoo.items().filter(|item| item.variant.demo && item.card.kind == kind);
-        items.next().ok_or_else(|| Error::internal(format!("no {kind:?} card is marked for the demo")))
-    };
+    let spec = shown_in_demo(&zoo, ItemKind::Model)?;
     let picture = match matches.get_one::<PathBuf>("picture") {
         Some(path) => path.clone(),
-        None => zoo.get(&marked(ItemKind::Sample)?.to_string(), &bar)?,
+        None => zoo.get(&shown_in_demo(&zoo, ItemKind::Sample)?, &bar)?,
     };
-    let spec = marked(ItemKind::Model)?.to_string();
-    let mut learner = loading::load(&spec, loading::entry(&spec)?, matches, &bar)?;
     let mut image = vision::open(&picture)?;
+    let mut learner = loading::load(&spec, &ParamMap::new(), matches, &bar)?;
     let (outputs, timings) = Timings::of(|| learner.infer(&Ports::one(&image)))?;
-    println!("{}", record::text(&picture.display().to_string(), &outputs, Some(timings)));
+    let title = format!("{spec} on {}", picture.display());
+    stdout::print(report::text(&title, &outputs, Some(timings)))?;
     outputs.iter().for_each(|(_, value)| draw(&mut image, value, &Style::default()));
-    let out = matches.get_one::<PathBuf>("out").cloned().unwrap_or_else(|| OUT.into());
-    vision::save(&image, &out)?;
-    println!("annotated picture: {}", out.display());
+    let out = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);
+    vision::save(&image, out)?;
+    stdout::print(format_args!("annotated picture: {}", out.display()))?;
     Ok(Outcome::Done)
+}
+
+/// The item whose card says that the demonstration shows it.
+fn shown_in_demo(zoo: &Zoo, kind: ItemKind) -> Result<String> {
+    let mut items = zoo.items().filter(|item| item.variant.demo && item.card.kind == kind);
+    let item = items.next().map(|item| item.to_string());
+    item.ok_or_else(|| Error::internal(format!("no {kind:?} card is marked for the demonstration")))
 }

@@ -3,16 +3,23 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::zoo::{Zoo, ZooOptions};
-use opendr::{Error, Result};
+use opendr::Result;
 
 use crate::exit::Outcome;
 use crate::progress_bar::{Bar, interrupted};
+use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
     Command::new("download")
-        .about("Get models into the cache, checked by sha256, resumed where they broke off")
-        .arg(Arg::new("model").num_args(0..).value_name("LEARNER[/VARIANT]").required_unless_present("all"))
+        .about("Get models into the cache, resumed where a download broke off and checked by sha256")
+        .arg(
+            Arg::new("model")
+                .num_args(1..)
+                .value_name("LEARNER[/VARIANT]")
+                .help("What to get (see \"opendr models\")")
+                .required_unless_present("all")
+                .conflicts_with("all"),
+        )
         .arg(Arg::new("all").long("all").action(ArgAction::SetTrue).help("Everything in the zoo"))
         .arg(
             Arg::new("to")
@@ -21,12 +28,14 @@ pub fn grammar() -> Command {
                 .value_name("DIR")
                 .help("Also copy into this folder, which can then serve as OPENDR_MODEL_REPOSITORY"),
         )
-        .arg(Arg::new("quiet").long("quiet").short('q').action(ArgAction::SetTrue).help("Print paths and errors only"))
-        .after_help("Examples:\n  opendr download centernet\n  opendr download yunet/n_320 --to models/\n  opendr download --all")
+        .args([loading::offline(), loading::quiet()])
+        .after_help(
+            "Examples:\n  opendr download LEARNER\n  opendr download LEARNER/VARIANT --to models/\n  opendr download --all",
+        )
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    let zoo = Zoo::new(ZooOptions::from_env()?)?;
+    let zoo = loading::zoo(matches)?;
     let bar = Bar::new(matches.get_flag("quiet"));
     let specs: Vec<String> = if matches.get_flag("all") {
         zoo.items().map(|item| item.to_string()).collect()
@@ -34,19 +43,20 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         matches.get_many::<String>("model").into_iter().flatten().cloned().collect()
     };
     let to = matches.get_one::<PathBuf>("to").map(PathBuf::as_path);
-    let mut failures = Vec::<Error>::new();
+    let mut outcome = Outcome::Done;
     for spec in &specs {
         match zoo.download(spec, to, &bar) {
-            Ok(path) => println!("{spec}: {}", path.display()),
+            Ok(path) => stdout::print(format_args!("{spec}: {}", path.display()))?,
             Err(error) if specs.len() == 1 => return Err(error),
+            Err(_) if interrupted() => {}
             Err(error) => {
                 eprintln!("error: {error}");
-                failures.push(error);
+                outcome = Outcome::SomeFailed;
             }
         }
         if interrupted() {
             break;
         }
     }
-    Ok(if failures.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+    Ok(outcome)
 }

@@ -1,199 +1,197 @@
 //! `opendr infer`: a learner over pictures, folders, videos, cameras.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::learner::{AnyLearner, Outputs, Ports};
+use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::vision::{Frame, Source, SourceOptions};
-use opendr::{Error, Progress, Result, Unit, Value};
+use opendr::{Error, Progress, Result, Unit, ValueType};
 
 use crate::exit::Outcome;
+use crate::port_file::PortFile;
 use crate::progress_bar::{Bar, interrupted};
-use crate::record::{self, Failure, Record};
+use crate::report::{Json, Report};
 use crate::timings::Timings;
 use crate::writer::Writer;
 use crate::{learner_flags, loading};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr infer centernet street.jpg                        print what is found
-  opendr infer centernet street.jpg --out seen.png         ... and draw it
-  opendr infer nanodet pictures/ --out seen/ --json        one JSON line a picture
-  opendr infer yunet 'photos/*.jpg' --threshold 0.8
-  opendr infer movenet/multipose dance.mp4 --out dance-poses.mp4
-  opendr infer ultra_light_face camera:0 --limit 100
+  opendr infer LEARNER street.jpg                        print what is found
+  opendr infer LEARNER street.jpg --out seen.png         ... and draw it
+  opendr infer LEARNER pictures/ --out seen/ --json      one line of JSON a picture
+  opendr infer LEARNER 'photos/**/*.jpg' --threshold 0.8
+  opendr infer LEARNER/VARIANT dance.mp4 --out dance-seen.mp4
+  opendr infer LEARNER camera:0 --limit 100
 
-`opendr infer LEARNER --help` lists the learner's parameters; `opendr models` lists the learners.";
+\"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
 pub fn grammar() -> Command {
+    let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
     Command::new("infer")
-        .about("Run a learner on pictures, folders, globs, videos or a camera")
-        .arg(Arg::new("learner").required(true).value_name("LEARNER[/VARIANT]").help("What to run"))
+        .about("Run a learner on pictures, folders, patterns, videos or a camera")
+        .arg(loading::learner())
         .arg(
             Arg::new("input")
                 .required(true)
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("INPUT")
-                .help("Pictures, folders, quoted globs, video files, camera:N"),
+                .help("Pictures, folders, quoted patterns, video files, camera:N"),
         )
-        .arg(
-            Arg::new("out")
-                .long("out")
+        .args([
+            path("out")
                 .short('o')
-                .value_parser(value_parser!(PathBuf))
                 .value_name("DIR|FILE")
-                .help("Write annotated pictures here: a folder, or a file for one picture or video"),
-        )
-        .arg(
-            Arg::new("json")
-                .long("json")
-                .action(ArgAction::SetTrue)
-                .help("Print one JSON line a frame (docs/json.md)"),
-        )
-        .arg(
-            Arg::new("timings")
-                .long("show-timings")
-                .action(ArgAction::SetTrue)
-                .help("Print how long each stage took"),
-        )
-        .arg(
+                .help("Write annotated pictures: into a folder, or to one picture or video file"),
+            path("json").num_args(0..=1).require_equals(true).value_name("FILE").help(
+                "Print a line of JSON a frame instead of text, or write it to FILE besides (docs/json.md)",
+            ),
+            switch("show-timings").help("Tell how long each stage took"),
+            switch("sequence").help("The pictures follow each other in time, as frames of one video do"),
             Arg::new("limit")
                 .long("limit")
-                .value_parser(value_parser!(usize))
+                .value_parser(value_parser!(u64).range(1..))
                 .value_name("N")
-                .help("Stop after N frames of each input"),
-        )
+                .help("Stop after N frames"),
+        ])
         .args(loading::flags())
         .after_help(EXAMPLES)
 }
 
-struct Run<'a> {
-    learner: Box<dyn AnyLearner>,
-    first_port: &'static str,
-    ports: Vec<(&'static str, Value)>,
-    bar: &'a Bar,
-    json: bool,
-    timings: bool,
-    failed: bool,
-}
-
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    loading::set_threads(matches);
-    let spec = matches.get_one::<String>("learner").map_or("", String::as_str);
+    let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let bar = Bar::new(matches.get_flag("quiet"));
-    let mut run = Run {
-        learner: loading::load(spec, entry, matches, &bar)?,
-        first_port: entry.ports.first().map_or("", |port| port.name),
-        ports: learner_flags::ports(entry, matches)?,
-        bar: &bar,
-        json: matches.get_flag("json"),
-        timings: matches.get_flag("timings"),
-        failed: false,
+    let json = match matches.get_one::<PathBuf>("json") {
+        Some(path) => Json::file(path)?,
+        None if matches.contains_id("json") => Json::Stdout,
+        None => Json::Off,
     };
+    let mut report = Report::new(&bar, json, matches.get_flag("show-timings"));
     let inputs: Vec<&PathBuf> = matches.get_many("input").into_iter().flatten().collect();
-    let source = run.open(&inputs)?;
-    let mut writer = matches.get_one::<PathBuf>("out").map(|out| Writer::new(out, &source)).transpose()?;
-    run.frames(source, matches.get_one("limit").copied().unwrap_or(usize::MAX), writer.as_mut())?;
-    if let Some(writer) = writer {
-        for (name, error) in writer.finish() {
-            run.failure(&name, &error)?;
-        }
+    let source = open(&inputs, &mut report)?;
+    let limit = matches.get_one("limit").copied().unwrap_or(u64::MAX);
+    let frames =
+        source.len_hint().map_or((limit < u64::MAX).then_some(limit), |count| Some(count.min(limit)));
+    let writer = matches.get_one::<PathBuf>("out").map(|out| Writer::new(out, frames)).transpose()?;
+    let mut run = Run {
+        port: picture_port(entry)?,
+        further: learner_flags::port_files(entry, matches)?,
+        learner: loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?,
+        entry,
+        sequence: matches.get_flag("sequence"),
+        stream: None,
+    };
+    if frames != Some(1) {
+        bar.begin("frames", frames, Unit::Items);
     }
-    Ok(if run.failed { Outcome::SomeFailed } else { Outcome::Done })
+    let told = run.frames(source.take(limit as usize), &mut report, writer.as_ref(), &bar);
+    bar.end();
+    // Even when the report cannot go on, what was handed over is finished.
+    for (input, error) in writer.map(Writer::finish).unwrap_or_default() {
+        report.failure(Some(&input.to_string_lossy()), &error)?;
+    }
+    told?;
+    Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }
 
-impl Run<'_> {
-    /// One source over all inputs; those that cannot be opened are reported, and left out.
-    fn open(&mut self, inputs: &[&PathBuf]) -> Result<Source> {
-        let all = Source::open_all(inputs, SourceOptions::default());
-        let Err(error) = all else { return all };
-        if inputs.len() == 1 {
-            return Err(error);
-        }
-        let mut good = Vec::new();
-        for input in inputs {
-            match Source::open(input) {
-                Ok(_) => good.push(*input),
-                Err(error) => self.failure(&input.display().to_string(), &error)?,
-            }
-        }
-        Source::open_all(good, SourceOptions::default())
-    }
+/// The port that pictures go into: the first.
+fn picture_port(entry: &Entry) -> Result<&'static str> {
+    let first = entry.ports.first().filter(|port| port.value_type == ValueType::Image);
+    first.map(|port| port.name).ok_or_else(|| {
+        let class = entry.spec.class;
+        Error::unsupported(format!(
+            "{class} takes no pictures; the command line has only those, use Rust or Python"
+        ))
+    })
+}
 
-    fn frames(&mut self, source: Source, limit: usize, mut writer: Option<&mut Writer>) -> Result<()> {
-        let total = source.len_hint().map(|count| count.min(limit as u64));
-        if total != Some(1) {
-            self.bar.begin("frames", total, Unit::Items);
+/// One source over all inputs; those that cannot be opened are reported, and left out.
+fn open(inputs: &[&PathBuf], report: &mut Report<'_>) -> Result<Source> {
+    let all = Source::open_all(inputs, SourceOptions::default());
+    if all.is_ok() || inputs.len() == 1 {
+        return all;
+    }
+    let mut good = Vec::new();
+    for input in inputs {
+        match Source::open(input) {
+            Ok(_) => good.push(*input),
+            Err(error) => report.failure(Some(&input.to_string_lossy()), &error)?,
         }
-        let mut video = None;
-        for frame in source.take(limit) {
-            match frame.and_then(|frame| self.answer(frame, &mut video)) {
+    }
+    Source::open_all(good, SourceOptions::default())
+}
+
+/// A learner at work.
+struct Run {
+    entry: &'static Entry,
+    learner: Box<dyn AnyLearner>,
+    port: &'static str,
+    further: Vec<PortFile>,
+    sequence: bool,
+    /// The video whose frames the learner's stream has seen; for pictures in a sequence, their folder.
+    stream: Option<Arc<Path>>,
+}
+
+impl Run {
+    fn frames(
+        &mut self,
+        frames: impl Iterator<Item = Result<Frame>>,
+        report: &mut Report<'_>,
+        writer: Option<&Writer>,
+        bar: &Bar,
+    ) -> Result<()> {
+        for frame in frames {
+            match frame.and_then(|frame| self.answer(frame)) {
                 Ok((frame, outputs, timings)) => {
-                    self.print(&frame, &outputs, timings)?;
-                    if let Some(writer) = &mut writer {
+                    report.frame(&frame, &outputs, timings)?;
+                    if let Some(writer) = writer {
                         writer.put(frame, outputs)?;
                     }
                 }
-                Err(error) => self.failure("", &error)?,
+                Err(error) => report.failure(None, &error)?,
             }
-            self.bar.advance(1);
+            bar.advance(1);
             if interrupted() {
                 break;
             }
         }
-        self.bar.end();
         Ok(())
     }
 
-    /// Every video is a stream of its own, and so is every picture.
-    fn answer(&mut self, frame: Frame, video: &mut Option<Arc<Path>>) -> Result<(Frame, Outputs, Timings)> {
-        let path = frame.video.is_some().then(|| frame.path.clone());
-        if path.is_none() || *video != path {
-            self.learner.reset();
-            *video = path;
-        }
-        let (outputs, timings) = self.infer(&frame)?;
+    fn answer(&mut self, frame: Frame) -> Result<(Frame, Outputs, Timings)> {
+        let begins = self.follow(&frame);
+        let (outputs, timings) =
+            self.infer(&frame, begins).map_err(|error| error.context(frame.path.display().to_string()))?;
         Ok((frame, outputs, timings))
     }
 
-    fn infer(&mut self, frame: &Frame) -> Result<(Outputs, Timings)> {
-        let ports = Ports::default().with(self.first_port, &frame.image);
-        let ports = self.ports.iter().fold(ports, |ports, (name, value)| ports.with(name, value));
+    fn infer(&mut self, frame: &Frame, begins: bool) -> Result<(Outputs, Timings)> {
+        let mut ports = Ports::default().with(self.port, &frame.image);
+        for file in &self.further {
+            let is_init = self.entry.ports.iter().any(|port| port.name == file.name() && port.init);
+            if begins || !is_init {
+                ports = ports.with(file.name(), file.value(frame.index)?);
+            }
+        }
         Timings::of(|| self.learner.infer(&ports))
     }
 
-    fn print(&self, frame: &Frame, outputs: &Outputs, timings: Timings) -> Result<()> {
-        let timings = self.timings.then_some(timings);
-        let input = &frame.path.display().to_string();
-        if !self.json {
-            return self.line(&record::text(input, outputs, timings));
+    /// Every video is a stream of its own, and so is every picture unless they are a sequence. Whether one begins.
+    fn follow(&mut self, frame: &Frame) -> bool {
+        let stream = match (&frame.video, self.sequence) {
+            (Some(_), _) => Some(frame.path.clone()),
+            (None, true) => frame.path.parent().map(Arc::from),
+            (None, false) => None,
+        };
+        let begins = stream.is_none() || stream != self.stream;
+        if begins {
+            self.learner.reset();
+            self.stream = stream;
         }
-        let outputs = Some(record::by_name(outputs));
-        self.json_line(&Record { input, index: frame.number, outputs, error: None, timings_ms: timings })
-    }
-
-    fn failure(&mut self, input: &str, error: &Error) -> Result<()> {
-        self.failed = true;
-        self.bar.suspend(|| eprintln!("error: {error}"));
-        if !self.json {
-            return Ok(());
-        }
-        let error = Some(Failure::from(error));
-        self.json_line(&Record { input, index: 0, outputs: None, error, timings_ms: None })
-    }
-
-    fn json_line(&self, record: &Record<'_>) -> Result<()> {
-        let text = serde_json::to_string(record)
-            .map_err(|error| Error::internal("the answer has no JSON form").with_source(error))?;
-        self.line(&text)
-    }
-
-    fn line(&self, text: &str) -> Result<()> {
-        let written = self.bar.suspend(|| writeln!(std::io::stdout(), "{text}"));
-        written.map_err(|error| Error::io("writing to standard output").with_source(error))
+        begins
     }
 }

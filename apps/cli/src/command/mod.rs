@@ -7,49 +7,61 @@ mod infer;
 mod models;
 mod runtime;
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 
-use clap::{ArgMatches, Command};
+use clap::{ArgAction, ArgMatches, Command};
 use opendr::Result;
 use opendr::learner::Entry;
 
-use crate::exit::Outcome;
+use crate::exit::{CODES, Outcome};
 use crate::{learner_flags, loading};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr demo                                   find people in a photograph
-  opendr infer centernet street.jpg --out seen.png
-  opendr infer yunet 'photos/*.jpg' --json
-  opendr infer movenet/multipose dance.mp4 --out dance-poses.mp4
-  opendr models --commercial
-
-Exit codes: 0 done; 1 some inputs failed, the rest is done; 2 wrong usage; 11 InvalidInput, 12 InvalidParam,
-13 NotFound, 14 Io, 15 Network, 16 Integrity, 17 Format, 18 Unsupported, 19 Device, 20 Internal; 130 Ctrl-C.";
+  opendr demo                                       find people in a photograph
+  opendr models                                     what there is
+  opendr infer LEARNER street.jpg --out seen.png    run one on a picture
+  opendr infer LEARNER dance.mp4 --json             ... on a video, as JSON lines
+  opendr infer LEARNER --help                       its parameters";
 
 /// The grammar. A command that runs a learner gets the flags of the one that `arguments` name.
-pub fn grammar(arguments: &[OsString]) -> Command {
-    let named = named_learner(arguments);
-    let with_flags = |command: Command| match named {
-        Some(entry) => learner_flags::add(command, entry),
-        None => command,
-    };
-    Command::new("opendr")
+///
+/// # Errors
+/// `NotFound` when they name none that there is.
+pub fn grammar(arguments: &[OsString]) -> Result<Command> {
+    let mut commands = [
+        infer::grammar(),
+        models::grammar(),
+        download::grammar(),
+        bench::grammar(),
+        runtime::grammar(),
+        demo::grammar(),
+    ];
+    if let Some((name, rest)) = arguments.get(1..).and_then(<[_]>::split_first)
+        && let Some(command) = commands.iter_mut().find(|command| command.get_name() == name)
+        && let Some(entry) = named_learner(command, rest)?
+    {
+        *command = learner_flags::add(std::mem::take(command), entry);
+    }
+    Ok(Command::new("opendr")
         .about("OpenDR in Rust: the open deep-learning toolkit for robotics")
         .version(env!("CARGO_PKG_VERSION"))
-        .after_help(EXAMPLES)
+        .after_help(format!("{EXAMPLES}\n\n{CODES}"))
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommand(with_flags(infer::grammar()))
-        .subcommand(models::grammar())
-        .subcommand(download::grammar())
-        .subcommand(with_flags(bench::grammar()))
-        .subcommand(runtime::grammar())
-        .subcommand(demo::grammar())
+        .disable_help_subcommand(true)
+        .subcommands(commands))
 }
 
 /// Runs the command.
+///
+/// # Errors
+/// Whatever kept it from running to its end.
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    if let Some((_, matches)) = matches.subcommand() {
+        // SAFETY: no command has begun, and only commands start threads.
+        unsafe { loading::set_threads(matches) };
+    }
     match matches.subcommand() {
         Some(("infer", matches)) => infer::run(matches),
         Some(("models", matches)) => models::run(matches),
@@ -61,12 +73,71 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
 }
 
-/// The learner that is named after `infer` or `bench`.
-fn named_learner(arguments: &[OsString]) -> Option<&'static Entry> {
-    let words: Vec<&str> = arguments.iter().skip(1).filter_map(|argument| argument.to_str()).collect();
-    let (command, rest) = words.split_first()?;
-    if !["infer", "bench"].contains(command) {
-        return None;
+/// The learner that is named by the first word after `command` which is neither a flag nor a flag's value.
+///
+/// The flags that a learner brings are not known yet; all of them take a value.
+fn named_learner(command: &Command, words: &[OsString]) -> Result<Option<&'static Entry>> {
+    if !command.get_positionals().any(|argument| argument.get_id() == loading::LEARNER) {
+        return Ok(None);
     }
-    rest.iter().find_map(|word| loading::entry(word).ok())
+    let mut words = words.iter();
+    while let Some(word) = words.next() {
+        let bytes = word.as_encoded_bytes();
+        if !bytes.starts_with(b"-") {
+            return loading::entry(&word.to_string_lossy()).map(Some);
+        }
+        if !bytes.contains(&b'=') && !is_switch(command, word) {
+            words.next();
+        }
+    }
+    Ok(None)
+}
+
+/// Whether `word` is a flag without a value.
+fn is_switch(command: &Command, word: &OsStr) -> bool {
+    let name = word.to_string_lossy();
+    let takes_none = |action: &ArgAction| !action.takes_values();
+    ["--help", "-h"].contains(&name.as_ref())
+        || command.get_arguments().any(|argument| {
+            let long = argument.get_long().is_some_and(|long| name.strip_prefix("--") == Some(long));
+            let short = argument.get_short().is_some_and(|short| name == format!("-{short}"));
+            let bare = takes_none(argument.get_action()) || argument.is_require_equals_set();
+            (long || short) && bare
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn words(text: &str) -> Vec<OsString> {
+        text.split(' ').map(OsString::from).collect()
+    }
+
+    #[test]
+    fn grammar_of_every_learner_is_sound() {
+        for entry in opendr::registry().entries() {
+            for command in ["infer", "bench"] {
+                grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();
+            }
+        }
+    }
+
+    #[test]
+    fn learner_is_found_among_flags() {
+        let entries = opendr::registry().entries();
+        let name = entries[0].spec.name;
+        for line in [
+            "NAME a.jpg",
+            "--device cpu NAME a.jpg",
+            "--device=cpu -q --json NAME a.jpg",
+            "--json=out.jsonl -o out NAME/variant a.jpg",
+            "--unknown 1 NAME",
+        ] {
+            let found = named_learner(&infer::grammar(), &words(&line.replace("NAME", name))).unwrap();
+            assert_eq!(found.map(|entry| entry.spec.name), Some(name), "{line}");
+        }
+        assert!(named_learner(&infer::grammar(), &words("--help")).unwrap().is_none());
+        assert!(named_learner(&infer::grammar(), &words("--out a.jpg nonsense")).is_err());
+    }
 }

@@ -2,27 +2,52 @@
 
 use clap::{ArgMatches, Command};
 use opendr::Result;
-use opendr::inference::{SessionOptions, describe, runtimes};
+use opendr::inference::{OnnxRuntime, SessionOptions, describe, runtimes};
+use opendr::zoo::{ZooOptions, install_onnx_runtime};
 
 use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
     Command::new("runtime")
-        .about("Show which runtime runs networks, or install ONNX Runtime")
-        .subcommand(Command::new("list").about("Every runtime that was found, with its devices"))
-        .subcommand(Command::new("install").about("Get ONNX Runtime's library through pip into the cache"))
+        .about("Show which runtime runs networks and why, or install ONNX Runtime")
+        .subcommand(
+            Command::new("list").about("Every runtime that was found, with its devices (the default)"),
+        )
+        .subcommand(
+            Command::new("install")
+                .about("Get ONNX Runtime's library with pip into the cache")
+                .args([loading::offline(), loading::quiet()]),
+        )
+        .disable_help_subcommand(true)
         .after_help("Examples:\n  opendr runtime\n  opendr runtime install")
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    match matches.subcommand_name() {
-        _ => {
-            println!("in use: {}", describe(SessionOptions::default())?);
-            for runtime in runtimes() {
-                let devices: Vec<_> = runtime.devices().iter().map(ToString::to_string).collect();
-                println!("found: {} on {}", runtime.describe(), devices.join(", "));
-            }
-        }
+    match matches.subcommand() {
+        Some(("install", matches)) => install(matches)?,
+        _ => list()?,
     }
     Ok(Outcome::Done)
+}
+
+fn list() -> Result<()> {
+    stdout::print(format_args!("in use: {}", describe(SessionOptions::default())?))?;
+    for runtime in runtimes() {
+        let devices: Vec<_> = runtime.devices().iter().map(ToString::to_string).collect();
+        stdout::print(format_args!("found: {} on {}", runtime.describe(), devices.join(", ")))?;
+    }
+    for skipped in OnnxRuntime::skipped() {
+        stdout::print(format_args!("passed over: {skipped}"))?;
+    }
+    Ok(())
+}
+
+fn install(matches: &ArgMatches) -> Result<()> {
+    let mut options = ZooOptions::from_env()?;
+    options.offline |= matches.get_flag("offline");
+    let installed = install_onnx_runtime(&options, &Bar::new(matches.get_flag("quiet")))?;
+    stdout::print(&installed)?;
+    stdout::print(format_args!("in use: {}", describe(SessionOptions::default())?))
 }

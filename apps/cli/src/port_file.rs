@@ -1,0 +1,158 @@
+//! The file behind a further port: one target for every frame, or what `opendr infer --json` wrote, a line a frame.
+
+use std::fs;
+use std::path::Path;
+
+use opendr::learner::Port;
+use opendr::{Error, Result, ResultExt, Value, ValueType};
+use serde::Deserialize;
+
+/// Larger files are no list of targets.
+const MAX_BYTES: u64 = 1 << 30;
+
+/// The values of one port.
+#[derive(Debug)]
+pub struct PortFile {
+    name: &'static str,
+    values: Values,
+}
+
+#[derive(Debug)]
+enum Values {
+    Same(Value),
+    PerFrame(Vec<Option<Value>>),
+}
+
+/// A line of `opendr infer --json`, as far as it matters here.
+#[derive(Deserialize)]
+struct Line {
+    #[serde(default)]
+    outputs: serde_json::Map<String, serde_json::Value>,
+}
+
+impl PortFile {
+    /// Reads the file that the user gave for `port`.
+    ///
+    /// # Errors
+    /// `Unsupported` when the port takes data rather than a target, `NotFound` or `Io` when the file cannot be read,
+    /// `Format` when it is neither of the two.
+    pub fn read(port: &Port, path: &Path) -> Result<Self> {
+        let reading = || format!("reading {} for input {:?}", path.display(), port.name);
+        Self::from_file(port, path).context(reading)
+    }
+
+    fn from_file(port: &Port, path: &Path) -> Result<Self> {
+        if !port.value_type.is_target() {
+            return Err(Error::unsupported(format!(
+                "the command line hands on targets as JSON, and this input is {}; use Rust or Python",
+                port.value_type.name()
+            )));
+        }
+        let size = fs::metadata(path)?.len();
+        if size > MAX_BYTES {
+            return Err(Error::invalid_input(format!("{size} bytes; at most {MAX_BYTES}")));
+        }
+        let text = fs::read(path)?;
+        let values = match serde_json::from_slice::<Value>(&text) {
+            Ok(value) => Values::Same(of_type(port.value_type, value)?),
+            Err(no_target) => Values::PerFrame(values_of_lines(port, &text).map_err(|error| {
+                error
+                    .context(format!("neither one target ({no_target}) nor lines of \"opendr infer --json\""))
+            })?),
+        };
+        Ok(Self { name: port.name, values })
+    }
+
+    /// The port's name.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The value for frame number `index` of all that is read.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the file has no value for it.
+    pub fn value(&self, index: u64) -> Result<&Value> {
+        match &self.values {
+            Values::Same(value) => Ok(value),
+            Values::PerFrame(values) => {
+                let value = usize::try_from(index).ok().and_then(|index| values.get(index));
+                value.and_then(Option::as_ref).ok_or_else(|| {
+                    let (name, lines) = (self.name, values.len());
+                    Error::invalid_input(format!(
+                        "the file for input {name:?} has no value for frame {index} ({lines} lines)"
+                    ))
+                })
+            }
+        }
+    }
+}
+
+fn values_of_lines(port: &Port, text: &[u8]) -> Result<Vec<Option<Value>>> {
+    let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
+    let value = |(number, line): (usize, &[u8])| {
+        let line: Line = serde_json::from_slice(line)
+            .map_err(|error| Error::format(format!("line {}: {error}", number + 1)))?;
+        let mut outputs = line.outputs.into_iter().map(|(_, json)| json);
+        let wanted = |json: &serde_json::Value| json["type"] == port.value_type.name();
+        // A frame that failed has no output.
+        let Some(json) = outputs.find(wanted) else { return Ok(None) };
+        let value = serde_json::from_value::<Value>(json);
+        value.map(Some).map_err(|error| Error::format(format!("line {}: {error}", number + 1)))
+    };
+    lines.enumerate().map(value).collect()
+}
+
+fn of_type(wanted: ValueType, value: Value) -> Result<Value> {
+    let given = value.as_value_ref().value_type();
+    if given == wanted {
+        return Ok(value);
+    }
+    Err(Error::invalid_input(format!("a {} where a {} is wanted", given.name(), wanted.name())))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PORT: Port = Port {
+        name: "detections",
+        doc: "",
+        value_type: ValueType::BoundingBoxList,
+        optional: false,
+        init: false,
+    };
+    const BOXES: &str = r#"{"type":"BoundingBoxList","boxes":[]}"#;
+
+    fn read(name: &str, text: &str) -> Result<PortFile> {
+        let path = std::env::temp_dir().join(format!("opendr-port-{name}-{}", std::process::id()));
+        fs::write(&path, text).unwrap();
+        let file = PortFile::read(&PORT, &path);
+        fs::remove_file(path).unwrap();
+        file
+    }
+
+    #[test]
+    fn one_target_serves_every_frame() {
+        let file = read("one", BOXES).unwrap();
+        assert_eq!(file.value(0).unwrap(), file.value(99).unwrap());
+        let error = read("poses", r#"{"type":"PoseList","poses":[]}"#).unwrap_err();
+        assert!(error.to_string().contains("PoseList where a BoundingBoxList"), "{error}");
+    }
+
+    #[test]
+    fn lines_serve_a_frame_each() {
+        let line = format!(r#"{{"input":"a","index":0,"outputs":{{"boxes":{BOXES}}}}}"#);
+        let file = read("lines", &format!("{line}\n{{\"error\":{{}}}}\n\n{line}\n")).unwrap();
+        assert!(file.value(0).is_ok() && file.value(2).is_ok());
+        assert!(file.value(1).is_err() && file.value(3).is_err());
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        for text in ["", "text", "[1,2]", r#"{"type":"Nonsense"}"#] {
+            let refused = read("other", text).and_then(|file| file.value(0).cloned());
+            assert!(refused.is_err(), "{text:?}");
+        }
+    }
+}

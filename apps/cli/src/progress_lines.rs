@@ -1,0 +1,66 @@
+//! Progress where standard error is no terminal: now and then a line.
+
+use std::time::{Duration, Instant};
+
+use opendr::Unit;
+
+/// Least time between two lines.
+const PAUSE: Duration = Duration::from_secs(5);
+
+/// A piece of work that is told in lines.
+#[derive(Debug)]
+pub struct ProgressLines {
+    what: String,
+    total: Option<u64>,
+    unit: Unit,
+    done: u64,
+    begun: Instant,
+    told: Instant,
+}
+
+impl ProgressLines {
+    /// Work begins, and is told when it is a download.
+    pub fn begin(what: &str, total: Option<u64>, unit: Unit) -> Self {
+        if unit == Unit::Bytes {
+            let size = total.map_or_else(String::new, |bytes| format!(" ({})", megabytes(bytes)));
+            eprintln!("{what}{size}");
+        }
+        let now = Instant::now();
+        Self { what: what.to_owned(), total, unit, done: 0, begun: now, told: now }
+    }
+
+    /// `amount` more is done.
+    pub fn advance(&mut self, amount: u64) {
+        self.done += amount;
+        if self.told.elapsed() >= PAUSE {
+            self.told = Instant::now();
+            eprintln!("{}: {}", self.what, self.state(self.begun.elapsed()));
+        }
+    }
+
+    fn state(&self, elapsed: Duration) -> String {
+        let amount = |count| if self.unit == Unit::Bytes { megabytes(count) } else { count.to_string() };
+        let Some(total) = self.total else { return amount(self.done) };
+        let left = total.saturating_sub(self.done) as f64 / self.done.max(1) as f64 * elapsed.as_secs_f64();
+        format!("{} of {}, {left:.0} s left", amount(self.done), amount(total))
+    }
+}
+
+fn megabytes(bytes: u64) -> String {
+    format!("{:.1} MB", bytes as f64 / 1e6)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_tell_size_and_time_left() {
+        let mut lines = ProgressLines::begin("model", Some(20_000_000), Unit::Bytes);
+        lines.advance(5_000_000);
+        assert_eq!(lines.state(Duration::from_secs(2)), "5.0 MB of 20.0 MB, 6 s left");
+        let mut frames = ProgressLines::begin("frames", None, Unit::Items);
+        frames.advance(7);
+        assert_eq!(frames.state(Duration::from_secs(2)), "7");
+    }
+}

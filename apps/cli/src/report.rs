@@ -1,0 +1,161 @@
+//! What is told of each frame: text for people, lines of JSON for programs (`docs/json.md`).
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use opendr::learner::Outputs;
+use opendr::vision::Frame;
+use opendr::{Error, Result, ResultExt, Value};
+use serde::Serialize;
+
+use crate::progress_bar::Bar;
+use crate::stdout;
+use crate::timings::Timings;
+
+/// A line of JSON.
+#[derive(Serialize)]
+struct Line<'a> {
+    /// The file, or the device; absent for a failure that belongs to none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    input: Option<&'a str>,
+    /// Number of the frame within its input.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    index: Option<u64>,
+    /// The learner's outputs by name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outputs: Option<BTreeMap<&'static str, &'a Value>>,
+    /// Why there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error: Option<Failure>,
+    /// How long it took.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    timings_ms: Option<Timings>,
+}
+
+/// An error in a line of JSON.
+#[derive(Serialize)]
+struct Failure {
+    kind: &'static str,
+    message: String,
+}
+
+/// Where lines of JSON go, if anywhere.
+pub enum Json {
+    /// Text for people instead.
+    Off,
+    /// To standard output, instead of text.
+    Stdout,
+    /// Into a file, besides text.
+    File(PathBuf, BufWriter<File>),
+}
+
+impl Json {
+    /// A file that is written anew.
+    ///
+    /// # Errors
+    /// `Io` when it cannot be made.
+    pub fn file(path: &Path) -> Result<Self> {
+        let file = File::create(path).context(|| format!("making {}", path.display()))?;
+        Ok(Self::File(path.to_owned(), BufWriter::new(file)))
+    }
+}
+
+/// Tells of frames as they come.
+pub struct Report<'a> {
+    bar: &'a Bar,
+    json: Json,
+    timings: bool,
+    failures: u64,
+}
+
+impl<'a> Report<'a> {
+    /// A report that prints around `bar`, with `timings` where they are wished.
+    pub fn new(bar: &'a Bar, json: Json, timings: bool) -> Self {
+        Self { bar, json, timings, failures: 0 }
+    }
+
+    /// Tells what was found in a frame.
+    ///
+    /// # Errors
+    /// `Io` when it cannot be written.
+    pub fn frame(&mut self, frame: &Frame, outputs: &Outputs, timings: Timings) -> Result<()> {
+        let input = frame.path.to_string_lossy();
+        let timings_ms = self.timings.then_some(timings);
+        if !matches!(self.json, Json::Stdout) {
+            let name = match frame.video {
+                Some(_) => format!("{input} frame {}", frame.number),
+                None => input.to_string(),
+            };
+            let text = text(&name, outputs, timings_ms);
+            self.bar.suspend(|| stdout::print(text))?;
+        }
+        let outputs = Some(outputs.iter().collect());
+        self.line(&Line { input: Some(&input), index: Some(frame.number), outputs, error: None, timings_ms })
+    }
+
+    /// Tells that something failed; work goes on with the next.
+    ///
+    /// # Errors
+    /// `Io` when it cannot be written.
+    pub fn failure(&mut self, input: Option<&str>, error: &Error) -> Result<()> {
+        self.failures += 1;
+        self.bar.suspend(|| eprintln!("error: {error}"));
+        let error = Some(Failure { kind: error.kind().name(), message: error.to_string() });
+        self.line(&Line { input, index: None, outputs: None, error, timings_ms: None })
+    }
+
+    /// Ends the report; how many failures it told of.
+    ///
+    /// # Errors
+    /// `Io` when what is left cannot be written.
+    pub fn finish(mut self) -> Result<u64> {
+        if let Json::File(path, file) = &mut self.json {
+            file.flush().context(|| format!("writing {}", path.display()))?;
+        }
+        Ok(self.failures)
+    }
+
+    fn line(&mut self, line: &Line<'_>) -> Result<()> {
+        if matches!(self.json, Json::Off) {
+            return Ok(());
+        }
+        let text = serde_json::to_string(line)
+            .map_err(|error| Error::internal("the answer has no JSON form").with_source(error))?;
+        match &mut self.json {
+            Json::Off => Ok(()),
+            Json::Stdout => self.bar.suspend(|| stdout::print(text)),
+            Json::File(path, file) => {
+                writeln!(file, "{text}").context(|| format!("writing {}", path.display()))
+            }
+        }
+    }
+}
+
+/// The outputs as people read them, indented under `name`.
+pub fn text(name: &str, outputs: &Outputs, timings: Option<Timings>) -> String {
+    let mut text = name.to_owned();
+    if let Some(timings) = timings {
+        // Writing to a String cannot fail.
+        write!(text, " ({timings})").ok();
+    }
+    for (output, value) in outputs.iter() {
+        let found = readable(value);
+        if found.trim().is_empty() {
+            write!(text, "\n  {output}: none").ok();
+        }
+        for line in found.lines() {
+            write!(text, "\n  {line}").ok();
+        }
+    }
+    text
+}
+
+fn readable(value: &Value) -> String {
+    match value {
+        Value::BoundingBoxList(boxes) => format!("{boxes:#}"),
+        other => format!("{other:?}"),
+    }
+}
