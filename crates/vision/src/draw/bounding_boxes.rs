@@ -6,10 +6,11 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use crate::draw::canvas::{Canvas, Corners};
 use crate::draw::label::Labels;
 use crate::draw::landmarks::draw_landmarks;
+use crate::draw::mask;
 use crate::draw::palette::colour_of_name;
 use crate::draw::style::Style;
 
-/// Draws boxes with their class, score and landmarks onto `image`, which becomes RGB `u8` where it is not.
+/// Draws boxes with their class, score, landmarks and pixels (where they have a segment) onto `image`, which becomes RGB `u8` where it is not.
 ///
 /// Later boxes of the list lie below earlier ones. Boxes are cut at the border; those without an area are left out.
 pub fn draw_bounding_boxes(image: &mut Image, boxes: &BoundingBoxList, style: &Style) {
@@ -17,6 +18,9 @@ pub fn draw_bounding_boxes(image: &mut Image, boxes: &BoundingBoxList, style: &S
     let (thickness, unit) = (style.thickness(&canvas), style.letter_unit(&canvas));
     let colour = |found: &BoundingBox| style.colour.unwrap_or_else(|| colour_of_name(&found.name));
     for found in boxes.boxes.iter().rev() {
+        if let Some(segment) = &found.segment {
+            mask::cover(&mut canvas, &segment.segmentation, colour(found), style.opacity, thickness);
+        }
         if let Some(corners) = whole_corners(found.corners()) {
             outline(&mut canvas, corners, thickness, colour(found));
         }

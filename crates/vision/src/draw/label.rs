@@ -1,11 +1,34 @@
 //! Labels: text on a ground of its class's colour, placed where it hides least.
 
-use crate::draw::canvas::{Canvas, Corners};
+use crate::draw::canvas::{Canvas, Corners, Point};
 use crate::draw::palette::{Colour, ink_on};
 use crate::draw::text::Text;
 
 /// Above which number of labels the older ones are no longer kept clear of.
 const REMEMBERED: usize = 128;
+
+/// Between the text and the edge of its ground, in grid units of the font.
+const PADDING: f32 = 2.0;
+
+/// Draws `text` on a ground of `colour` with its left-top corner at `corner`; the answer is `[width, height]`.
+pub(super) fn draw_chip(
+    canvas: &mut Canvas<'_>,
+    text: &Text,
+    [left, top]: Point,
+    colour: Colour,
+) -> [f32; 2] {
+    let [width, height] = chip_size(text);
+    let padding = PADDING * text.unit();
+    canvas.fill_rounded([left, top, left + width, top + height], text.unit(), colour, 0.9);
+    text.draw(canvas, [left + padding, top + padding], ink_on(colour));
+    [width, height]
+}
+
+/// Room for the text, and for descenders below it.
+fn chip_size(text: &Text) -> [f32; 2] {
+    let padding = PADDING * text.unit();
+    [text.width() + 2.0 * padding, text.height() + 2.5 * padding].map(f32::ceil)
+}
 
 /// The labels of one picture; they keep off each other where they can.
 #[derive(Debug, Default)]
@@ -24,15 +47,12 @@ impl Labels {
         [unit, thickness]: [f32; 2],
         colour: Colour,
     ) {
-        let padding = 2.0 * unit;
-        let mut laid_out = Text::new(text, unit);
-        if laid_out.width() + 2.0 * padding > canvas.width() as f32 {
-            laid_out = Text::new(short, unit);
+        let mut text = Text::new(text, unit);
+        if chip_size(&text)[0] > canvas.width() as f32 {
+            text = Text::new(short, unit);
         }
-        let size = [laid_out.width() + 2.0 * padding, laid_out.height() + 2.5 * padding].map(f32::ceil);
-        let Some(chip) = self.place(canvas, corners, size, thickness) else { return };
-        canvas.fill_rounded(chip, unit, colour, 0.9);
-        laid_out.draw(canvas, [chip[0] + padding, chip[1] + padding], ink_on(colour));
+        let Some(chip) = self.place(canvas, corners, chip_size(&text), thickness) else { return };
+        draw_chip(canvas, &text, [chip[0], chip[1]], colour);
         self.placed.push(chip);
     }
 

@@ -2,31 +2,45 @@
 
 mod bounding_boxes;
 mod canvas;
+mod category;
+mod colour_map;
 mod glyphs;
+mod heatmap;
 mod label;
 mod landmarks;
+mod mask;
 mod palette;
 mod poses;
 mod style;
 mod text;
+mod tracks;
 
 #[cfg(test)]
 mod tests;
 
 pub use bounding_boxes::draw_bounding_boxes;
 pub use canvas::{Canvas, Corners, Point};
+pub use category::draw_category;
+pub use heatmap::draw_heatmap;
+pub use mask::draw_mask;
 pub use palette::{COLOURS, Colour, colour_of_index, colour_of_name};
 pub use poses::draw_poses;
 pub use style::Style;
+pub use tracks::{Trails, draw_tracks};
 
 use opendr_engine::ValueRef;
 use opendr_engine::data::Image;
 
-/// Draws a target of any type onto `image`; a type that has no picture leaves it as it is.
+/// Draws a target of any type onto `image`; a type that has no place in a picture leaves it as it is.
+///
+/// Tracks are drawn without tails, which take a memory: [`draw_tracks`].
 pub fn draw<'a>(image: &mut Image, target: impl Into<ValueRef<'a>>, style: &Style) {
     match target.into() {
         ValueRef::BoundingBoxList(boxes) => draw_bounding_boxes(image, boxes, style),
+        ValueRef::TrackingAnnotationList(tracks) => draw_tracks(image, tracks, &Trails::default(), style),
         ValueRef::PoseList(poses) => draw_poses(image, poses, style),
+        ValueRef::Category(category) => draw_category(image, category, style),
+        ValueRef::Heatmap(map) => draw_heatmap(image, map, style),
         _ => {}
     }
 }

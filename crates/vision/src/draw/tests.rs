@@ -1,6 +1,9 @@
 use super::*;
 use opendr_engine::data::PixelFormat;
-use opendr_engine::target::{BoundingBox, BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
+use opendr_engine::target::{
+    BoundingBox, BoundingBoxList, Category, Heatmap, Keypoint, Pose, PoseList, Rle, Segmentation, Skeleton,
+    TrackingAnnotation, TrackingAnnotationList,
+};
 
 fn grey(width: usize, height: usize) -> Image {
     Image::from_rgb8(vec![90; width * height * 3], width, height).unwrap()
@@ -85,4 +88,99 @@ fn bones_are_coloured_by_side_and_missing_joints_left_out() {
     assert!(right[2] > 200 && right[0] < 100, "{right:?}");
     assert!(between[1] > 200 && between[0] < 200, "{between:?}");
     assert_eq!((pixel(&image, 50, 80), pixel(&image, 0, 0)), ([90; 3], [90; 3]));
+}
+
+#[test]
+fn masks_of_both_kinds_cover_the_same_pixels() {
+    // A triangle with corners on pixel corners, once as outline and once as runs of its pixels.
+    let inside = |x: usize, y: usize| x + y < 29;
+    let mask: Vec<bool> = (0..40 * 40).map(|at| inside(at % 40, at / 40)).collect();
+    let runs = Segmentation::Rle(Rle::from_mask(&mask, 40, 40).unwrap());
+    let outline = Segmentation::Polygons(vec![vec![0.0, 0.0, 30.0, 0.0, 0.0, 30.0]]);
+    let style = Style { opacity: 1.0, ..Style::default() };
+    for mask in [&runs, &outline] {
+        let mut image = grey(40, 40);
+        draw_mask(&mut image, mask, [255, 0, 0], &style);
+        let wrong = (0..40 * 40_usize).filter(|at| {
+            let (x, y) = (at % 40, at / 40);
+            // The outline's own line is one pixel wide.
+            x.abs_diff(29usize.saturating_sub(y)) > 2 && (pixel(&image, x, y) == [255, 0, 0]) != inside(x, y)
+        });
+        assert_eq!(wrong.count(), 0, "{mask:?}");
+    }
+}
+
+#[test]
+fn hostile_masks_are_cut() {
+    let wild = [f32::NAN, f32::INFINITY, -1e30, 1e30, 0.0, 5.5];
+    let polygons =
+        wild.iter().flat_map(|a| wild.iter().map(|b| vec![*a, *b, 3.0, *b, *b, *a, 1.0])).collect();
+    let many = Segmentation::Polygons(polygons);
+    let tall = Segmentation::Rle(Rle::new(u32::MAX, 1, vec![1, u32::MAX - 1]).unwrap());
+    let wide = Segmentation::Rle(Rle::new(1, u32::MAX, vec![0, u32::MAX]).unwrap());
+    let none = Segmentation::Rle(Rle::new(0, 9, vec![]).unwrap());
+    for mask in [many, tall, wide, none] {
+        draw_mask(&mut grey(20, 10), &mask, [1, 2, 3], &Style::default());
+    }
+}
+
+#[test]
+fn labels_are_coloured_and_background_is_clear() {
+    let style = Style { opacity: 1.0, labels: false, ..Style::default() };
+    let map = Heatmap::from_labels(vec![0, 3, 5, u32::MAX], &[2, 2]).unwrap();
+    let mut image = grey(20, 10);
+    draw(&mut image, &map, &style);
+    assert_eq!(pixel(&image, 0, 0), [90; 3]);
+    assert_eq!((pixel(&image, 19, 0), pixel(&image, 0, 9)), (colour_of_index(3), colour_of_index(5)));
+    let mut named = map.clone();
+    named.classes = ["sky", "", "", "car", "", "tree"].into_iter().collect();
+    draw(&mut image, &named, &style);
+    assert_eq!(pixel(&image, 0, 0), colour_of_index(0));
+}
+
+#[test]
+fn high_scores_are_bright_and_low_ones_clear() {
+    let map = Heatmap::from_scores(vec![0.0, 0.0, 0.0, 1.0], &[2, 2]).unwrap();
+    let mut image = grey(40, 40);
+    draw(&mut image, &map, &Style { opacity: 1.0, ..Style::default() });
+    assert_eq!(pixel(&image, 0, 0), [90; 3]);
+    let [red, green, blue] = pixel(&image, 39, 39);
+    assert!(red > 200 && green > 200 && blue < 200);
+    let wild = vec![f32::NAN, f32::INFINITY, f32::NEG_INFINITY, f32::MAX, f32::MIN, 7.0];
+    for shape in [&[2, 3][..], &[1, 2, 3], &[3, 1, 2], &[6], &[1, 1, 2, 3]] {
+        draw(&mut image, &Heatmap::from_scores(wild.clone(), shape).unwrap(), &Style::default());
+    }
+    draw(&mut image, &Heatmap::default(), &Style::default());
+}
+
+#[test]
+fn best_class_of_each_place_shows() {
+    let map = Heatmap::from_scores(vec![0.9, 0.0, 0.1, 1.0], &[2, 1, 2]).unwrap();
+    let mut image = grey(20, 10);
+    draw(&mut image, &map, &Style { opacity: 1.0, ..Style::default() });
+    assert_eq!(pixel(&image, 19, 5), colour_of_index(1));
+    assert_ne!(pixel(&image, 0, 5), pixel(&image, 19, 5));
+}
+
+#[test]
+fn tracks_have_a_colour_and_a_tail() {
+    let at = |left: f32| -> TrackingAnnotationList {
+        let bounding_box = BoundingBox::new(0, left, 60.0, 20.0, 20.0, 1.0);
+        vec![TrackingAnnotation { bounding_box, id: 4, frame: None }].into()
+    };
+    let mut trails = Trails::default();
+    (0..30).for_each(|step| trails.update(&at(10.0 + 4.0 * step as f32)));
+    let (mut image, style) = (grey(200, 100), Style { labels: false, ..Style::default() });
+    draw(&mut image, &at(126.0), &style);
+    assert_eq!((pixel(&image, 126, 70), pixel(&image, 100, 70)), (colour_of_index(4), [90; 3]));
+    draw_tracks(&mut image, &at(126.0), &trails, &style);
+    assert_ne!(pixel(&image, 100, 70), [90; 3]);
+}
+
+#[test]
+fn a_category_is_written_into_the_corner() {
+    let mut image = grey(200, 100);
+    draw(&mut image, &Category::new(3, Some(0.5)), &Style::default());
+    assert_ne!(pixel(&image, 4, 6), [90; 3]);
+    assert_eq!(pixel(&image, 150, 80), [90; 3]);
 }

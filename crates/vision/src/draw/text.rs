@@ -39,6 +39,11 @@ impl Text {
         Self { strokes, columns: (columns - GAP).max(0.0), unit }
     }
 
+    /// Side of a grid unit, pixels.
+    pub(super) fn unit(&self) -> f32 {
+        self.unit
+    }
+
     /// Pixels from the first letter's left to the last one's right edge.
     pub(super) fn width(&self) -> f32 {
         self.columns * self.unit

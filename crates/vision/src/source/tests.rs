@@ -253,7 +253,7 @@ mod unix {
     #[test]
     fn pipes_are_refused_without_waiting() {
         let folder = Folder::new("pipe");
-        for name in ["pipe.jpg", "pipe"] {
+        for name in ["pipe.jpg", "pipe.mp4", "pipe"] {
             let path = folder.0.join(name);
             assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
             let error = Source::open(&path).unwrap().next().unwrap().unwrap_err();

@@ -1,0 +1,25 @@
+//! The class of the whole picture.
+
+use opendr_engine::data::Image;
+use opendr_engine::target::Category;
+
+use crate::draw::canvas::Canvas;
+use crate::draw::label::draw_chip;
+use crate::draw::palette::colour_of_index;
+use crate::draw::style::Style;
+use crate::draw::text::Text;
+
+/// Writes the class and its score into the left-top corner of `image`, which becomes RGB `u8` where it is not.
+pub fn draw_category(image: &mut Image, category: &Category, style: &Style) {
+    let mut canvas = Canvas::over(image);
+    let unit = style.letter_unit(&canvas);
+    let mut text = match &category.description {
+        Some(description) => description.to_string(),
+        None => format!("class {}", category.class),
+    };
+    if let Some(confidence) = category.confidence.filter(|_| style.confidences) {
+        text += &format!(" {confidence:.2}");
+    }
+    let colour = style.colour.unwrap_or_else(|| colour_of_index(category.class));
+    draw_chip(&mut canvas, &Text::new(&text, unit), [unit; 2], colour);
+}
