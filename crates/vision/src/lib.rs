@@ -1,4 +1,4 @@
-//! Pictures for OpenDR: decoding and encoding, and the way from a camera frame to a network's input.
+//! Pictures for OpenDR: files, folders, videos and cameras; the way to a network's input; drawing what was found.
 
 mod camera;
 pub mod codec;
