@@ -44,15 +44,21 @@ impl Assembly<'_> {
     /// Makes it of a repository's container, whose files are in the cache.
     pub(crate) fn of_container(&self, folder: &Path, manifest: Manifest) -> Result<PathBuf> {
         let files = card_files(&manifest)?;
-        let mut writer = ModelWriter::new(folder, manifest)?;
+        let work = self.cache.work(self.progress)?;
+        let made = work.path().join("item");
+        let mut writer = ModelWriter::new(&made, manifest)?;
         for file in &files {
             writer.add(&file.name, &self.cache.read(file)?)?;
         }
-        Ok(writer.finish()?.path().to_owned())
+        writer.finish()?;
+        place(&made, folder)?;
+        Ok(folder.to_owned())
     }
 
     fn model(&self, folder: &Path, files: &[Vec<u8>]) -> Result<PathBuf> {
-        let mut writer = ModelWriter::new(folder, self.item.manifest())?;
+        let work = self.cache.work(self.progress)?;
+        let made = work.path().join("item");
+        let mut writer = ModelWriter::new(&made, self.item.manifest())?;
         if let Some(import) = &self.item.variant.import {
             self.progress.note(&format!("converting {} to ONNX", self.item));
             let (name, bytes) = imported(import, files)?;
@@ -62,7 +68,9 @@ impl Assembly<'_> {
                 writer.add(&file.name, bytes)?;
             }
         }
-        Ok(writer.finish()?.path().to_owned())
+        writer.finish()?;
+        place(&made, folder)?;
+        Ok(folder.to_owned())
     }
 
     fn sample(&self, folder: &Path, files: &[Vec<u8>]) -> Result<PathBuf> {
@@ -70,15 +78,20 @@ impl Assembly<'_> {
             return Err(Error::format("a sample without a file"));
         };
         let work = self.cache.work(self.progress)?;
-        let made = work.folder("sample")?;
+        let made = work.folder("item")?;
         fs::write(made.join(&file.name), bytes)?;
-        fs::remove_dir_all(folder).or_else(absent_is_fine)?;
-        if let Some(parent) = folder.parent() {
-            fs::create_dir_all(parent)?;
-        }
-        fs::rename(&made, folder).context(|| folder.display().to_string())?;
+        place(&made, folder)?;
         Ok(folder.join(&file.name))
     }
+}
+
+/// Moves a finished folder to its place in the cache; what is there is not whole, else nothing would be made.
+fn place(made: &Path, folder: &Path) -> Result<()> {
+    fs::remove_dir_all(folder).or_else(absent_is_fine).context(|| folder.display().to_string())?;
+    if let Some(parent) = folder.parent() {
+        fs::create_dir_all(parent).context(|| parent.display().to_string())?;
+    }
+    fs::rename(made, folder).context(|| folder.display().to_string())
 }
 
 /// Turns the removal of what is not there into a success.

@@ -1,8 +1,8 @@
 //! The model container: a folder, or one zip, with `model.json` and the files that it names.
 //!
 //! Containers come from anyone. Nothing in one is ever run or unpickled, no name leaves its folder, sizes are checked
-//! before memory is taken, and every file is checked against its sha256 each time it is read: 15 MB take 10 ms on a
-//! processor with SHA instructions, so no stamp of an earlier check is trusted.
+//! before memory is taken, and every file is checked against its sha256 each time it is read: 15 MB take 10 to 20 ms
+//! on a processor with SHA instructions, so no stamp of an earlier check is trusted.
 
 mod manifest;
 mod member;
