@@ -4,7 +4,10 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use crate::data::Image;
+use crate::data::{
+    Audio, Calibration, Image, ImageWithDetections, Observation, PointCloud, PointCloudWithCalibration,
+    SkeletonSequence, Timeseries, Vector, Video,
+};
 use crate::target::{
     BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, SpeechCommand,
     TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
@@ -174,7 +177,19 @@ macro_rules! values {
 }
 
 values! {
-    data { Image = "image" }
+    data {
+        Image = "image",
+        ImageWithDetections = "image_with_detections",
+        Video = "video",
+        PointCloud = "point_cloud",
+        PointCloudWithCalibration = "point_cloud_with_calibration",
+        Calibration = "calibration",
+        Timeseries = "timeseries",
+        Vector = "vector",
+        Audio = "audio",
+        SkeletonSequence = "skeleton_sequence",
+        Observation = "observation",
+    }
     targets {
         BoundingBoxList = "boxes",
         TrackingAnnotationList = "tracks",

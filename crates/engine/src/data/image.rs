@@ -246,6 +246,8 @@ impl Image {
     }
 }
 
+impl crate::data::Data for Image {}
+
 /// OpenDR's text: `[channels, height, width]`, RGB, as NumPy prints it; `{:#}` gives size, channels and samples.
 impl fmt::Display for Image {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -135,3 +135,42 @@ impl fmt::Display for BoundingBoxList {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::{Rle, Segmentation, Target};
+
+    /// Compared with what OpenDR 3.0.0 prints.
+    #[test]
+    fn texts_are_opendrs() {
+        let first = BoundingBox::new(0, 10.5, 20.0, 30.0, 40.25, 0.9);
+        assert_eq!(first.to_string(), "[-1.   10.5  20.   30.   40.25  0.9 ]");
+        let second = BoundingBox::new("person", -1.0, 2.0, 300.0, 4.0, 0.5);
+        let list = BoundingBoxList::from(vec![first, second]);
+        assert_eq!(
+            list.to_string(),
+            "[[ -1.    10.5   20.    30.    40.25   0.9 ]\n [ -1.    -1.     2.   300.     4.     0.5 ]]"
+        );
+        assert_eq!(
+            format!("{list:#}"),
+            "class 0 0.90 at left 10.5 top 20.0 width 30.0 height 40.2\n\
+             person 0.50 at left -1.0 top 2.0 width 300.0 height 4.0\n"
+        );
+        assert_eq!(list.confidence(), Some(0.7));
+        assert_eq!(BoundingBoxList::default().to_string(), "[]");
+        assert_eq!(BoundingBoxList::default().confidence(), Some(0.0));
+    }
+
+    #[test]
+    fn outlined_boxes_are_printed_as_coco() {
+        let segmentation = Segmentation::Rle(Rle::new(2, 2, vec![1, 3]).unwrap());
+        let segment = Some(Box::new(Segment { segmentation, area: 3.0, iscrowd: true }));
+        let found = BoundingBox { segment, ..BoundingBox::new(1, 0.0, 0.0, 2.0, 2.0, 0.5) };
+        assert_eq!(
+            found.to_string(),
+            "{'bbox': [0.0, 0.0, 2.0, 2.0], 'category_id': 1, 'area': 3.0, \
+             'segmentation': {'size': [2, 2], 'counts': '13'}, 'iscrowd': 1, 'confidence': 0.5}"
+        );
+    }
+}

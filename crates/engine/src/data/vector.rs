@@ -1,0 +1,35 @@
+//! Features in a row.
+
+use std::sync::Arc;
+
+use crate::data::array::array_datum;
+
+array_datum! {
+    /// Numbers in a row: features, a state, an embedding.
+    Vector, 1, "Vector is empty"
+}
+
+impl Vector {
+    /// A vector of all of `data`.
+    ///
+    /// # Errors
+    /// `InvalidInput` when there is no number.
+    pub fn from_data(data: impl Into<Arc<Vec<f32>>>) -> crate::Result<Self> {
+        let data = data.into();
+        let shape = [data.len()];
+        Self::new(data, shape)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_are_opendrs() {
+        let vector = Vector::from_data(vec![1.0, 2.5]).unwrap();
+        assert_eq!(vector.to_string(), "[1.  2.5]");
+        assert_eq!(format!("{vector:#}"), "Vector of shape 2\n");
+        assert_eq!(Vector::from_data(vec![]).unwrap_err().to_string(), "Vector is empty");
+    }
+}
