@@ -1,0 +1,87 @@
+//! After warm-up, pre- and post-processing of every learner allocate nothing: a call allocates what the bare run of its
+//! network allocates, and no more.
+
+mod models;
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use opendr::data::Image;
+use opendr::inference::{Session, TensorView};
+use opendr::learner::{Handle, Inputs, Learner};
+use opendr::params::{ParamMap, Params};
+use opendr::{Device, Model};
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call goes to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `alloc`.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller keeps the contract of `dealloc`.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+
+    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the caller keeps the contract of `realloc`.
+        unsafe { System.realloc(pointer, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The fewest allocations of ten calls: other threads of the test runner may allocate meanwhile.
+fn fewest(mut call: impl FnMut()) -> usize {
+    let count = |_| {
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        call();
+        ALLOCATIONS.load(Ordering::Relaxed) - before
+    };
+    (0..10).map(count).min().unwrap_or(0)
+}
+
+fn check<L>(models: &models::Models, size: [usize; 2], threshold: f64)
+where
+    L: for<'a> Learner<Input<'a> = &'a Image>,
+    for<'a> &'a Image: Inputs<'a>,
+{
+    let name = L::SPEC.name;
+    let Some(path) = models.get(name) else { return };
+    let params = L::Params::from_map(&ParamMap::from([("threshold".to_owned(), threshold.into())])).unwrap();
+    let mut handle = Handle::<L>::new(params, Device::Cpu).unwrap();
+    handle.load(&path).unwrap();
+    let image = opendr::vision::open(models.data("photos/t1.jpg")).unwrap();
+    let mut target = L::Target::default();
+    (0..3).for_each(|_| handle.infer_into(&image, &mut target).unwrap());
+    let whole = fewest(|| handle.infer_into(&image, &mut target).unwrap());
+
+    let session = Session::open(&Model::open(&path).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
+    let input = vec![0.0_f32; 3 * size[0] * size[1]];
+    let input = [TensorView::new(&[1, 3, size[0], size[1]], &input).unwrap()];
+    (0..3).for_each(|_| session.run(&input, |_| Ok(())).unwrap());
+    let bare = fewest(|| session.run(&input, |_| Ok(())).unwrap());
+    println!("{name}: {whole} allocations a call, {bare} of them in the session's run");
+    assert!(whole <= bare, "{name} allocates {whole} times a call, its bare session {bare} times");
+}
+
+#[test]
+fn nothing_is_allocated_around_the_session() {
+    let Some(models) = models::Models::find() else { return };
+    // Low thresholds: with many candidates.
+    use opendr::{face_detection as face, object_detection_2d as detection, pose_estimation as pose};
+    check::<detection::CenterNet>(&models, [512, 512], 0.05);
+    check::<detection::Nanodet>(&models, [416, 416], 0.05);
+    check::<face::Yunet>(&models, [640, 640], 0.1);
+    check::<face::UltraLightFace>(&models, [240, 320], 0.1);
+    check::<pose::Movenet>(&models, [192, 192], 0.0);
+    check::<pose::Posenet>(&models, [385, 385], 0.0);
+}

@@ -1,0 +1,45 @@
+//! Real models and pictures for tests.
+
+use std::env;
+use std::path::{Path, PathBuf};
+
+use opendr::zoo::{Zoo, ZooOptions};
+use opendr::{ErrorKind, Silent};
+
+pub struct Models {
+    shared: PathBuf,
+    zoo: Zoo,
+}
+
+impl Models {
+    /// The models of `OPENDR_TEST_DATA`; what is not there comes from the public packages into a cache that tests keep.
+    pub fn find() -> Option<Self> {
+        let named = env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let shared = named.unwrap_or_else(|| root.join("../shared"));
+        if !shared.join("models").is_dir() {
+            println!("skipped: no OPENDR_TEST_DATA");
+            return None;
+        }
+        let cache = env::var_os("OPENDR_TEST_CACHE").map_or_else(|| root.join("target/test-cache"), PathBuf::from);
+        let mut options = ZooOptions::new(cache.join("opendr"));
+        options.repository = Some(shared.join("models").to_string_lossy().into_owned());
+        Some(Self { zoo: Zoo::new(options).unwrap(), shared })
+    }
+
+    pub fn data(&self, name: &str) -> PathBuf {
+        self.shared.join("data").join(name)
+    }
+
+    /// The container of a learner; `None`, said aloud, where no package can be had.
+    pub fn get(&self, spec: &str) -> Option<PathBuf> {
+        match self.zoo.get(spec, &Silent) {
+            Ok(path) => Some(path),
+            Err(error) if error.kind() == ErrorKind::Network => {
+                println!("skipped: no network for {spec}: {error}");
+                None
+            }
+            Err(error) => panic!("{spec}: {error}"),
+        }
+    }
+}
