@@ -11,6 +11,9 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::codec::{finding, jpeg};
 
+/// Bytes that tell the format.
+const HEAD: u64 = 64;
+
 /// Reads picture files within bounds.
 ///
 /// What comes out is what the file holds, turned upright as its EXIF orientation says: `u8`, `HWC`, grey, RGB or
@@ -73,13 +76,18 @@ impl Decoder {
     }
 
     fn read(&self, path: &Path) -> Result<Vec<u8>> {
-        let limit = self.max_samples.saturating_mul(2).saturating_add(1 << 20);
-        let file = File::open(path)?;
-        if file.metadata()?.is_dir() {
+        let limit = self.max_bytes();
+        let mut file = File::open(path)?;
+        let metadata = file.metadata()?;
+        if metadata.is_dir() {
             return Err(Error::invalid_input("a folder, not a picture file; name a file in it"));
         }
         let mut bytes = Vec::new();
-        file.take(limit + 1).read_to_end(&mut bytes)?;
+        file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
+        // Before the rest: what is no picture need not be read, however long it is.
+        finding::format_of(&bytes)?;
+        bytes.reserve(metadata.len().min(limit) as usize);
+        file.take(limit).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > limit {
             return Err(Error::invalid_input(format!(
                 "over {limit} bytes, too large for a picture; raise `Decoder::max_samples` if it is one"
@@ -88,10 +96,15 @@ impl Decoder {
         Ok(bytes)
     }
 
+    /// Twice the samples, for 16 bits each, and room for what surrounds them.
+    fn max_bytes(&self) -> u64 {
+        self.max_samples.saturating_mul(2).saturating_add(1 << 20)
+    }
+
     fn decode_other(&self, bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orientation)> {
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut limits = Limits::no_limits();
-        limits.max_alloc = Some(self.max_samples.saturating_mul(2).saturating_add(1 << 20));
+        limits.max_alloc = Some(self.max_bytes());
         reader.limits(limits);
         let damaged = |error| finding::damaged(format, error);
         let mut decoder = reader.into_decoder().map_err(damaged)?;

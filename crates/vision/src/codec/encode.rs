@@ -6,10 +6,10 @@ use std::io::{Cursor, Write};
 use std::path::Path;
 
 use image::codecs::bmp::BmpEncoder;
-use image::codecs::jpeg::JpegEncoder;
 use image::codecs::png::PngEncoder;
 use image::codecs::webp::WebPEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageFormat};
+use jpeg_encoder::{ColorType, SamplingFactor};
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result, ResultExt};
 
@@ -56,17 +56,15 @@ impl Encoder {
 
     fn encode(&self, image: &Image, format: ImageFormat) -> Result<Vec<u8>> {
         if !(1..=100).contains(&self.jpeg_quality) {
+            let quality = self.jpeg_quality;
             return Err(Error::invalid_param(format!(
-                "jpeg_quality is {}; give a number from 1 to 100",
-                self.jpeg_quality
+                "jpeg_quality is {quality}; give a number from 1 to 100"
             )));
         }
-        let (pixel, colour) = match image.format() {
-            PixelFormat::Grey => (PixelFormat::Grey, ExtendedColorType::L8),
-            PixelFormat::Rgba | PixelFormat::Bgra if format != ImageFormat::Jpeg => {
-                (PixelFormat::Rgba, ExtendedColorType::Rgba8)
-            }
-            _ => (PixelFormat::Rgb, ExtendedColorType::Rgb8),
+        let pixel = match image.format() {
+            PixelFormat::Grey => PixelFormat::Grey,
+            PixelFormat::Rgba | PixelFormat::Bgra if format != ImageFormat::Jpeg => PixelFormat::Rgba,
+            _ => PixelFormat::Rgb,
         };
         let samples = match image.pixels() {
             Pixels::U8(samples) if image.format() == pixel && image.layout() == Layout::Hwc => {
@@ -74,33 +72,58 @@ impl Encoder {
             }
             _ => Cow::Owned(image.hwc_u8(pixel)),
         };
-        let too_large =
-            |_| Error::invalid_input(format!("{} pixels a side", image.width().max(image.height())));
-        let width = u32::try_from(image.width()).map_err(too_large)?;
-        let height = u32::try_from(image.height()).map_err(too_large)?;
-        let mut out = Cursor::new(Vec::new());
+        let size = (image.width(), image.height());
         let encoded = match format {
-            ImageFormat::Jpeg => JpegEncoder::new_with_quality(&mut out, self.jpeg_quality)
-                .write_image(&samples, width, height, colour),
-            ImageFormat::Png => PngEncoder::new(&mut out).write_image(&samples, width, height, colour),
-            ImageFormat::Bmp => BmpEncoder::new(&mut out).write_image(&samples, width, height, colour),
-            _ => WebPEncoder::new_lossless(&mut out).write_image(&samples, width, height, colour),
+            ImageFormat::Jpeg => encode_jpeg(&samples, size, pixel, self.jpeg_quality),
+            _ => encode_lossless(&samples, size, pixel, format),
         };
         encoded.map_err(|error| {
-            let (width, height) = (image.width(), image.height());
-            Error::invalid_input(format!(
-                "{width}x{height} pixels do not fit a {} file",
-                finding::name(format)
-            ))
-            .with_source(error)
-        })?;
-        Ok(out.into_inner())
+            Error::invalid_input(format!("{size:?} pixels do not fit a {} file", finding::name(format)))
+                .with_source(error)
+        })
     }
+}
+
+type EncodeResult = Result<Vec<u8>, Box<dyn std::error::Error + Send + Sync>>;
+
+fn encode_jpeg(
+    samples: &[u8],
+    (width, height): (usize, usize),
+    pixel: PixelFormat,
+    quality: u8,
+) -> EncodeResult {
+    let colour = if pixel == PixelFormat::Grey { ColorType::Luma } else { ColorType::Rgb };
+    let mut out = Vec::new();
+    let mut encoder = jpeg_encoder::Encoder::new(&mut out, quality);
+    encoder.set_sampling_factor(SamplingFactor::F_2_2);
+    encoder.encode(samples, width.try_into()?, height.try_into()?, colour)?;
+    Ok(out)
+}
+
+fn encode_lossless(
+    samples: &[u8],
+    (width, height): (usize, usize),
+    pixel: PixelFormat,
+    format: ImageFormat,
+) -> EncodeResult {
+    let (width, height) = (width.try_into()?, height.try_into()?);
+    let colour = match pixel {
+        PixelFormat::Grey => ExtendedColorType::L8,
+        PixelFormat::Rgba => ExtendedColorType::Rgba8,
+        _ => ExtendedColorType::Rgb8,
+    };
+    let mut out = Cursor::new(Vec::new());
+    match format {
+        ImageFormat::Png => PngEncoder::new(&mut out).write_image(samples, width, height, colour)?,
+        ImageFormat::Bmp => BmpEncoder::new(&mut out).write_image(samples, width, height, colour)?,
+        _ => WebPEncoder::new_lossless(&mut out).write_image(samples, width, height, colour)?,
+    }
+    Ok(out.into_inner())
 }
 
 fn format_of(path: &Path) -> Result<ImageFormat> {
     match ImageFormat::from_path(path) {
-        Ok(format) if format.writing_enabled() => Ok(format),
+        Ok(format) if format == ImageFormat::Jpeg || format.writing_enabled() => Ok(format),
         _ => Err(Error::unsupported(
             "no format that is written; end the name with .jpg, .jpeg, .png, .bmp or .webp",
         )),

@@ -11,7 +11,7 @@ const READ: &str = "JPEG, PNG, BMP and WebP are read";
 /// `InvalidInput` when they are no picture, `Unsupported` when they are one that is not read.
 pub(super) fn format_of(bytes: &[u8]) -> Result<ImageFormat> {
     match image::guess_format(bytes) {
-        Ok(format) if format.reading_enabled() => Ok(format),
+        Ok(format) if format == ImageFormat::Jpeg || format.reading_enabled() => Ok(format),
         Ok(format) => {
             Err(Error::unsupported(format!("found a {} file; {READ}: convert it first", name(format))))
         }

@@ -1,7 +1,7 @@
 //! JPEG through `zune-jpeg`: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK.
 
 use image::metadata::Orientation;
-use image::{DynamicImage, GrayImage, ImageFormat, RgbImage};
+use image::{DynamicImage, GrayImage, RgbImage};
 use opendr_engine::{Error, Result};
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
@@ -61,8 +61,7 @@ fn has_end(bytes: &[u8]) -> bool {
 fn damaged(error: DecodeErrors) -> Error {
     match error {
         DecodeErrors::Unsupported(scheme) => Error::unsupported(format!(
-            "found a {:?} file of an unusual kind ({scheme:?}); save it as a baseline JPEG",
-            ImageFormat::Jpeg
+            "found a JPEG file of a kind that is not read ({scheme:?}); save it as a baseline JPEG"
         )),
         other => {
             Error::invalid_input("found a JPEG file, damaged or truncated; get it again").with_source(other)

@@ -5,12 +5,12 @@ use std::sync::Mutex;
 
 use opendr_engine::data::Layout;
 
-use crate::preprocess::sample::InputSample;
+use crate::preprocess::sample::{InputSample, Written};
 
 /// Bands that an input is cut into at most; enough for threads that start late or are interrupted.
 pub(super) const MAX_BANDS: usize = 16;
 
-/// Columns that pass through the stack when floats become other samples.
+/// Columns that pass through the stack when samples need conversion.
 const TILE: usize = 128;
 
 /// Consecutive rows of a network's input.
@@ -80,7 +80,7 @@ impl<'a, T: InputSample> Band<'a, T> {
     }
 }
 
-impl<T: InputSample> Row<'_, T> {
+impl<T> Row<'_, T> {
     /// How many pixels there are.
     pub(super) fn columns(&self) -> usize {
         self.planes[0].len() / self.pixel()
@@ -100,12 +100,21 @@ impl<T: InputSample> Row<'_, T> {
             interleaved: self.interleaved,
         }
     }
+}
 
+impl<T: InputSample> Row<'_, T> {
     /// Sets every pixel to `values`, one a channel.
     pub(super) fn fill(&mut self, values: [f32; 3]) {
-        let values = values.map(T::from_value);
+        let values = values.map(|value| T::from_written(T::Written::from_value(value)));
         if self.interleaved {
-            self.planes[0].as_chunks_mut().0.fill(values);
+            // From the second pixel on each doubling is one copy.
+            let mut done = self.planes[0].len().min(3);
+            self.planes[0][..done].copy_from_slice(&values[..done]);
+            while done < self.planes[0].len() {
+                let more = done.min(self.planes[0].len() - done);
+                self.planes[0].copy_within(..more, done);
+                done += more;
+            }
         } else {
             for (plane, value) in self.planes.iter_mut().zip(values) {
                 plane.fill(value);
@@ -113,28 +122,29 @@ impl<T: InputSample> Row<'_, T> {
         }
     }
 
-    /// Lets `write` give the values of the row as floats, some columns after the other.
-    pub(super) fn fill_with(mut self, mut write: impl FnMut(Range<usize>, Row<'_, f32>)) {
+    /// Lets a kernel write the row, some columns after the other.
+    pub(super) fn fill_with(mut self, mut write: impl FnMut(Range<usize>, Row<'_, T::Written>)) {
         let (columns, channels, interleaved) = (self.columns(), self.channels, self.interleaved);
-        if let [Some(first), Some(second), Some(third)] = self.planes.each_mut().map(|plane| T::floats(plane))
+        if let [Some(first), Some(second), Some(third)] =
+            self.planes.each_mut().map(|plane| T::in_place(plane))
         {
             return write(0..columns, Row { planes: [first, second, third], channels, interleaved });
         }
-        let mut floats = [0.0f32; 3 * TILE];
+        let mut written = [T::Written::default(); 3 * TILE];
         for start in (0..columns).step_by(TILE) {
             let range = start..columns.min(start + TILE);
             let planes = if interleaved {
-                [&mut floats[..3 * range.len()], Default::default(), Default::default()]
+                [&mut written[..3 * range.len()], Default::default(), Default::default()]
             } else {
-                let (first, rest) = floats.split_at_mut(TILE);
+                let (first, rest) = written.split_at_mut(TILE);
                 let (second, third) = rest.split_at_mut(TILE);
                 [first, second, third].map(|plane| &mut plane[..range.len()])
             };
             let mut tile = Row { planes, channels, interleaved };
             write(range.clone(), tile.part(0..range.len()));
-            for (samples, values) in self.part(range).planes.into_iter().zip(&tile.planes) {
-                for (sample, value) in samples.iter_mut().zip(values.iter()) {
-                    *sample = T::from_value(*value);
+            for (samples, written) in self.part(range).planes.into_iter().zip(&tile.planes) {
+                for (sample, written) in samples.iter_mut().zip(written.iter()) {
+                    *sample = T::from_written(*written);
                 }
             }
         }

@@ -14,7 +14,8 @@ use opendr_engine::data::{ImageView, Samples};
 use crate::preprocess::band::Row;
 #[cfg(target_arch = "x86_64")]
 use crate::preprocess::kernels_x86 as kernels;
-use crate::preprocess::plan::PackedColumns;
+use crate::preprocess::plan::{PackedColumns, TAP_BYTES};
+use crate::preprocess::sample::Written;
 use crate::preprocess::strided::Finish;
 
 /// Pixels that a kernel writes at once; rows are at least as long.
@@ -43,7 +44,8 @@ impl Packed {
         let reads = matches!(view.samples(), Samples::U8(_))
             && (step == 3 || step == 4)
             && channel == 1
-            && view.width() >= 2
+            && view.width() >= TAP_BYTES
+            && row >= view.width() * step
             && view.format().channels() >= 3
             && view.width().max(row) < (i32::MAX / 4) as usize
             && !finish.luminance;
@@ -58,12 +60,12 @@ impl Packed {
     }
 
     /// Writes `columns` into `row`; `false` when there are too few for a kernel.
-    pub(super) fn write(
+    pub(super) fn write<W: Written>(
         &self,
         source: &PackedRow<'_>,
         plan: &PackedColumns,
         columns: Range<usize>,
-        row: &mut Row<'_, f32>,
+        row: &mut Row<'_, W>,
     ) -> bool {
         let fits = columns.len() >= BLOCK && row.channels == 3 && row.columns() == columns.len();
         if fits {
@@ -79,12 +81,12 @@ fn supported() -> bool {
 }
 
 #[cfg(target_arch = "x86_64")]
-fn kernels_write(
+fn kernels_write<W: Written>(
     packed: &Packed,
     source: &PackedRow<'_>,
     plan: &PackedColumns,
     columns: Range<usize>,
-    row: &mut Row<'_, f32>,
+    row: &mut Row<'_, W>,
 ) {
     kernels::write(packed, source, plan, columns, row);
 }
@@ -95,4 +97,11 @@ fn supported() -> bool {
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn kernels_write(_: &Packed, _: &PackedRow<'_>, _: &PackedColumns, _: Range<usize>, _: &mut Row<'_, f32>) {}
+fn kernels_write<W: Written>(
+    _: &Packed,
+    _: &PackedRow<'_>,
+    _: &PackedColumns,
+    _: Range<usize>,
+    _: &mut Row<'_, W>,
+) {
+}

@@ -8,8 +8,8 @@ const KEPT: usize = 8;
 /// One of the weights of a column in fixed point; both sum up to this.
 pub(super) const ONE: u32 = 1 << 14;
 
-/// Bytes that a kernel reads from a column's offset on: both taps of a pixel of 3 or 4 bytes.
-pub(super) const TAP_BYTES: usize = 8;
+/// Bytes that a kernel reads from a column's offset on; both taps of a pixel of 3 or 4 bytes are among them.
+pub(super) const TAP_BYTES: usize = 16;
 
 /// The two source samples between which an output sample lies.
 #[derive(Debug, Clone, Copy, PartialEq)]

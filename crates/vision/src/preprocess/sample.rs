@@ -1,50 +1,96 @@
 //! The sample types of network inputs.
 
-/// A sample type that networks take: `f32`, or integers into which values are rounded and cut.
-pub trait InputSample: Copy + Send + sealed::Convert {}
+/// A sample type that networks take: `f32`, or integers into which values are rounded (ties to even) and cut
+/// (`i32` at four million).
+pub trait InputSample: sealed::Convert {}
 
 impl InputSample for f32 {}
 impl InputSample for i32 {}
 impl InputSample for i8 {}
 impl InputSample for u8 {}
 
-pub(super) mod sealed {
-    /// Keeps [`super::InputSample`] to the types below.
-    pub trait Convert: Sized {
-        /// The nearest sample, ties upwards.
-        fn from_value(value: f32) -> Self;
+/// What kernels write: `f32` or `i32`.
+pub trait Written: Copy + Default {
+    /// The largest magnitude that is rounded to an integer; `None` where values stay as they are.
+    const ROUNDED_WITHIN: Option<f32>;
 
-        /// The slice itself where samples are floats: kernels then write in place.
-        fn floats(_: &mut [Self]) -> Option<&mut [f32]> {
+    /// The sample for a value.
+    fn from_value(value: f32) -> Self;
+}
+
+impl Written for f32 {
+    const ROUNDED_WITHIN: Option<f32> = None;
+
+    fn from_value(value: f32) -> Self {
+        value
+    }
+}
+
+impl Written for i32 {
+    const ROUNDED_WITHIN: Option<f32> = Some(4e6);
+
+    fn from_value(value: f32) -> Self {
+        // Below 2^22, adding 1.5 * 2^23 moves the integer into the low bits: rounding without a call.
+        const SHIFT: f32 = 12_582_912.0;
+        let shifted = value.clamp(-4e6, 4e6) + SHIFT;
+        (shifted.to_bits() as Self).wrapping_sub(SHIFT.to_bits() as Self)
+    }
+}
+
+pub(super) mod sealed {
+    use super::Written;
+
+    /// How a sample comes from what kernels write; keeps [`super::InputSample`] to the types below.
+    pub trait Convert: Copy + Send {
+        /// What kernels write for this sample.
+        type Written: Written;
+
+        /// The sample for what was written.
+        fn from_written(written: Self::Written) -> Self;
+
+        /// The slice itself where nothing needs conversion: kernels then write in place.
+        fn in_place(_: &mut [Self]) -> Option<&mut [Self::Written]> {
             None
         }
     }
 
     impl Convert for f32 {
-        fn from_value(value: f32) -> Self {
-            value
+        type Written = Self;
+
+        fn from_written(written: Self) -> Self {
+            written
         }
 
-        fn floats(samples: &mut [Self]) -> Option<&mut [f32]> {
+        fn in_place(samples: &mut [Self]) -> Option<&mut [Self]> {
             Some(samples)
         }
     }
 
     impl Convert for i32 {
-        fn from_value(value: f32) -> Self {
-            (value + 0.5).floor() as Self
+        type Written = Self;
+
+        fn from_written(written: Self) -> Self {
+            written
+        }
+
+        fn in_place(samples: &mut [Self]) -> Option<&mut [Self]> {
+            Some(samples)
         }
     }
 
     impl Convert for i8 {
-        fn from_value(value: f32) -> Self {
-            (value + 0.5).floor() as Self
+        type Written = i32;
+
+        fn from_written(written: i32) -> Self {
+            written.clamp(-128, 127) as Self
         }
     }
 
     impl Convert for u8 {
-        fn from_value(value: f32) -> Self {
-            (value + 0.5) as Self
+        type Written = i32;
+
+        fn from_written(written: i32) -> Self {
+            written.clamp(0, 255) as Self
         }
     }
 }

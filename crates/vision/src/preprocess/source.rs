@@ -7,6 +7,7 @@ use opendr_engine::data::{ImageView, Samples};
 use crate::preprocess::band::Row;
 use crate::preprocess::packed::{Packed, PackedRow};
 use crate::preprocess::plan::{Plan, TAP_BYTES};
+use crate::preprocess::sample::Written;
 use crate::preprocess::strided::{Finish, blend_row};
 
 /// A view together with what becomes of its pixels.
@@ -22,12 +23,18 @@ impl<'a> Source<'a> {
         Self { view, finish, packed: Packed::for_view(&view, &finish) }
     }
 
+    /// The same through the kernel for every picture.
+    #[cfg(test)]
+    pub(super) fn plain(self) -> Self {
+        Self { packed: None, ..self }
+    }
+
     /// Bytes from pixel to pixel where the packed kernel reads, else 0.
     pub(super) fn step(&self) -> usize {
         if self.packed.is_some() { self.view.strides()[1] } else { 0 }
     }
 
-    /// Copies what the packed kernel could not read in place: it reads two bytes more than the last pixel has.
+    /// Copies what the packed kernel could not read in place: it reads some bytes beyond the last pixel.
     pub(super) fn prepare(&self, plan: &mut Plan) {
         let (Some(_), Samples::U8(samples)) = (self.packed, self.view.samples()) else { return };
         let last = samples.get((self.view.height() - 1) * self.view.strides()[0]..).unwrap_or_default();
@@ -39,7 +46,13 @@ impl<'a> Source<'a> {
     }
 
     /// Writes `columns` of the plan's row `index`.
-    pub(super) fn write(&self, plan: &Plan, index: usize, columns: Range<usize>, row: &mut Row<'_, f32>) {
+    pub(super) fn write<W: Written>(
+        &self,
+        plan: &Plan,
+        index: usize,
+        columns: Range<usize>,
+        row: &mut Row<'_, W>,
+    ) {
         let tap = plan.rows[index];
         let [row_stride, column_stride, _] = self.view.strides();
         if let (Some(packed), Samples::U8(samples)) = (self.packed, self.view.samples()) {

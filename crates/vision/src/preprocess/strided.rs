@@ -3,6 +3,7 @@
 
 use crate::preprocess::band::Row;
 use crate::preprocess::plan::Tap;
+use crate::preprocess::sample::Written;
 
 /// A sample of a picture as a level, 0..=255.
 pub(super) trait Level: Copy + Sync {
@@ -44,13 +45,13 @@ pub(super) struct Finish {
 const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
 
 /// Blends row `tap` of a picture with `strides` (row, pixel) into `row`.
-pub(super) fn blend_row<S: Level>(
+pub(super) fn blend_row<S: Level, W: Written>(
     samples: &[S],
     strides: [usize; 2],
     tap: Tap,
     columns: &[Tap],
     finish: &Finish,
-    row: &mut Row<'_, f32>,
+    row: &mut Row<'_, W>,
 ) {
     let upper = samples.get(tap.first as usize * strides[0]..).unwrap_or_default();
     let lower = samples.get(tap.second as usize * strides[0]..).unwrap_or_default();
@@ -66,16 +67,16 @@ pub(super) fn blend_row<S: Level>(
     if finish.luminance {
         for (value, column) in planes[0].iter_mut().zip(columns) {
             let weigh = |index: usize| LUMINANCE[index] * blend(column, channels[index]);
-            *value = (weigh(0) + weigh(1) + weigh(2)) * scale[0] + bias[0];
+            *value = W::from_value((weigh(0) + weigh(1) + weigh(2)) * scale[0] + bias[0]);
         }
     } else if *interleaved {
         for (pixel, column) in planes[0].as_chunks_mut::<3>().0.iter_mut().zip(columns) {
-            *pixel = std::array::from_fn(|c| blend(column, channels[c]) * scale[c] + bias[c]);
+            *pixel = std::array::from_fn(|c| W::from_value(blend(column, channels[c]) * scale[c] + bias[c]));
         }
     } else {
         for (c, plane) in planes.iter_mut().enumerate().take(*count) {
             for (value, column) in plane.iter_mut().zip(columns) {
-                *value = blend(column, channels[c]) * scale[c] + bias[c];
+                *value = W::from_value(blend(column, channels[c]) * scale[c] + bias[c]);
             }
         }
     }

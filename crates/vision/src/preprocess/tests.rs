@@ -1,6 +1,7 @@
 //! Every path against one plain reference in double precision, written from the definition.
 
 use opendr_engine::data::{Image, ImageView, Layout, PixelFormat, Pixels, Samples};
+use proptest::prelude::*;
 
 use super::*;
 
@@ -179,10 +180,74 @@ fn smallest_pictures_and_inputs() {
 }
 
 #[test]
+fn agrees_with_opencv() {
+    // cv2.resize of OpenCV 5.0.0 (11-bit weights) on (37 x + 91 y) mod 256, 11x7 pixels.
+    let down = [
+        49, 117, 177, 157, 65, 133, 177, 21, 88, 156, 192, 36, 112, 180, 24, 91, 127, 195, 111, 83, 151, 72,
+        126, 98,
+    ];
+    let wide = [
+        61, 80, 106, 131, 157, 182, 207, 121, 88, 111, 77, 79, 104, 129, 155, 175, 17, 37, 62, 88, 113, 138,
+        164, 189, 215, 232, 82, 35, 60, 86, 111, 131, 144, 163, 152, 60, 69, 95, 120, 146, 142, 111, 136,
+        162, 171, 80, 68, 87,
+    ];
+    let samples: Vec<u8> = (0..77).map(|index| (index % 11 * 37 + index / 11 * 91) as u8).collect();
+    let image = Image::new(samples, 11, 7, PixelFormat::Grey, Layout::Hwc).unwrap();
+    for (size, wanted) in [([6, 4], &down[..]), ([16, 3], &wide)] {
+        let mut out = vec![0u8; wanted.len()];
+        Preprocess::new(size[0], size[1]).order(ChannelOrder::Grey).run_into(image.view(), &mut out).unwrap();
+        assert!(out.iter().zip(wanted).all(|(value, wanted)| value.abs_diff(*wanted) <= 1), "{out:?}");
+    }
+}
+
+#[test]
 fn wrong_buffers_are_refused() {
     let image = noise_image([4, 4], PixelFormat::Rgb, Layout::Hwc, 8, 1);
     let few = Preprocess::new(8, 8).run_into(image.view(), &mut [0f32; 191]).unwrap_err();
     assert_eq!(few.kind(), opendr_engine::ErrorKind::InvalidInput);
     let none = Preprocess::new(0, 8).run_into(image.view(), &mut [0f32; 0]).unwrap_err();
     assert_eq!(none.kind(), opendr_engine::ErrorKind::InvalidParam);
+}
+
+#[test]
+fn plain_kernel_is_the_reference_where_the_packed_one_runs() {
+    let image = noise_image([61, 40], PixelFormat::Bgr, Layout::Hwc, 8, 6);
+    for layout in [Layout::Chw, Layout::Hwc] {
+        let preprocess = Preprocess::new(45, 52).layout(layout);
+        let view = image.view();
+        let source = Source::new(view, preprocess.finish(&view)).plain();
+        let sizes = Sizes { source: [61, 40], target: [45, 52], step: 0 };
+        let mut out = vec![0f32; preprocess.len()];
+        preprocess.plans.with(sizes, |plan| {
+            preprocess.write(&source, plan, Placement::stretch([45, 52]), &mut out);
+        });
+        for (value, wanted) in out.iter().zip(reference(&preprocess, &view)) {
+            assert!((f64::from(*value) - wanted).abs() < 0.01);
+        }
+    }
+}
+
+proptest! {
+    /// Sizes, strides and alignments at random: crops begin at any byte and end with the picture's memory or before.
+    #[test]
+    fn any_crop_to_any_size(
+        source in [1usize..90, 1usize..40],
+        target in [1usize..70, 1usize..40],
+        corner in [0usize..40, 0usize..20],
+        cut in [0usize..6, 0usize..6],
+        format in prop::sample::select(&FORMATS[1..]),
+        order in prop::sample::select(&ORDERS[..]),
+        interleaved: bool,
+        letterbox: bool,
+        seed: u64,
+    ) {
+        let image = noise_image(source, format, Layout::Hwc, 8, seed);
+        let (x, y) = (corner[0].min(source[0] - 1), corner[1].min(source[1] - 1));
+        let size = |axis: usize, start: usize| (source[axis] - start).saturating_sub(cut[axis]).max(1);
+        let view = image.view().crop(x, y, size(0, x), size(1, y)).unwrap();
+        let layout = if interleaved { Layout::Hwc } else { Layout::Chw };
+        let preprocess = Preprocess::new(target[0], target[1]).order(order).layout(layout);
+        let preprocess = preprocess.normalise([1.0, 2.0, 3.0], [2.0, 0.5, 1.0]);
+        check(&if letterbox { preprocess.letterbox(Anchor::Centre, 9.0) } else { preprocess }, view);
+    }
 }

@@ -1,0 +1,50 @@
+//! Pre-processing of a decoded frame, with as many threads as there are cores.
+//!
+//! `benches/preprocess.py` runs this and what Python users write with OpenCV and NumPy, and prints both.
+
+#![allow(missing_docs, clippy::expect_used)]
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use opendr_engine::data::{Image, Layout, PixelFormat};
+use opendr_vision::{Anchor, ChannelOrder, InputSample, Preprocess};
+
+fn frame(width: usize, height: usize, layout: Layout) -> Image {
+    let samples: Vec<u8> =
+        (0..width * height * 3).map(|index| ((index * 2_654_435_761) >> 7) as u8).collect();
+    Image::new(samples, width, height, PixelFormat::Bgr, layout).expect("as many samples as the size says")
+}
+
+fn case<T: InputSample + Default>(
+    criterion: &mut Criterion,
+    name: &str,
+    preprocess: &Preprocess,
+    image: &Image,
+) {
+    let mut out = vec![T::default(); preprocess.len()];
+    criterion.bench_function(name, |bencher| {
+        bencher.iter(|| preprocess.run_into(black_box(image.view()), black_box(&mut out)));
+    });
+}
+
+fn preprocess(criterion: &mut Criterion) {
+    let camera = frame(1920, 1080, Layout::Hwc);
+    let centernet = Preprocess::new(512, 512);
+    case::<f32>(criterion, "centernet_1080p", &centernet, &camera);
+    let nanodet = Preprocess::new(416, 416)
+        .order(ChannelOrder::Bgr)
+        .normalise([103.53, 116.28, 123.675], [57.375, 57.12, 58.395]);
+    case::<f32>(criterion, "nanodet_1080p", &nanodet, &camera);
+    let letterbox = nanodet.letterbox(Anchor::Centre, 0.0);
+    case::<f32>(criterion, "nanodet_letterbox_1080p", &letterbox, &camera);
+    case::<f32>(criterion, "third_1080p", &Preprocess::new(640, 360), &camera);
+    let movenet = Preprocess::new(192, 192).letterbox(Anchor::Centre, 0.0).layout(Layout::Hwc);
+    case::<i32>(criterion, "movenet_1080p", &movenet, &camera);
+    case::<f32>(criterion, "centernet_320x240", &centernet, &frame(320, 240, Layout::Hwc));
+    case::<f32>(criterion, "centernet_1080p_chw", &centernet, &frame(1920, 1080, Layout::Chw));
+    case::<f32>(criterion, "centernet_1080p_one_thread", &centernet.threads(1), &camera);
+}
+
+criterion_group!(benches, preprocess);
+criterion_main!(benches);

@@ -1,0 +1,50 @@
+//! After the first frames, pre-processing allocates nothing, on any thread.
+
+use std::alloc::{GlobalAlloc, Layout as MemoryLayout, System};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use opendr_engine::data::{Image, Layout, PixelFormat};
+use opendr_vision::{Anchor, Preprocess};
+
+struct Counting;
+
+static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: everything is passed on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: MemoryLayout) -> *mut u8 {
+        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: MemoryLayout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+#[test]
+fn a_stream_of_frames_allocates_nothing() {
+    let camera = Image::from_rgb8(vec![9; 640 * 480 * 3], 640, 480).unwrap();
+    let planes = Image::new(vec![9u8; 64 * 48 * 3], 64, 48, PixelFormat::Bgr, Layout::Chw).unwrap();
+    let stretched = Preprocess::new(320, 320);
+    let letterboxed = Preprocess::new(192, 192).letterbox(Anchor::Centre, 0.0).layout(Layout::Hwc);
+    let mut floats = vec![0f32; stretched.len()];
+    let mut bytes = vec![0u8; letterboxed.len()];
+    let mut frame = |number: usize| {
+        let crop = camera.view().crop(number % 300, number % 200, 340 - number % 50, 280).unwrap();
+        for view in [camera.view(), planes.view(), crop] {
+            stretched.run_into(view, &mut floats).unwrap();
+            stretched.with_size(96, 128).run_into(view, &mut floats[..96 * 128 * 3]).unwrap();
+            letterboxed.run_into(view, &mut bytes).unwrap();
+        }
+    };
+    (0..50).for_each(&mut frame);
+    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    (50..100).for_each(&mut frame);
+    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed) - before, 0);
+}
