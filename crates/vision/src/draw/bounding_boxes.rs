@@ -10,7 +10,8 @@ use crate::draw::mask;
 use crate::draw::palette::colour_of_name;
 use crate::draw::style::Style;
 
-/// Draws boxes with their class, score, landmarks and pixels (where they have a segment) onto `image`, which becomes RGB `u8` where it is not.
+/// Draws boxes with their class, score, landmarks and pixels (where they have a segment) onto `image`, which becomes
+/// RGB `u8` where it is not.
 ///
 /// Later boxes of the list lie below earlier ones. Boxes are cut at the border; those without an area are left out.
 pub fn draw_bounding_boxes(image: &mut Image, boxes: &BoundingBoxList, style: &Style) {

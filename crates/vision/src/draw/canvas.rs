@@ -169,7 +169,7 @@ impl<'a> Canvas<'a> {
     }
 
     /// The part of a rectangle inside the picture; `None` when there is none, or it is not a rectangle.
-    fn clip_corners(&self, [x0, y0, x1, y1]: Corners) -> Option<Corners> {
+    pub(super) fn clip_corners(&self, [x0, y0, x1, y1]: Corners) -> Option<Corners> {
         let (width, height) = (self.width as f32, self.height as f32);
         let clipped =
             [x0.clamp(0.0, width), y0.clamp(0.0, height), x1.clamp(0.0, width), y1.clamp(0.0, height)];

@@ -80,6 +80,18 @@ impl Grid {
         })
     }
 
+    /// Every pixel with the number that has most weight among the four around, so that the edges of coarse maps are
+    /// smooth. Callers guarantee a number for every place.
+    fn winners(&self, labels: &[u32]) -> impl Iterator<Item = (usize, usize, u32)> {
+        self.rows.iter().enumerate().flat_map(move |(y, row)| {
+            let [upper, lower] = row.around.map(|place| &labels[place * self.width..][..self.width]);
+            self.columns.iter().enumerate().map(move |(x, Places { around: [left, right], share, .. })| {
+                let four = [upper[*left], upper[*right], lower[*left], lower[*right]];
+                (x, y, winner(four, *share, row.share))
+            })
+        })
+    }
+
     /// Every pixel with its score, blended from the four around. Callers guarantee a score for every place.
     fn blended(&self, scores: &[f32]) -> impl Iterator<Item = (usize, usize, f32)> {
         self.rows.iter().enumerate().flat_map(move |(y, row)| {
@@ -90,6 +102,20 @@ impl Grid {
             })
         })
     }
+}
+
+/// The number with most weight among four: two above, two below, with the shares of the right and the lower ones.
+fn winner(four: [u32; 4], right: f32, lower: f32) -> u32 {
+    let [first, ..] = four;
+    if four.iter().all(|label| *label == first) {
+        return first;
+    }
+    let (left, upper) = (1.0 - right, 1.0 - lower);
+    let weights = [left * upper, right * upper, left * lower, right * lower];
+    let weight = |label: u32| -> f32 {
+        four.iter().zip(weights).filter(|(other, _)| **other == label).map(|(_, weight)| weight).sum()
+    };
+    four.into_iter().max_by(|a, b| weight(*a).total_cmp(&weight(*b))).unwrap_or(first)
 }
 
 /// Draws class numbers; the answer says which of the named classes were there.
@@ -103,8 +129,7 @@ fn draw_labels(
     let clear = map.classes.name(0).is_none_or(|name| name.eq_ignore_ascii_case("background"));
     let mut seen = vec![false; map.classes.len()];
     let mut last: (u32, Colour) = (0, colour_of_index(0));
-    for (x, y, place) in grid.nearest() {
-        let Some(&label) = labels.get(place) else { continue };
+    for (x, y, label) in grid.winners(labels) {
         if label == 0 && clear {
             continue;
         }

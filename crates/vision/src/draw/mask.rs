@@ -1,17 +1,22 @@
-//! Objects by their pixels: translucent, with an outline.
+//! Objects by their pixels: translucent, with a solid border.
 
 use opendr_engine::data::Image;
 use opendr_engine::target::{Rle, Segmentation};
 
 use crate::draw::canvas::Canvas;
+use crate::draw::coverage::Coverage;
 use crate::draw::palette::Colour;
+use crate::draw::polygons::coverage_of_polygons;
 use crate::draw::style::Style;
 
 /// Colours the pixels of an object, which are given in pixels of `image`; it becomes RGB `u8` where it is not.
+///
+/// Of outlines, what lies inside any of them is coloured; where one crosses itself, what an even number of its parts
+/// cover is outside.
 pub fn draw_mask(image: &mut Image, mask: &Segmentation, colour: Colour, style: &Style) {
     let mut canvas = Canvas::over(image);
     let thickness = style.thickness(&canvas);
-    cover(&mut canvas, mask, colour, style.opacity, thickness);
+    cover(&mut canvas, mask, style.colour.unwrap_or(colour), style.opacity, thickness);
 }
 
 pub(super) fn cover(
@@ -21,93 +26,48 @@ pub(super) fn cover(
     opacity: f32,
     thickness: f32,
 ) {
-    match mask {
-        Segmentation::Rle(rle) => cover_runs(canvas, rle, colour, opacity),
-        Segmentation::Polygons(polygons) => {
-            let mut inside = Inside::new(canvas);
-            polygons.iter().for_each(|polygon| inside.add(polygon));
-            inside.cover(canvas, colour, opacity);
-            for polygon in polygons {
-                for [from, to] in edges(polygon) {
-                    canvas.line(from, to, (thickness / 2.0).max(1.0), colour, 1.0);
-                }
-            }
-        }
+    let coverage = match mask {
+        Segmentation::Polygons(polygons) => coverage_of_polygons(canvas, polygons),
+        Segmentation::Rle(rle) => coverage_of_runs(canvas, rle),
+    };
+    if let Some(coverage) = coverage {
+        coverage.paint(canvas, colour, opacity, thickness / 2.0);
     }
 }
 
-/// Runs go down the columns: each is a stroke of one column's pixels.
-fn cover_runs(canvas: &mut Canvas<'_>, rle: &Rle, colour: Colour, opacity: f32) {
+/// The pixels of an object from its runs, which go down the columns.
+fn coverage_of_runs(canvas: &Canvas<'_>, rle: &Rle) -> Option<Coverage> {
     let rows = rle.size()[0] as usize;
-    let mut at = 0usize;
-    for (index, run) in rle.counts().iter().enumerate() {
-        let end = at + *run as usize;
-        while index % 2 == 1 && at < end && at / rows < canvas.width() {
-            let column_end = (at / rows + 1) * rows;
-            let x = (at / rows) as f32;
-            let (first, last) = ((at % rows) as f32, (end.min(column_end) - at / rows * rows) as f32);
-            canvas.fill([x, first, x + 1.0, last], colour, opacity);
-            at = column_end;
+    let corners = strokes(rle).fold([usize::MAX, usize::MAX, 0, 0], |[x0, y0, x1, y1], stroke| {
+        let Stroke { columns: [first, last], rows: [top, bottom] } = stroke;
+        let [top, bottom] = if first == last { [top, bottom] } else { [0, rows] };
+        [x0.min(first), y0.min(top), x1.max(last + 1), y1.max(bottom)]
+    });
+    let mut coverage = Coverage::within(canvas, corners.map(|edge| edge as f32))?;
+    for Stroke { columns: [first, last], rows: [top, bottom] } in strokes(rle) {
+        for x in first.max(coverage.left)..(last + 1).min(coverage.left + coverage.width) {
+            let from = if x == first { top } else { 0 };
+            let to = if x == last { bottom } else { rows };
+            coverage.fill_column(x, from, to);
         }
-        at = end;
     }
+    Some(coverage)
 }
 
-/// The sides of an outline `[x0, y0, x1, y1, ...]`, the closing one included.
-fn edges(polygon: &[f32]) -> impl Iterator<Item = [[f32; 2]; 2]> {
-    let points = polygon.as_chunks::<2>().0;
-    points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| [*from, *to])
+/// A run of an object's pixels: down from the first row in the first column, to before the second in the last.
+struct Stroke {
+    columns: [usize; 2],
+    rows: [usize; 2],
 }
 
-/// Which pixels lie inside outlines, by where each row enters and leaves them (even-odd rule).
-struct Inside {
-    width: usize,
-    height: usize,
-    /// Pixels of finished outlines.
-    covered: Vec<bool>,
-    /// Whether a pixel is the first one beyond a side.
-    crossings: Vec<bool>,
-}
-
-impl Inside {
-    fn new(canvas: &Canvas<'_>) -> Self {
-        let (width, height) = (canvas.width(), canvas.height());
-        let area = vec![false; width * height];
-        Self { width, height, covered: area.clone(), crossings: area }
-    }
-
-    fn add(&mut self, polygon: &[f32]) {
-        if polygon.len() < 6 || !polygon.iter().all(|part| part.is_finite()) {
-            return;
-        }
-        self.crossings.fill(false);
-        for [[x0, y0], [x1, y1]] in edges(polygon) {
-            // Rows whose middle the side crosses.
-            let row = |y: f32| (y - 0.5).ceil().clamp(0.0, self.height as f32) as usize;
-            for y in row(y0.min(y1))..row(y0.max(y1)) {
-                let part = (y as f32 + 0.5 - y0) / (y1 - y0);
-                let x = (x0 + part * (x1 - x0) - 0.5).ceil().max(0.0) as usize;
-                if x < self.width {
-                    self.crossings[y * self.width + x] ^= true;
-                }
-            }
-        }
-        for (covered, crossings) in
-            self.covered.chunks_exact_mut(self.width).zip(self.crossings.chunks_exact(self.width))
-        {
-            let mut inside = false;
-            for (covered, crossing) in covered.iter_mut().zip(crossings) {
-                inside ^= crossing;
-                *covered |= inside;
-            }
-        }
-    }
-
-    fn cover(&self, canvas: &mut Canvas<'_>, colour: Colour, opacity: f32) {
-        for (y, row) in self.covered.chunks_exact(self.width).enumerate() {
-            for (x, _) in row.iter().enumerate().filter(|(_, covered)| **covered) {
-                canvas.blend(x, y, colour, opacity);
-            }
-        }
-    }
+fn strokes(rle: &Rle) -> impl Iterator<Item = Stroke> {
+    let rows = (rle.size()[0] as usize).max(1);
+    let ends = rle.counts().iter().scan(0usize, |end, run| {
+        *end += *run as usize;
+        Some((*end - *run as usize, *end))
+    });
+    ends.skip(1).step_by(2).filter(|(start, end)| start < end).map(move |(start, end)| Stroke {
+        columns: [start / rows, (end - 1) / rows],
+        rows: [start % rows, (end - 1) % rows + 1],
+    })
 }

@@ -184,3 +184,43 @@ fn a_category_is_written_into_the_corner() {
     assert_ne!(pixel(&image, 4, 6), [90; 3]);
     assert_eq!(pixel(&image, 150, 80), [90; 3]);
 }
+
+#[test]
+fn masks_by_runs_have_the_border_of_outlines() {
+    let inside = |at: usize| (5..30).contains(&(at % 40)) && (8..20).contains(&(at / 40));
+    let mask: Vec<bool> = (0..40 * 30).map(inside).collect();
+    let runs = Segmentation::Rle(Rle::from_mask(&mask, 30, 40).unwrap());
+    let outline = Segmentation::Polygons(vec![vec![5.0, 8.0, 30.0, 8.0, 30.0, 20.0, 5.0, 20.0]]);
+    let [by_runs, by_outline] = [runs, outline].map(|mask| {
+        let mut image = grey(40, 30);
+        draw_mask(&mut image, &mask, [250, 0, 0], &Style::default());
+        image
+    });
+    assert_eq!(by_runs, by_outline);
+    let [edge, middle] = [pixel(&by_runs, 5, 12), pixel(&by_runs, 15, 12)];
+    assert_eq!((edge, middle), ([250, 0, 0], [170, 45, 45]));
+}
+
+#[test]
+fn edges_of_coarse_label_maps_are_smooth() {
+    let map = Heatmap::from_labels(vec![1, 1, 1, 2], &[2, 2]).unwrap();
+    let mut image = grey(80, 80);
+    draw(&mut image, &map, &Style { opacity: 1.0, labels: false, ..Style::default() });
+    // The inner corner of the square of number 2 is cut.
+    let at = |x, y| pixel(&image, x, y);
+    assert_eq!((at(41, 41), at(47, 47)), (colour_of_index(1), colour_of_index(1)));
+    assert_eq!((at(60, 60), at(79, 79)), (colour_of_index(2), colour_of_index(2)));
+}
+
+#[test]
+fn tails_have_one_colour_all_along() {
+    let at = |left: f32| -> TrackingAnnotationList {
+        let bounding_box = BoundingBox::new(0, left, 50.5, 40.0, 40.0, 1.0);
+        vec![TrackingAnnotation { bounding_box, id: 4, frame: None }].into()
+    };
+    let mut trails = Trails::default();
+    (0..12).for_each(|step| trails.update(&at(10.0 * step as f32)));
+    let mut image = grey(400, 400);
+    draw_tracks(&mut image, &at(300.0), &trails, &Style { labels: false, scale: 4.0, ..Style::default() });
+    assert!((30..120).all(|x| pixel(&image, x, 70) == colour_of_index(4)));
+}

@@ -48,8 +48,9 @@ impl Trails {
         let colour = style.colour.unwrap_or_else(|| colour_of_index(id));
         let count = tail.points.len().max(1) as f32;
         for (index, (from, to)) in tail.points.iter().zip(tail.points.iter().skip(1)).enumerate() {
-            let age = (index as f32 + 1.0) / count;
-            canvas.line(*from, *to, thickness * (0.6 + age), colour, 0.2 + 0.7 * age);
+            let newness = (index as f32 + 1.0) / count;
+            // Opaque: where translucent pieces meet, beads would show.
+            canvas.line(*from, *to, thickness * (0.4 + 1.4 * newness), colour, 1.0);
         }
     }
 }
