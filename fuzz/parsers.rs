@@ -1,0 +1,70 @@
+// What every fuzz target feeds, shared with the test that replays the corpora (`crates/opendr/tests/corpus.rs`).
+
+use opendr_engine::Value;
+use opendr_engine::data::Image;
+use opendr_engine::model::Manifest;
+use opendr_engine::target::{BoundingBox3DList, TrackingAnnotationList};
+
+/// A parser of bytes from outside: it may refuse them, it may not panic.
+pub type Parser = fn(&[u8]);
+
+/// Every parser by the name of its target and corpus.
+pub const PARSERS: [(&str, Parser); 6] = [
+    ("manifest_json", manifest_json),
+    ("tfjs_json", tfjs_json),
+    ("card_toml", card_toml),
+    ("picture", picture),
+    ("target_json", target_json),
+    ("label_text", label_text),
+];
+
+fn manifest_json(bytes: &[u8]) {
+    if let Ok(manifest) = Manifest::from_json(bytes) {
+        let json = manifest.to_json().unwrap();
+        assert_eq!(Manifest::from_json(&json).unwrap(), manifest);
+    }
+}
+
+/// The JSON up to the first zero byte; the rest is the weights.
+fn tfjs_json(bytes: &[u8]) {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    let weights = bytes.get(end + 1..).unwrap_or_default();
+    if let Ok(onnx) = opendr_import::onnx_from_tfjs(&bytes[..end], &[weights], &Default::default()) {
+        assert!(!onnx.is_empty());
+    }
+}
+
+fn card_toml(bytes: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        opendr_zoo::Card::from_toml(text).ok();
+    }
+}
+
+fn picture(bytes: &[u8]) {
+    let decoder = opendr_vision::Decoder { max_samples: 1 << 20, ..Default::default() };
+    if let Ok(image) = decoder.decode(bytes) {
+        assert_eq!(image.pixels().len(), image.width() * image.height() * Image::channels(&image));
+    }
+}
+
+fn target_json(bytes: &[u8]) {
+    if let Ok(value) = serde_json::from_slice::<Value>(bytes) {
+        let json = serde_json::to_string(&value).unwrap();
+        let again: Value = serde_json::from_str(&json).unwrap();
+        assert_eq!(serde_json::to_string(&again).unwrap(), json);
+        let _ = (format!("{}", value.as_value_ref()), format!("{:#}", value.as_value_ref()));
+    }
+}
+
+fn label_text(bytes: &[u8]) {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        TrackingAnnotationList::from_mot_text(text).ok();
+        BoundingBox3DList::from_kitti_text(text).ok();
+    }
+}
+
+/// Feeds the parser called `name`.
+#[allow(dead_code)]
+pub fn run(name: &str, bytes: &[u8]) {
+    PARSERS.iter().filter(|(parser, _)| *parser == name).for_each(|(_, parse)| parse(bytes));
+}
