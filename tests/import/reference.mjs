@@ -1,6 +1,6 @@
 // Runs TensorFlow.js graph models on given inputs: node reference.mjs JOBS.json, in a folder with node_modules.
 //
-// JOBS.json: [{model, inputs: {name: {file, dims, dtype}}, out}]. Files hold raw little-endian float32. For each job
+// JOBS.json: [{model, inputs: {name: {file, dims, dtype}}, outputs, out, backend}]. Files hold raw little-endian float32. For each job
 // OUT.json lists the outputs [{name, dims}] and OUT.bin holds them one after the other as float32.
 import { createRequire } from "node:module";
 import fs from "node:fs";
@@ -42,12 +42,6 @@ async function run(job) {
 }
 
 for (const job of JSON.parse(fs.readFileSync(process.argv[2], "utf8"))) {
-  try {
-    await tf.setBackend("wasm");
-    await run(job);
-  } catch (error) {
-    console.error(`${job.model}: ${error.message}; trying without WebAssembly`);
-    await tf.setBackend("cpu");
-    await run(job);
-  }
+  await tf.setBackend(job.backend);
+  await run(job);
 }

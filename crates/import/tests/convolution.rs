@@ -46,7 +46,8 @@ fn depthwise_filters_keep_their_order() {
 
 #[test]
 fn fused_bias_and_activation() {
-    let activations: [(&str, fn(f32) -> f32); 5] = [
+    type Activation = fn(f32) -> f32;
+    let activations: [(&str, Activation); 5] = [
         ("Relu", |v| v.max(0.0)),
         ("Relu6", |v| v.clamp(0.0, 6.0)),
         ("Elu", |v| if v > 0.0 { v } else { v.exp() - 1.0 }),
@@ -156,4 +157,36 @@ fn blocks_of_channels_become_pixels() {
     let mut model = Tiny::with_input(&[1, 1, 1, 4]);
     model.node("y", "DepthToSpace", &["x"], json!({"block_size": {"i": "2"}})).output("y");
     model.run(&[1, 1, 1, 4], &[1.0, 2.0, 3.0, 4.0])[0].assert_near(&[1, 1, 2, 2], &[1.0, 2.0, 3.0, 4.0]);
+}
+
+#[test]
+fn hard_swish_is_recognised_and_its_rounded_sixth_moves_on() {
+    let sixth = 0.166_625_98; // 1/6 in half precision
+    let mut model = Tiny::with_input(&[1, 1, 4, 1]);
+    model.floats("w", &[1, 1, 1, 1], &[2.0]).floats("v", &[1, 1, 1, 1], &[10.0]);
+    model.floats("sixth", &[], &[sixth]).floats("three", &[], &[3.0]);
+    model.node("a", "Conv2D", &["x", "w"], conv(1, "SAME"));
+    model.node("scaled", "Mul", &["sixth", "a"], json!({}));
+    model.node("shifted", "AddV2", &["a", "three"], json!({}));
+    model.node("clipped", "Relu6", &["shifted"], json!({}));
+    model.node("swish", "Mul", &["scaled", "clipped"], json!({}));
+    model.node("y", "Conv2D", &["swish", "v"], conv(1, "SAME")).output("y");
+    let x = [-2.0, -0.5, 0.25, 4.0];
+    let expected = x.map(|v| 10.0 * (2.0 * v) * sixth * (2.0 * v + 3.0f32).clamp(0.0, 6.0));
+    model.run(&[1, 1, 4, 1], &x)[0].assert_near(&[1, 1, 1, 4], &expected);
+    assert_eq!(model.operators(), ["Conv", "HardSwish", "Conv"]);
+}
+
+#[test]
+fn a_factor_stays_where_it_would_change_something_else() {
+    let mut model = Tiny::with_input(&[1, 1, 2, 1]);
+    model.floats("w", &[1, 1, 1, 1], &[2.0]).floats("half", &[], &[0.5]);
+    model.node("relu", "Sigmoid", &["x"], json!({}));
+    model.node("halved", "Mul", &["relu", "half"], json!({}));
+    model.node("a", "Conv2D", &["halved", "w"], conv(1, "SAME")).output("a");
+    model.node("b", "Exp", &["halved"], json!({})).output("b");
+    let sigmoid = [-1.0f32, 2.0].map(|v| 1.0 / (1.0 + (-v).exp()));
+    let outputs = model.run(&[1, 1, 2, 1], &[-1.0, 2.0]);
+    outputs[0].assert_near(&[1, 1, 1, 2], &sigmoid);
+    outputs[1].assert_near(&[1, 1, 1, 2], &sigmoid.map(|v| (v / 2.0).exp()));
 }

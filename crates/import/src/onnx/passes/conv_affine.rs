@@ -1,7 +1,7 @@
 //! Folds multiplications and additions per channel into the convolution before them.
 
 use super::rewriter::Rewriter;
-use crate::onnx::array::{Array, Data};
+use crate::onnx::array::{Array, Data, element_count};
 use crate::onnx::proto::GraphProto;
 
 /// What follows a convolution: `y * scale + shift`, per output channel.
@@ -22,29 +22,29 @@ pub fn fold_affine_into_conv(graph: &mut GraphProto) {
 
 fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     let node = graph.node_of(conv, "Conv")?;
-    let weights = graph.constant(node.input.get(1)?)?;
-    let filters = *weights.dims().first()?;
-    let bias = match node.input.get(2).filter(|name| !name.is_empty()) {
-        Some(name) => graph.constant(name)?.as_floats()?.to_vec(),
+    let (weights, bias) =
+        (node.input.get(1)?.clone(), node.input.get(2).filter(|name| !name.is_empty()).cloned());
+    let dims = graph.constant_dims(&weights)?;
+    let (rank, filters) = (dims.len(), *dims.first()?);
+    let affordable = graph.affords(element_count(&dims)?.checked_add(filters)?);
+    following(graph, conv).filter(|_| affordable)?;
+    let shift = match bias {
+        Some(name) => vector(graph, &name, filters)?,
         None => vec![0.0; filters],
     };
-    if bias.len() != filters {
-        return None;
-    }
-    let rank = weights.dims().len();
-    let mut affine = Affine { scale: vec![1.0; filters], shift: bias };
-    let mut folded = false;
-    while let Some(reader) =
-        following(graph, conv).filter(|&reader| affine.follow(graph, conv, reader, rank).is_some())
-    {
+    let mut affine = Affine { scale: vec![1.0; filters], shift };
+    let mut reader = following(graph, conv)?;
+    affine.follow(graph, conv, reader, rank)?;
+    let weights = graph.constant(&weights).filter(|weights| weights.as_floats().is_some())?;
+    loop {
         graph.absorb(conv, reader);
-        folded = true;
+        match following(graph, conv) {
+            Some(next) if affine.follow(graph, conv, next, rank).is_some() => reader = next,
+            _ => break,
+        }
     }
-    if !folded {
-        return None;
-    }
-    let block = weights.data().len().checked_div(filters)?;
-    let scaled = weights.as_floats()?.chunks(block.max(1)).zip(&affine.scale);
+    let block = weights.data().len().checked_div(filters)?.max(1);
+    let scaled = weights.as_floats()?.chunks(block).zip(&affine.scale);
     let scaled = scaled.flat_map(|(filter, scale)| filter.iter().map(move |weight| weight * scale)).collect();
     let output = graph.node(conv)?.output.first()?.clone();
     let weights = Array::new(weights.dims().to_vec(), Data::Float(scaled))?;
@@ -73,7 +73,7 @@ impl Affine {
         }
         let (x, y) = (node.input.first()?, node.input.get(1)?);
         let other = if x == output { y } else { x };
-        let other = self.per_channel(&graph.constant(other)?, rank)?;
+        let other = self.per_channel(graph, other, rank)?;
         let pairs = self.scale.iter_mut().zip(&mut self.shift).zip(other);
         match (node.op_type.as_str(), x == output) {
             ("Add", _) => pairs.for_each(|((_, shift), other)| *shift += other),
@@ -91,12 +91,10 @@ impl Affine {
 
     fn normalise(&mut self, graph: &Rewriter, reader: usize) -> Option<()> {
         let node = graph.node(reader)?;
+        let channels = self.scale.len();
         let epsilon = node.find("epsilon").map_or(1e-5, |attribute| attribute.f);
-        let vector = |slot: usize| {
-            let array = graph.constant(node.input.get(slot)?)?;
-            (array.dims() == [self.scale.len()]).then(|| array.as_floats().map(<[f32]>::to_vec))?
-        };
-        let (gamma, beta, mean, variance) = (vector(1)?, vector(2)?, vector(3)?, vector(4)?);
+        let parameter = |slot: usize| vector(graph, node.input.get(slot)?, channels);
+        let (gamma, beta, mean, variance) = (parameter(1)?, parameter(2)?, parameter(3)?, parameter(4)?);
         for (channel, (scale, shift)) in self.scale.iter_mut().zip(&mut self.shift).enumerate() {
             let factor = gamma[channel] / (variance[channel] + epsilon).sqrt();
             *scale *= factor;
@@ -106,18 +104,24 @@ impl Affine {
     }
 
     /// One float per channel from a constant that broadcasts along the channel axis only.
-    fn per_channel(&self, array: &Array, rank: usize) -> Option<Vec<f32>> {
-        let values = array.as_floats()?;
-        let dims = array.dims();
+    fn per_channel(&self, graph: &Rewriter, name: &str, rank: usize) -> Option<Vec<f32>> {
         let channels = self.scale.len();
-        if values.len() == 1 && dims.len() <= rank {
-            return Some(vec![values[0]; channels]);
+        if let Some(value) = graph.scalar(name) {
+            let deeper = graph.constant_dims(name)?.len() > rank;
+            return (!deeper).then(|| vec![value; channels]);
         }
+        let dims = graph.constant_dims(name)?;
         let missing = rank.checked_sub(dims.len())?;
         let along_channels = (0..dims.len()).all(|axis| match axis + missing {
             1 => dims[axis] == channels,
             _ => dims[axis] == 1,
         });
-        (along_channels && values.len() == channels).then(|| values.to_vec())
+        let values = graph.constant(name).filter(|_| along_channels)?;
+        values.as_floats().filter(|values| values.len() == channels).map(<[f32]>::to_vec)
     }
+}
+
+/// A constant list of that many floats.
+fn vector(graph: &Rewriter, name: &str, length: usize) -> Option<Vec<f32>> {
+    (graph.constant_dims(name)? == [length]).then(|| graph.constant(name))??.as_floats().map(<[f32]>::to_vec)
 }

@@ -1,13 +1,17 @@
 //! Rewrites of finished graphs. Each leaves the results as they were, up to rounding.
 
 mod conv_affine;
+mod conv_factor;
 mod dead_nodes;
+mod hard_swish;
 mod identity;
 mod pad;
 mod rewriter;
 
 pub use conv_affine::fold_affine_into_conv;
+pub use conv_factor::fold_factor_into_conv;
 pub use dead_nodes::remove_dead_nodes;
+pub use hard_swish::fuse_hard_swish;
 pub use identity::remove_identities;
 pub use pad::fold_padding;
 pub use rewriter::Rewriter;
@@ -17,7 +21,8 @@ use super::proto::GraphProto;
 /// All rewrites, in an order in which one prepares the next.
 pub fn simplify(graph: &mut GraphProto) {
     remove_identities(graph);
-    fold_padding(graph);
-    fold_affine_into_conv(graph);
-    remove_dead_nodes(graph);
+    for rewrite in [fold_padding, fold_affine_into_conv, fuse_hard_swish, fold_factor_into_conv] {
+        rewrite(graph);
+        remove_dead_nodes(graph);
+    }
 }

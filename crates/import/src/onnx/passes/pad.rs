@@ -49,7 +49,8 @@ fn outer_pads(graph: &Rewriter, pad: &crate::onnx::proto::NodeProto, op: &str) -
         None => 0.0,
     };
     let ignored = if op == "Conv" { value == 0.0 } else { value <= f32::MIN };
-    let pads = graph.constant(pad.input.get(1)?)?;
+    let name = pad.input.get(1).filter(|name| graph.constant_dims(name).is_some_and(|dims| dims == [8]))?;
+    let pads = graph.constant(name)?;
     let pads = pads.as_ints()?;
     let (before, after) = pads.split_at_checked(pads.len() / 2)?;
     let (outer_before, before) = before.split_at_checked(2)?;

@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::onnx::array::Array;
+use crate::onnx::array::{Array, element_count};
 use crate::onnx::proto::{GraphProto, NodeProto};
 
-/// A graph with an index of who makes and who reads each tensor, and the means to change it. Every change costs time
+/// A graph with an index of who makes each tensor and who reads those that nodes make, and the means to change it. Every change costs time
 /// in proportion to what it changes, not to the graph. Nodes are only marked as removed until [`Rewriter::finish`].
 pub struct Rewriter<'a> {
     graph: &'a mut GraphProto,
@@ -14,23 +14,31 @@ pub struct Rewriter<'a> {
     initializers: HashMap<String, usize>,
     given_out: HashSet<String>,
     removed: HashSet<usize>,
+    /// Elements of constants that may still be added.
+    budget: usize,
 }
 
 impl<'a> Rewriter<'a> {
     /// Indexes the graph.
     pub fn new(graph: &'a mut GraphProto) -> Self {
+        let initializers: HashMap<String, usize> = graph
+            .initializer
+            .iter()
+            .enumerate()
+            .map(|(index, tensor)| (tensor.name.clone(), index))
+            .collect();
         let mut producers = HashMap::new();
         let mut readers: HashMap<String, Vec<usize>> = HashMap::new();
         for (index, node) in graph.node.iter().enumerate() {
             producers.extend(node.output.iter().map(|output| (output.clone(), index)));
-            for input in node.input.iter().filter(|input| !input.is_empty()) {
+            for input in node.input.iter().filter(|input| !initializers.contains_key(*input)) {
                 readers.entry(input.clone()).or_default().push(index);
             }
         }
-        let initializers =
-            graph.initializer.iter().enumerate().map(|(i, tensor)| (tensor.name.clone(), i)).collect();
         let given_out = graph.output.iter().map(|output| output.name.clone()).collect();
-        Self { graph, producers, readers, initializers, given_out, removed: HashSet::new() }
+        let raw: usize = graph.initializer.iter().map(|tensor| tensor.raw_data.len()).sum();
+        let budget = raw.saturating_add(1 << 16);
+        Self { graph, producers, readers, initializers, given_out, removed: HashSet::new(), budget }
     }
 
     /// Number of nodes, those removed included.
@@ -62,6 +70,24 @@ impl<'a> Rewriter<'a> {
         }
     }
 
+    /// The nodes that read a tensor; `None` if the graph gives it out or nothing reads it.
+    pub fn readers(&self, tensor: &str) -> Option<&[usize]> {
+        let readers = self.readers.get(tensor).map(Vec::as_slice);
+        readers.filter(|readers| !readers.is_empty() && !self.given_out.contains(tensor))
+    }
+
+    /// The dimensions of an initializer.
+    pub fn constant_dims(&self, tensor: &str) -> Option<Vec<usize>> {
+        let tensor = self.graph.initializer.get(*self.initializers.get(tensor)?)?;
+        tensor.dims.iter().map(|&dim| usize::try_from(dim).ok()).collect()
+    }
+
+    /// Whether a constant of that many elements may be added. A graph whose nodes share large constants could
+    /// otherwise grow without bound when each gets its own.
+    pub fn affords(&self, elements: usize) -> bool {
+        elements <= self.budget
+    }
+
     /// The elements of an initializer.
     pub fn constant(&self, tensor: &str) -> Option<Array> {
         Array::from_tensor(self.graph.initializer.get(*self.initializers.get(tensor)?)?)
@@ -69,14 +95,16 @@ impl<'a> Rewriter<'a> {
 
     /// An initializer of one float.
     pub fn scalar(&self, tensor: &str) -> Option<f32> {
-        match self.constant(tensor)?.as_floats()? {
-            [single] => Some(*single),
+        match element_count(&self.constant_dims(tensor)?)? {
+            1 => self.constant(tensor)?.as_floats()?.first().copied(),
             _ => None,
         }
     }
 
-    /// Adds an initializer with a name made from `hint`, and returns the name; `None` if it cannot be written.
+    /// Adds an initializer with a name made from `hint`, and returns the name; `None` when
+    /// the graph has grown too much.
     pub fn add_constant(&mut self, hint: &str, array: &Array) -> Option<String> {
+        self.budget = self.budget.checked_sub(array.data().len())?;
         let taken = |name: &str| self.initializers.contains_key(name) || self.producers.contains_key(name);
         let mut name = hint.to_owned();
         let mut count = 1;
@@ -104,6 +132,29 @@ impl<'a> Rewriter<'a> {
         self.readers.entry(tensor.to_owned()).or_default().push(index);
     }
 
+    /// Makes all readers of one tensor read another.
+    pub fn redirect(&mut self, from: &str, to: &str) {
+        let readers = self.readers.remove(from).unwrap_or_default();
+        for &reader in &readers {
+            let inputs = self.graph.node.get_mut(reader).into_iter().flat_map(|node| &mut node.input);
+            inputs.filter(|input| *input == from).for_each(|input| *input = to.to_owned());
+        }
+        self.readers.entry(to.to_owned()).or_default().extend(readers);
+    }
+
+    /// Makes a node another operator, without attributes, of other inputs; its output stays.
+    pub fn replace(&mut self, index: usize, op: &str, inputs: &[String]) {
+        self.unlink(index);
+        if let Some(node) = self.graph.node.get_mut(index) {
+            node.op_type = op.to_owned();
+            node.attribute.clear();
+            node.input = inputs.to_vec();
+        }
+        for input in inputs {
+            self.readers.entry(input.clone()).or_default().push(index);
+        }
+    }
+
     /// A node to change attributes of; inputs and outputs are changed through the rewriter.
     pub fn node_mut(&mut self, index: usize) -> Option<&mut NodeProto> {
         self.graph.node.get_mut(index)
@@ -123,13 +174,17 @@ impl<'a> Rewriter<'a> {
 
     /// Removes a node that nothing reads any more.
     pub fn remove(&mut self, index: usize) {
-        if self.removed.insert(index)
-            && let Some(node) = self.graph.node.get(index)
-        {
-            for input in &node.input {
-                if let Some(readers) = self.readers.get_mut(input) {
-                    readers.retain(|&reader| reader != index);
-                }
+        if self.removed.insert(index) {
+            self.unlink(index);
+        }
+    }
+
+    /// Takes a node from the readers of its inputs.
+    fn unlink(&mut self, index: usize) {
+        let inputs = self.graph.node.get(index).into_iter().flat_map(|node| &node.input);
+        for input in inputs {
+            if let Some(readers) = self.readers.get_mut(input) {
+                readers.retain(|&reader| reader != index);
             }
         }
     }

@@ -1,0 +1,57 @@
+//! Recognises MobileNetV3's activation in the four operators it is made of.
+
+use super::rewriter::Rewriter;
+use crate::onnx::array::Array;
+use crate::onnx::proto::GraphProto;
+
+/// Rewrites `(x * c) * clip(x + 3, 0, 6)` as `HardSwish(x) * 6c`. The factor is 1 but for the rounding of `c` to half
+/// precision; [`fold_factor_into_conv`](super::fold_factor_into_conv) moves it on.
+pub fn fuse_hard_swish(graph: &mut GraphProto) {
+    let mut graph = Rewriter::new(graph);
+    for index in 0..graph.node_count() {
+        fuse_one(&mut graph, index);
+    }
+    graph.finish();
+}
+
+fn fuse_one(graph: &mut Rewriter, product: usize) -> Option<()> {
+    let node = graph.node_of(product, "Mul")?;
+    let [a, b] = node.input.as_slice() else { return None };
+    let (scaled, clipped) = match graph.made_by(b, "Clip") {
+        Some(_) => (a, b),
+        None => (b, a),
+    };
+    let (scaled, clip) = (graph.made_by(scaled, "Mul")?, graph.made_by(clipped, "Clip")?);
+    let [shifted, low, high] = graph.node(clip)?.input.as_slice() else { return None };
+    let shift = graph.made_by(shifted, "Add")?;
+    let (x, factor) = with_scalar(graph, scaled)?;
+    let (same, offset) = with_scalar(graph, shift)?;
+    let bounds = (graph.scalar(low)?, graph.scalar(high)?);
+    let only_here = only_output_reader(graph, scaled) == Some(product)
+        && only_output_reader(graph, clip) == Some(product)
+        && only_output_reader(graph, shift) == Some(clip);
+    if x != same || offset != 3.0 || bounds != (0.0, 6.0) || !only_here {
+        return None;
+    }
+    let swish = graph.node(scaled)?.output.first()?.clone();
+    let factor = graph.add_constant(&format!("{swish}/factor"), &Array::scalar(6.0 * factor))?;
+    graph.remove(clip);
+    graph.remove(shift);
+    graph.replace(scaled, "HardSwish", &[x]);
+    graph.replace(product, "Mul", &[swish, factor]);
+    Some(())
+}
+
+/// The two operands of an operator of which one is a constant of one element.
+fn with_scalar(graph: &Rewriter, index: usize) -> Option<(String, f32)> {
+    let [a, b] = graph.node(index)?.input.as_slice() else { return None };
+    match (graph.scalar(a), graph.scalar(b)) {
+        (None, Some(value)) => Some((a.clone(), value)),
+        (Some(value), None) => Some((b.clone(), value)),
+        _ => None,
+    }
+}
+
+fn only_output_reader(graph: &Rewriter, index: usize) -> Option<usize> {
+    graph.only_reader(graph.node(index)?.output.first()?)
+}
