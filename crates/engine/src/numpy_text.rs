@@ -1,4 +1,7 @@
 //! Arrays as NumPy prints them: the texts of OpenDR's data and targets are NumPy's.
+//!
+//! NumPy 1.14 to 2.1, that is. Later ones differ in two places: `repr` of more than 1000 elements names the shape
+//! (2.2), and `float32` turns scientific from 1e6 on instead of 1e8 (2.3).
 
 use std::fmt::Write as _;
 
@@ -37,11 +40,14 @@ impl Number {
             Self::F64(value) => value.to_string(),
             Self::Int(value) => value.to_string(),
         };
-        match shortest.split_once('.') {
-            None => shortest + ".",
-            Some((_, digits)) if digits.len() <= PRECISION => shortest,
-            Some(_) => format!("{:.PRECISION$}", self.value()).trim_end_matches('0').to_owned(),
-        }
+        let Some((_, digits)) = shortest.split_once('.') else { return shortest + "." };
+        // Of two shortest texts at the same distance, NumPy takes the even one; so does exact rounding.
+        let exact = format!("{:.*}", digits.len().min(PRECISION), self.value());
+        let same = match self {
+            Self::F32(value) => exact.parse() == Ok(value),
+            _ => exact.parse() == Ok(self.value()),
+        };
+        if same || digits.len() > PRECISION { exact.trim_end_matches('0').to_owned() } else { shortest }
     }
 
     /// Mantissa digits after the point, and exponent.

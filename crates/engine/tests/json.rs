@@ -12,7 +12,8 @@ use proptest::prelude::*;
 
 const DOCUMENT: &str = include_str!("../../../docs/json.md");
 
-/// Examples without blanks; NaN is no number that equals itself, so `null` is compared as text.
+/// The examples of targets (the command line's own records have no type). They are compared as JSON, because a
+/// NaN does not equal itself.
 #[test]
 fn examples_are_read_and_written() {
     let mut seen = Vec::new();
