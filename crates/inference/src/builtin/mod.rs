@@ -2,6 +2,7 @@
 
 mod engine;
 mod repair;
+mod size_limit;
 mod substitute;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -34,15 +35,16 @@ impl Runtime for Builtin {
         vec![Device::Cpu]
     }
 
-    fn open(&self, model: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
+    fn open(&self, bytes: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
         if !matches!(options.device, Device::Auto | Device::Cpu) {
             return Err(Error::device(format!(
                 "the built-in runtime has no device {}, only cpu; install ONNX Runtime for others",
                 options.device
             )));
         }
-        let header = OnnxHeader::read(model)?;
-        let model = repair::repaired(model)?.into_owned();
+        let header = OnnxHeader::read(bytes)?;
+        size_limit::check_constants(bytes)?;
+        let model = repair::repaired(bytes)?.into_owned();
         let mut load = ModelOptions::with_all_ops();
         load.prepack_weights(true);
         // rten checks most of what it reads, not all: what is left panics, and must not take the process along.
@@ -58,6 +60,7 @@ impl Runtime for Builtin {
                 }
                 .with_source(error)
             })?;
+        size_limit::check_shapes(&model, bytes)?;
         let threads = Arc::new(ThreadPool::with_num_threads(options.thread_count()?));
         Ok(Box::new(BuiltinEngine::new(model, header, threads)?))
     }

@@ -48,27 +48,33 @@ fn rewritten_field<'a>(
 ) -> Result<Option<Vec<u8>>> {
     Ok(match rewritten(message, rewrite)? {
         Cow::Borrowed(_) => None,
-        Cow::Owned(message) => {
-            let mut field = Vec::new();
-            put_bytes(&mut field, number, &message);
-            Some(field)
-        }
+        Cow::Owned(message) => Some(field_from_message(number, &message)),
     })
+}
+
+fn field_from_message(number: u64, message: &[u8]) -> Vec<u8> {
+    let mut field = Vec::new();
+    put_bytes(&mut field, number, message);
+    field
 }
 
 fn rewritten_graph(graph: &[u8], weights: &Weights<'_>) -> Result<Option<Vec<u8>>> {
     rewritten_field(7, graph, |field| match (field.number, field.value) {
-        (1, Value::Bytes(node)) => match weights.substitute(node)? {
-            Some(nodes) => Ok(Some(nodes)),
-            None => unpacked_node(node),
-        },
+        (1, Value::Bytes(node)) => {
+            let node = unpacked_node(node)?;
+            match (weights.substitute(&node)?, node) {
+                (Some(nodes), _) => Ok(Some(nodes)),
+                (None, Cow::Owned(node)) => Ok(Some(field_from_message(1, &node))),
+                (None, Cow::Borrowed(_)) => Ok(None),
+            }
+        }
         _ => Ok(None),
     })
 }
 
 /// The node with the lists in its attributes written one by one.
-fn unpacked_node(node: &[u8]) -> Result<Option<Vec<u8>>> {
-    rewritten_field(1, node, |field| match (field.number, field.value) {
+fn unpacked_node(node: &[u8]) -> Result<Cow<'_, [u8]>> {
+    rewritten(node, |field| match (field.number, field.value) {
         (5, Value::Bytes(attribute)) => rewritten_field(5, attribute, |field| Ok(unpacked(field))),
         _ => Ok(None),
     })

@@ -4,6 +4,7 @@
 //!   becomes a scalar, and the next operator that relies on the dimension fails. A scalar weight over anything becomes
 //!   `Mul(Reciprocal(b), a)`, whose shape is right.
 //! * It concatenates no bytes. Quantised tensors are joined as 32-bit integers.
+//! * It does not infer a convolution's `kernel_shape`, nor a pooling's `strides`, where a model leaves them out.
 
 use std::collections::{HashMap, HashSet};
 
@@ -23,20 +24,24 @@ pub(super) struct Weights<'a> {
     scalars: HashSet<&'a [u8]>,
     /// Outputs of `QuantizeLinear`, by name, with the type of their zero point.
     quantised: HashMap<&'a [u8], u64>,
+    /// Sizes of the weights.
+    dims: HashMap<&'a [u8], Vec<u64>>,
 }
 
 impl<'a> Weights<'a> {
     pub(super) fn read(graph: &'a [u8]) -> Result<Self> {
         let mut types = HashMap::new();
         let mut scalars = HashSet::new();
+        let mut dims = HashMap::new();
         let mut quantise = Vec::new();
         let mut weight = |name, tensor| -> Result<()> {
             let weight = Weight::read(tensor)?;
             let name = if weight.name.is_empty() { name } else { weight.name };
-            if weight.data_type == FLOAT && weight.scalar {
+            if weight.data_type == FLOAT && weight.dims.is_empty() {
                 scalars.insert(name);
             }
             types.insert(name, weight.data_type);
+            dims.insert(name, weight.dims);
             Ok(())
         };
         for field in Fields::new(graph) {
@@ -59,10 +64,10 @@ impl<'a> Weights<'a> {
             .filter_map(|(output, zero)| Some((output, *types.get(zero)?)))
             .filter(|(_, data_type)| matches!(*data_type, UINT8 | INT8))
             .collect();
-        Ok(Self { scalars, quantised })
+        Ok(Self { scalars, quantised, dims })
     }
 
-    /// The nodes, as fields of the graph, that stand for `node`; `None` when rten runs it as it is.
+    /// The nodes, as fields of the graph, that stand for `node`, whose lists are not packed; `None` when rten runs it as it is.
     pub(super) fn substitute(&self, node: &[u8]) -> Result<Option<Vec<u8>>> {
         let node = Node::read(node)?;
         Ok(match (node.kind, &node.inputs[..], &node.outputs[..]) {
@@ -73,6 +78,16 @@ impl<'a> Weights<'a> {
                 .iter()
                 .find_map(|input| self.quantised.get(input))
                 .map(|&data_type| concatenation(&node, output, data_type)),
+            (b"Conv" | b"ConvTranspose", &[_, kernel, ..], &[output]) if !node.has(b"kernel_shape") => self
+                .dims
+                .get(kernel)
+                .and_then(|dims| dims.get(2..))
+                .map(|shape| with_attribute(&node, output, b"kernel_shape", shape)),
+            (b"MaxPool" | b"AveragePool", _, &[output]) if !node.has(b"strides") => {
+                let rank =
+                    node.lists.iter().find(|(name, _)| name == b"kernel_shape").map_or(0, |(_, rank)| *rank);
+                Some(with_attribute(&node, output, b"strides", &vec![1; rank]))
+            }
             _ => None,
         })
     }
@@ -99,6 +114,13 @@ fn concatenation(node: &Node<'_>, output: &[u8], data_type: u64) -> Vec<u8> {
     nodes
 }
 
+fn with_attribute(node: &Node<'_>, output: &[u8], name: &[u8], values: &[u64]) -> Vec<u8> {
+    let attributes = [&node.attributes[..], &list_attribute(name, values)].concat();
+    let mut nodes = Vec::new();
+    put_node(&mut nodes, node.kind, &node.inputs, output, &attributes);
+    nodes
+}
+
 /// A name that no other value of the graph has.
 fn intermediate(output: &[u8], index: usize) -> Vec<u8> {
     [output, format!("/opendr/{index}").as_bytes()].concat()
@@ -110,6 +132,19 @@ fn cast_attribute(data_type: u64) -> Vec<u8> {
     let (mut attribute, mut field) = (Vec::new(), Vec::new());
     put_bytes(&mut attribute, 1, b"to");
     for (number, value) in [(3, data_type), (20, INT)] {
+        put_varint(&mut attribute, number << 3);
+        put_varint(&mut attribute, value);
+    }
+    put_bytes(&mut field, 5, &attribute);
+    field
+}
+
+/// An attribute that holds integers, as field of its node.
+fn list_attribute(name: &[u8], values: &[u64]) -> Vec<u8> {
+    const INTS: u64 = 7;
+    let (mut attribute, mut field) = (Vec::new(), Vec::new());
+    put_bytes(&mut attribute, 1, name);
+    for (number, value) in values.iter().map(|&value| (8, value)).chain([(20, INTS)]) {
         put_varint(&mut attribute, number << 3);
         put_varint(&mut attribute, value);
     }
@@ -136,11 +171,17 @@ struct Node<'a> {
     outputs: Vec<&'a [u8]>,
     /// Its attributes, as fields.
     attributes: Vec<u8>,
+    /// Their names, and how many integers they hold.
+    lists: Vec<(&'a [u8], usize)>,
     /// The tensor that a `Constant` holds.
     constant: Option<&'a [u8]>,
 }
 
 impl<'a> Node<'a> {
+    fn has(&self, attribute: &[u8]) -> bool {
+        self.lists.iter().any(|(name, _)| *name == attribute)
+    }
+
     fn read(bytes: &'a [u8]) -> Result<Self> {
         let mut node = Self::default();
         for field in Fields::new(bytes) {
@@ -150,11 +191,19 @@ impl<'a> Node<'a> {
                 (2, Value::Bytes(name)) => node.outputs.push(name),
                 (4, Value::Bytes(kind)) => node.kind = kind,
                 (5, Value::Bytes(attribute)) => {
+                    let mut name = &[][..];
+                    let mut count = 0;
                     for part in Fields::new(attribute) {
-                        if let Field { number: 5, value: Value::Bytes(tensor), .. } = part? {
-                            node.constant = Some(tensor);
+                        match part? {
+                            Field { number: 1, value: Value::Bytes(bytes), .. } => name = bytes,
+                            Field { number: 5, value: Value::Bytes(tensor), .. } => {
+                                node.constant = Some(tensor)
+                            }
+                            Field { number: 8, .. } => count += 1,
+                            _ => {}
                         }
                     }
+                    node.lists.push((name, count));
                     // Weights can be large, and no node that is replaced has any.
                     if node.constant.is_none() {
                         node.attributes.extend(field.raw);
@@ -171,17 +220,20 @@ impl<'a> Node<'a> {
 struct Weight<'a> {
     name: &'a [u8],
     data_type: u64,
-    scalar: bool,
+    dims: Vec<u64>,
 }
 
 impl<'a> Weight<'a> {
     fn read(tensor: &'a [u8]) -> Result<Self> {
-        let mut weight = Self { name: &[], data_type: 0, scalar: true };
+        let mut weight = Self { name: &[], data_type: 0, dims: Vec::new() };
         for field in Fields::new(tensor) {
             let field = field?;
             match (field.number, field.value) {
-                (1, Value::Bytes([])) => {}
-                (1, _) => weight.scalar = false,
+                (1, Value::Varint(dim)) => weight.dims.push(dim),
+                (1, Value::Bytes(packed)) => {
+                    let mut packed = Fields::new(packed);
+                    weight.dims.extend(std::iter::from_fn(|| packed.varint()));
+                }
                 (2, Value::Varint(data_type)) => weight.data_type = data_type,
                 (8, Value::Bytes(name)) => weight.name = name,
                 _ => {}
@@ -192,52 +244,4 @@ impl<'a> Weight<'a> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn message(fields: &[(u64, &[u8])]) -> Vec<u8> {
-        let mut message = Vec::new();
-        fields.iter().for_each(|(number, bytes)| put_bytes(&mut message, *number, bytes));
-        message
-    }
-
-    fn weight(name: &[u8], dims: &[u8], data_type: u8) -> Vec<u8> {
-        let mut weight: Vec<u8> = dims.iter().flat_map(|&dim| [0x08, dim]).collect();
-        weight.extend([0x10, data_type]);
-        put_bytes(&mut weight, 8, name);
-        weight
-    }
-
-    #[test]
-    fn only_scalar_floats_are_divided_anew() {
-        let division = message(&[(1, b"four"), (1, b"x"), (2, b"y"), (4, b"Div")]);
-        for (dims, data_type, replaced) in [(&[][..], 1, true), (&[1], 1, false), (&[], 6, false)] {
-            let graph = message(&[(5, &weight(b"four", dims, data_type))]);
-            let weights = Weights::read(&graph).unwrap();
-            assert_eq!(weights.substitute(&division).unwrap().is_some(), replaced, "{dims:?} {data_type}");
-        }
-    }
-
-    #[test]
-    fn bytes_are_joined_as_integers_and_floats_as_they_are() {
-        let quantise = message(&[(1, b"a"), (1, b"scale"), (1, b"zero"), (2, b"q"), (4, b"QuantizeLinear")]);
-        let graph = message(&[(1, &quantise), (5, &weight(b"zero", &[], 2))]);
-        let weights = Weights::read(&graph).unwrap();
-        let join =
-            |input: &[u8]| message(&[(1, input), (1, b"r"), (2, b"j"), (4, b"Concat"), (5, b"\x0a\x04axis")]);
-        assert!(weights.substitute(&join(b"a")).unwrap().is_none());
-        let nodes = weights.substitute(&join(b"q")).unwrap().unwrap();
-        let nodes: Vec<_> = Fields::new(&nodes)
-            .map(|field| match field.unwrap().value {
-                Value::Bytes(node) => Node::read(node).unwrap(),
-                _ => unreachable!(),
-            })
-            .collect();
-        let kinds: Vec<_> = nodes.iter().map(|node| node.kind).collect();
-        assert_eq!(kinds, [&b"Cast"[..], b"Cast", b"Concat", b"Cast"]);
-        assert_eq!(nodes[2].inputs, [nodes[0].outputs[0], nodes[1].outputs[0]]);
-        assert_eq!(nodes[2].attributes, message(&[(5, b"\x0a\x04axis")]));
-        assert_eq!(nodes[3].inputs, nodes[2].outputs);
-        assert_eq!(nodes[3].outputs, [b"j"]);
-    }
-}
+mod tests;

@@ -1,0 +1,156 @@
+//! Refuses models that ask for tensors no machine holds: rten would ask for the memory and abort the process.
+//!
+//! What can be known before a run is checked: constants that say how large something gets, before rten computes with
+//! them while loading, and after that the shapes that it infers.
+
+use std::collections::HashMap;
+
+use opendr_engine::{Error, Result};
+use rten::{Dimension, Model};
+
+use crate::protobuf::{Fields, Value};
+
+/// Elements of the largest tensor that a model may make.
+const MAX_ELEMENTS: f64 = (1_u32 << 30) as f64;
+
+/// The most that one `Resize` may enlarge.
+const MAX_ENLARGEMENT: f64 = (1_u32 << 16) as f64;
+
+/// Elements of the longest constant that says how large something gets: two for each dimension.
+const MAX_SIZES: usize = 16;
+
+/// Checks the constants that the operators of the ONNX file `model` take as sizes.
+///
+/// # Errors
+/// `Format` that names the operator and the constant.
+pub(super) fn check_constants(model: &[u8]) -> Result<()> {
+    for graph in messages(model, 7) {
+        let graph = graph?;
+        let mut constants = HashMap::new();
+        for tensor in messages(graph, 5) {
+            let constant = Constant::read(tensor?)?;
+            constants.insert(constant.name, constant);
+        }
+        for node in messages(graph, 1) {
+            let node = node?;
+            let kind = messages(node, 4).next().transpose()?.unwrap_or_default();
+            if kind == b"Constant" {
+                let name = messages(node, 2).next().transpose()?.unwrap_or_default();
+                for attribute in messages(node, 5) {
+                    for tensor in messages(attribute?, 5) {
+                        constants.insert(name, Constant { name, ..Constant::read(tensor?)? });
+                    }
+                }
+            }
+            let most = match kind {
+                b"ConstantOfShape" | b"Expand" | b"OneHot" | b"Pad" | b"Range" | b"Tile" => MAX_ELEMENTS,
+                b"Resize" => MAX_ENLARGEMENT,
+                _ => continue,
+            };
+            for input in messages(node, 1) {
+                let Some(constant) = constants.get(input?) else { continue };
+                // Sizes of a `Resize`, unlike its scales, are whole.
+                if constant.product() > if constant.whole { MAX_ELEMENTS } else { most } {
+                    return Err(too_large(constant.name, "asks for"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Checks what the shape inference of `loaded` says of the values in the ONNX file `model`.
+///
+/// # Errors
+/// `Format` that names the value.
+pub(super) fn check_shapes(loaded: &Model, model: &[u8]) -> Result<()> {
+    for graph in messages(model, 7) {
+        for node in messages(graph?, 1) {
+            for output in messages(node?, 2) {
+                let name = output?;
+                let shape = std::str::from_utf8(name).ok().and_then(|name| loaded.find_node(name));
+                let shape = shape.and_then(|id| loaded.node_info(id)?.shape()).unwrap_or_default();
+                let elements: f64 = shape
+                    .iter()
+                    .map(|dim| match dim {
+                        Dimension::Fixed(size) => *size as f64,
+                        // What is given to `run` decides.
+                        Dimension::Symbolic(_) => 1.0,
+                    })
+                    .product();
+                if elements > MAX_ELEMENTS {
+                    return Err(too_large(name, "has"));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn too_large(name: &[u8], verb: &str) -> Error {
+    let name = String::from_utf8_lossy(name);
+    Error::format(format!(
+        "damaged ONNX model: {name:?} {verb} more elements than the built-in runtime makes (2^30)"
+    ))
+}
+
+/// The fields with this number that hold bytes, text or messages.
+fn messages(message: &[u8], number: u64) -> impl Iterator<Item = Result<&[u8]>> {
+    Fields::new(message).filter_map(move |field| match field {
+        Ok(field) if field.number == number => match field.value {
+            Value::Bytes(bytes) => Some(Ok(bytes)),
+            _ => None,
+        },
+        Ok(_) => None,
+        Err(error) => Some(Err(error)),
+    })
+}
+
+/// A short constant; longer ones are kept without their elements.
+struct Constant<'a> {
+    name: &'a [u8],
+    /// Whether its elements are whole numbers.
+    whole: bool,
+    elements: Vec<f64>,
+}
+
+impl<'a> Constant<'a> {
+    fn read(tensor: &'a [u8]) -> Result<Self> {
+        let (mut name, mut data_type, mut elements) = (&[][..], 0, Vec::new());
+        let mut raw: &[u8] = &[];
+        for field in Fields::new(tensor) {
+            let field = field?;
+            match (field.number, field.value) {
+                (2, Value::Varint(value)) => data_type = value,
+                // float_data, int32_data, int64_data.
+                (4, Value::Bytes(packed)) if packed.len() <= 4 * MAX_SIZES => elements.extend(floats(packed)),
+                (5 | 7, Value::Varint(value)) if elements.len() < MAX_SIZES => {
+                    elements.push(value.cast_signed() as f64)
+                }
+                (5 | 7, Value::Bytes(packed)) if packed.len() <= 10 * MAX_SIZES => {
+                    let mut packed = Fields::new(packed);
+                    elements.extend(std::iter::from_fn(|| Some(packed.varint()?.cast_signed() as f64)));
+                }
+                (8, Value::Bytes(bytes)) => name = bytes,
+                (9, Value::Bytes(bytes)) if bytes.len() <= 8 * MAX_SIZES => raw = bytes,
+                _ => {}
+            }
+        }
+        match data_type {
+            1 => elements.extend(floats(raw)),
+            6 => elements.extend(raw.as_chunks().0.iter().map(|&bytes| f64::from(i32::from_le_bytes(bytes)))),
+            7 => elements.extend(raw.as_chunks().0.iter().map(|&bytes| i64::from_le_bytes(bytes) as f64)),
+            _ => {}
+        }
+        Ok(Self { name, whole: data_type != 1, elements })
+    }
+
+    /// How much it enlarges at most.
+    fn product(&self) -> f64 {
+        self.elements.iter().map(|element| element.abs().max(1.0)).product()
+    }
+}
+
+fn floats(bytes: &[u8]) -> impl Iterator<Item = f64> {
+    bytes.as_chunks().0.iter().map(|&bytes| f64::from(f32::from_le_bytes(bytes)))
+}
