@@ -1,14 +1,16 @@
 //! Both runtimes give the same outputs for every model of the test data, on real pictures.
 
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+#![cfg(test)]
 
 mod pictures;
+mod test_data;
 
 use std::path::{Path, PathBuf};
 
 use opendr_engine::Device;
 use opendr_inference::{Builtin, ElementType, OnnxRuntime, Session, TensorData, TensorInfo, TensorView};
-use pictures::{Scale, read, tensor_from_picture, test_data};
+use pictures::{Scale, read, tensor_from_picture};
+use test_data::test_data;
 
 /// Share of an output's largest magnitude by which two runtimes may differ.
 const TOLERANCE: f64 = 1e-4;

@@ -131,7 +131,10 @@ impl OnnxRuntime {
     fn open_on_cpu(&self, model: &[u8], options: &SessionOptions) -> Result<Session> {
         self.builder(options)?.commit_from_memory(model).map_err(|error| {
             let message = "ONNX Runtime cannot open the ONNX model";
+            // It reports an operator that it has never heard of as a failure like any other.
+            let unknown = error.message().contains("No Op registered");
             match error.code() {
+                _ if unknown => Error::unsupported(message),
                 ort::ErrorCode::NotImplemented => Error::unsupported(message),
                 _ => Error::format(message),
             }
