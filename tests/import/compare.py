@@ -45,9 +45,10 @@ MODELS = {
     "handlandmark-lite": (None, "astronaut.png", UNIT, set()),
     "selfie": (None, "astronaut.png", UNIT, set()),
 }
-# TensorFlow.js in WebAssembly lacks an operator of facemesh-attention; in the masks of BlazePose, whose logits reach
-# 1900, it is off by 3e-3 from TensorFlow.js in JavaScript.
-IN_JAVASCRIPT = {"facemesh-attention", "blazepose-full", "blazepose-lite"}
+# An operator of facemesh-attention is missing in TensorFlow.js's WebAssembly.
+IN_JAVASCRIPT = {"facemesh-attention"}
+# The logits of this output of BlazePose reach 1900; TensorFlow.js itself differs by 2e-3 between its backends.
+STEEP = {"activation_segmentation": 5e-3}
 RANDOM_SIDE = 256  # for image inputs of open size
 
 
@@ -142,7 +143,7 @@ class Model:
                 own = own.transpose(0, 2, 3, 1)
             scale = np.abs(wanted).max()
             difference = np.abs(own - wanted).max() if own.shape == wanted.shape else np.inf
-            if not difference <= 1e-3 * scale + 1e-7:
+            if not difference <= STEEP.get(name, 1e-3) * scale + 1e-7:
                 self.failures.append(f"{name} in {who} on {kind}: {difference:.2g} of {scale:.2g}")
             worst = max(worst, difference / max(scale, 1e-4))
         return worst

@@ -12,6 +12,6 @@ mod wire;
 pub use array::{Array, Data, Kind, element_count};
 pub use builder::Builder;
 pub use fold::slice_range;
-pub use model::{decode_model, encode_model};
+pub use model::{bytes_from_model, model_from_bytes, model_from_graph};
 pub use operator::Operator;
 pub use wire::{Dim, Wire};

@@ -12,7 +12,7 @@ use super::options::ImportOptions;
 use super::trace::Trace;
 use super::value::Value;
 use super::weights::read_weights;
-use crate::onnx::{Wire, encode_model, passes};
+use crate::onnx::{Wire, bytes_from_model, model_from_graph, passes};
 
 /// Weights beyond this do not fit into one ONNX file after widening.
 const MAX_WEIGHT_BYTES: u64 = 1 << 29;
@@ -56,7 +56,7 @@ pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOpti
     }
     let mut graph = trace.lowering.graph.finish("tfjs");
     passes::simplify(&mut graph);
-    Ok(encode_model(graph))
+    Ok(bytes_from_model(&model_from_graph(graph)))
 }
 
 /// Outputs of the model that the options ask for.

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test support")]
 
 use opendr_engine::Result;
-use opendr_import::onnx::{decode_model, proto::NodeProto};
+use opendr_import::onnx::{model_from_bytes, proto::NodeProto};
 use opendr_import::{ImportOptions, onnx_from_tfjs};
 use rten::{Model, Value};
 use rten_tensor::Tensor;
@@ -83,7 +83,7 @@ impl Tiny {
 
     /// Nodes of the imported graph, in order.
     pub fn imported_nodes(&self) -> Vec<NodeProto> {
-        decode_model(&self.import().unwrap()).unwrap().graph.unwrap().node
+        model_from_bytes(&self.import().unwrap()).unwrap().graph.unwrap().node
     }
 
     /// Imports and runs it on an image given channels-last (other inputs as they are); outputs in order of their names.
