@@ -142,7 +142,7 @@ pub fn text(name: &str, outputs: &Outputs, timings: Option<Timings>) -> String {
         write!(text, " ({timings})").ok();
     }
     for (output, value) in outputs.iter() {
-        let found = readable(value);
+        let found = format!("{value:#}");
         if found.trim().is_empty() {
             write!(text, "\n  {output}: none").ok();
         }
@@ -151,11 +151,4 @@ pub fn text(name: &str, outputs: &Outputs, timings: Option<Timings>) -> String {
         }
     }
     text
-}
-
-fn readable(value: &Value) -> String {
-    match value {
-        Value::BoundingBoxList(boxes) => format!("{boxes:#}"),
-        other => format!("{other:?}"),
-    }
 }
