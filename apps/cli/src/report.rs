@@ -1,4 +1,4 @@
-//! What is told of each frame: text for people, lines of JSON for programs (`docs/json.md`).
+//! What is told of each frame: text for people, lines of JSON for programs (`docs/command-line.md`).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -100,8 +100,10 @@ impl<'a> Report<'a> {
     ///
     /// # Errors
     /// `Io` when it cannot be written.
-    pub fn failure(&mut self, input: Option<&str>, error: &Error) -> Result<()> {
+    pub fn failure(&mut self, input: Option<&Path>, error: &Error) -> Result<()> {
         self.failures += 1;
+        let input = input.map(Path::to_string_lossy);
+        let input = input.as_deref();
         self.bar.suspend(|| eprintln!("error: {error}"));
         let error = Some(Failure { kind: error.kind().name(), message: error.to_string() });
         self.line(&Line { input, index: None, outputs: None, error, timings_ms: None })

@@ -26,7 +26,8 @@ impl Timings {
         timing::start();
         let result = call();
         let total = start.elapsed();
-        let ms = |time: Duration| time.as_secs_f64() * 1e3;
+        // Finer than a microsecond is noise.
+        let ms = |time: Duration| time.as_micros() as f64 / 1e3;
         let timings = match timing::take() {
             Some(runs) => {
                 let pre = runs.first_start - start;

@@ -19,8 +19,8 @@ const VIDEOS: [&str; 3] = ["mp4", "mov", "mkv"];
 /// Frames a second of a video made of pictures.
 const RATE_OF_PICTURES: f64 = 25.0;
 
-/// What could not be written, and why.
-pub type Failures = Vec<(PathBuf, Error)>;
+/// What could not be written and why, with the input where there is one.
+pub type Failures = Vec<(Option<PathBuf>, Error)>;
 
 /// Writes annotated frames.
 pub struct Writer {
@@ -63,8 +63,7 @@ impl Writer {
     /// Waits until all is written.
     pub fn finish(self) -> Failures {
         drop(self.jobs);
-        let panicked =
-            |_| vec![(PathBuf::new(), Error::internal("the thread that writes pictures panicked"))];
+        let panicked = |_| vec![(None, Error::internal("the thread that writes pictures panicked"))];
         self.thread.join().unwrap_or_else(panicked)
     }
 }
@@ -82,11 +81,11 @@ fn write_all(mut place: Place, jobs: &Receiver<(Frame, Outputs)>) -> Failures {
         outputs.iter().for_each(|(_, value)| draw(&mut frame.image, value, &Style::default()));
         let input = frame.path.to_path_buf();
         if let Err(error) = place.write(frame) {
-            failures.push((input, error));
+            failures.push((Some(input), error));
         }
     }
     if let Err(error) = place.close() {
-        failures.push((PathBuf::new(), error));
+        failures.push((None, error));
     }
     failures
 }

@@ -144,7 +144,8 @@ impl fmt::Display for Error {
         }
         f.write_str(&self.0.message)?;
         if let Some(source) = &self.0.source {
-            write!(f, " ({source})")?;
+            // Some libraries end their messages with a line break.
+            write!(f, " ({})", source.to_string().trim_end())?;
         }
         Ok(())
     }

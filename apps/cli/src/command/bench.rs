@@ -36,7 +36,12 @@ pub fn grammar() -> Command {
         )
         .arg(count("frames", "100").help("Frames to measure"))
         .arg(count("warmup", "10").help("Frames before that"))
-        .arg(Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON (docs/json.md)"))
+        .arg(
+            Arg::new("json")
+                .long("json")
+                .action(ArgAction::SetTrue)
+                .help("Print JSON (docs/command-line.md)"),
+        )
         .args(loading::flags())
         .after_help("Examples:\n  opendr bench LEARNER\n  opendr bench LEARNER faces.jpg --threads 1 --json")
 }

@@ -47,7 +47,7 @@ pub fn grammar() -> Command {
                 .value_name("DIR|FILE")
                 .help("Write annotated pictures: into a folder, or to one picture or video file"),
             path("json").num_args(0..=1).require_equals(true).value_name("FILE").help(
-                "Print a line of JSON a frame instead of text, or write it to FILE besides (docs/json.md)",
+                "Print a line of JSON a frame instead of text, or write it to FILE besides (docs/command-line.md)",
             ),
             switch("show-timings").help("Tell how long each stage took"),
             switch("sequence").help("The pictures follow each other in time, as frames of one video do"),
@@ -88,11 +88,11 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let told = run.frames(source.take(limit as usize), &mut report, writer.as_ref(), &bar);
+    let told = run.frames(source, limit, &mut report, writer.as_ref(), &bar);
     bar.end();
     // Even when the report cannot go on, what was handed over is finished.
     for (input, error) in writer.map(Writer::finish).unwrap_or_default() {
-        report.failure(Some(&input.to_string_lossy()), &error)?;
+        report.failure(input.as_deref(), &error)?;
     }
     told?;
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
@@ -119,7 +119,7 @@ fn open(inputs: &[&PathBuf], report: &mut Report<'_>) -> Result<Source> {
     for input in inputs {
         match Source::open(input) {
             Ok(_) => good.push(*input),
-            Err(error) => report.failure(Some(&input.to_string_lossy()), &error)?,
+            Err(error) => report.failure(Some(input), &error)?,
         }
     }
     Source::open_all(good, SourceOptions::default())
@@ -139,12 +139,14 @@ struct Run {
 impl Run {
     fn frames(
         &mut self,
-        frames: impl Iterator<Item = Result<Frame>>,
+        mut source: Source,
+        limit: u64,
         report: &mut Report<'_>,
         writer: Option<&Writer>,
         bar: &Bar,
     ) -> Result<()> {
-        for frame in frames {
+        for _ in 0..limit {
+            let Some(frame) = source.next() else { break };
             match frame.and_then(|frame| self.answer(frame)) {
                 Ok((frame, outputs, timings)) => {
                     report.frame(&frame, &outputs, timings)?;
@@ -152,7 +154,7 @@ impl Run {
                         writer.put(frame, outputs)?;
                     }
                 }
-                Err(error) => report.failure(None, &error)?,
+                Err(error) => report.failure(source.last_path(), &error)?,
             }
             bar.advance(1);
             if interrupted() {

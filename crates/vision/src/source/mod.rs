@@ -15,6 +15,7 @@ mod tests;
 
 use std::collections::VecDeque;
 use std::path::Path;
+use std::sync::Arc;
 
 use opendr_engine::{Error, Result};
 
@@ -37,6 +38,8 @@ use threaded::Threaded;
 pub struct Source {
     waiting: VecDeque<Segment>,
     reading: Option<Reading>,
+    /// The video file that is being read.
+    video: Option<Arc<Path>>,
     options: SourceOptions,
     live: bool,
     length: Option<u64>,
@@ -81,6 +84,7 @@ impl Source {
             live: false,
             waiting: segments.into(),
             reading: None,
+            video: None,
             options,
             given: 0,
             dropped: 0,
@@ -108,7 +112,7 @@ impl Source {
         let options = SourceOptions::default();
         let length = frames.size_hint().1.filter(|_| !live).map(|length| length as u64);
         let reading = Some(Reading::Threaded(Threaded::detached(frames, live, options.ahead)));
-        Self { waiting: VecDeque::new(), reading, options, live, length, given: 0, dropped: 0 }
+        Self { waiting: VecDeque::new(), reading, video: None, options, live, length, given: 0, dropped: 0 }
     }
 
     /// How many frames there will be, as far as files tell; `None` when unknown or endless.
@@ -130,15 +134,28 @@ impl Source {
         self.dropped + current
     }
 
+    /// The file that the item just given out came from, also when that was an error. `None` when there was none yet or
+    /// is none left, and for cameras and frames that a program makes.
+    pub fn last_path(&self) -> Option<&Path> {
+        match &self.reading {
+            Some(Reading::Pictures(pictures)) => pictures.last_path(),
+            Some(Reading::Threaded(_) | Reading::Failed(_)) => self.video.as_deref(),
+            None => None,
+        }
+    }
+
     fn start_next(&mut self) {
         self.dropped = self.dropped();
         self.reading = None;
+        self.video = None;
         self.reading = self.waiting.pop_front().map(|segment| match segment {
             Segment::Pictures(paths) => Reading::Pictures(Pictures::new(paths, &self.options)),
             Segment::Video(path, info) => {
                 let max_samples = self.options.decoder.max_samples;
-                let reader = info
-                    .and_then(|info| VideoReader::start(&Ffmpeg::default(), path.into(), info, max_samples));
+                let path: Arc<Path> = path.into();
+                self.video = Some(Arc::clone(&path));
+                let reader =
+                    info.and_then(|info| VideoReader::start(&Ffmpeg::default(), path, info, max_samples));
                 match reader {
                     Ok(reader) => Reading::Threaded(Threaded::new(reader, false, self.options.ahead)),
                     Err(error) => Reading::Failed(Some(error)),

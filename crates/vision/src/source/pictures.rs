@@ -63,6 +63,12 @@ impl Pictures {
         Self { threads: threads.collect(), shared }
     }
 
+    /// The file of the last item.
+    pub(super) fn last_path(&self) -> Option<&Path> {
+        let last = self.shared.lock().next_out.checked_sub(1)?;
+        self.shared.paths.get(last).map(|path| &**path)
+    }
+
     /// What the threads share; it goes when they have ended.
     #[cfg(test)]
     pub(super) fn watch(&self) -> std::sync::Weak<impl Sized + use<>> {

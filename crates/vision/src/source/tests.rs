@@ -94,14 +94,20 @@ fn broken_files_are_named_and_passed() {
     fs::write(folder.0.join("5.png"), &whole[..whole.len() / 2]).unwrap();
     folder.picture("6.png", 6);
     for input in [folder.0.clone(), folder.0.join("*")] {
-        let items: Vec<_> = Source::open(&input).unwrap().collect();
-        let found: Vec<_> = items.iter().map(|item| item.as_ref().ok().map(level)).collect();
+        let mut source = Source::open(&input).unwrap();
+        assert_eq!(source.last_path(), None);
+        let mut items = Vec::new();
+        while let Some(item) = source.next() {
+            items.push((item, source.last_path().unwrap().to_owned()));
+        }
+        let found: Vec<_> = items.iter().map(|(item, _)| item.as_ref().ok().map(level)).collect();
         let wanted = [Some(1), None, None, None, None, Some(6)];
         // A pattern is matched by files alone, as a shell's is not.
         let wanted: Vec<_> =
             wanted.into_iter().enumerate().filter(|(index, _)| *index != 3 || input == folder.0).collect();
         assert_eq!(found, wanted.iter().map(|(_, level)| *level).collect::<Vec<_>>());
-        for (item, (index, _)) in items.iter().zip(&wanted) {
+        for ((item, path), (index, _)) in items.iter().zip(&wanted) {
+            assert!(path.file_stem().unwrap().to_str() == Some(&format!("{}", index + 1)), "{path:?}");
             if let Err(error) = item {
                 let text = error.to_string();
                 assert!(text.contains(&format!("{}.", index + 1)), "{text}");

@@ -36,6 +36,9 @@ impl Ffmpeg {
     pub(super) fn spawn(program: &Path, arguments: &[OsString], stdin: Stdio) -> Result<Child> {
         let mut command = Command::new(program);
         command.args(arguments).stdin(stdin).stdout(Stdio::piped()).stderr(Stdio::piped());
+        // Ctrl-C in a terminal goes to the whole group: the program then decides what becomes of a half-written video.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
         command.spawn().map_err(|error| {
             if error.kind() != std::io::ErrorKind::NotFound {
                 return Error::from(error).context(format!("starting {}", program.display()));
