@@ -19,7 +19,7 @@ pub struct PortFile {
 
 #[derive(Debug)]
 enum Values {
-    Same(Value),
+    Same(Box<Value>),
     PerFrame(Vec<Option<Value>>),
 }
 
@@ -54,7 +54,7 @@ impl PortFile {
         }
         let text = fs::read(path)?;
         let values = match serde_json::from_slice::<Value>(&text) {
-            Ok(value) => Values::Same(of_type(port.value_type, value)?),
+            Ok(value) => Values::Same(Box::new(of_type(port.value_type, value)?)),
             Err(no_target) => Values::PerFrame(values_of_lines(port, &text).map_err(|error| {
                 error
                     .context(format!("neither one target ({no_target}) nor lines of \"opendr infer --json\""))
