@@ -29,13 +29,15 @@ pub fn run_with(environment: impl Fn(&mut Command)) -> Result<()> {
     for model in models.as_array().into_iter().flatten() {
         let [name, task] = ["model", "task"].map(|key| model[key].as_str().unwrap_or_default());
         let kept = best.entry(task.to_owned()).or_default();
-        let report = match json(&mut opendr(&["bench", name, "--frames", "40", "--warmup", "5", "--json", "--quiet"])) {
-            Ok(report) => report,
-            Err(error) => {
-                println!("{task}: {name}: not measured ({error})");
-                continue;
-            }
-        };
+        let report =
+            match json(&mut opendr(&["bench", name, "--frames", "40", "--warmup", "5", "--json", "--quiet"]))
+            {
+                Ok(report) => report,
+                Err(error) => {
+                    println!("{task}: {name}: not measured ({error})");
+                    continue;
+                }
+            };
         let number = |key: &str| report[key].as_f64().unwrap_or(f64::NAN);
         let (fps, peak) = (number("frames_per_second"), number("peak_memory_mb"));
         println!("{task}: {name}: {fps:.0} frames a second, {peak:.0} MB, {}", report["runtime"]);
@@ -43,7 +45,8 @@ pub fn run_with(environment: impl Fn(&mut Command)) -> Result<()> {
             kept.push(name.to_owned());
         }
     }
-    let slow: Vec<_> = best.iter().filter(|(_, kept)| kept.is_empty()).map(|(task, _)| task.as_str()).collect();
+    let slow: Vec<_> =
+        best.iter().filter(|(_, kept)| kept.is_empty()).map(|(task, _)| task.as_str()).collect();
     match slow.is_empty() {
         true => Ok(()),
         false => Err(format!(

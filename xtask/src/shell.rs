@@ -29,7 +29,8 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
     println!("\n=== {name}: {}", line(command));
     let start = Instant::now();
-    let status = command.status().map_err(|error| format!("{name}: cannot run {}: {error}", line(command)))?;
+    let status =
+        command.status().map_err(|error| format!("{name}: cannot run {}: {error}", line(command)))?;
     println!("=== {name}: {:.0} s", start.elapsed().as_secs_f64());
     if status.success() { Ok(()) } else { Err(format!("{name} failed ({status}): {}", line(command))) }
 }

@@ -29,7 +29,10 @@ pub fn run() -> Result<()> {
         step("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests"]))?;
     }
     step("documentation tests", &mut cargo(&["test", "--workspace", "--doc"]))?;
-    step("documentation", cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"))?;
+    step(
+        "documentation",
+        cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
+    )?;
     step("release build", &mut cargo(&["build", "--release"]))?;
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
@@ -66,7 +69,8 @@ fn test_data() -> Option<PathBuf> {
 
 /// Where packages that tests download stay from run to run.
 fn cache() -> Result<PathBuf> {
-    let cache = std::env::var_os("OPENDR_TEST_CACHE").map_or_else(|| target().join("test-cache"), PathBuf::from);
+    let cache =
+        std::env::var_os("OPENDR_TEST_CACHE").map_or_else(|| target().join("test-cache"), PathBuf::from);
     std::fs::create_dir_all(&cache).map_err(|error| format!("{}: {error}", cache.display()))?;
     Ok(Path::new(&cache).to_owned())
 }

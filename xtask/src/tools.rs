@@ -67,5 +67,8 @@ pub fn install_debian() -> Result<()> {
         apt
     };
     step("debian lists", apt().args(["update", "--quiet"]))?;
-    step("debian packages", apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(packages))
+    step(
+        "debian packages",
+        apt().args(["install", "--yes", "--quiet", "--no-install-recommends"]).args(packages),
+    )
 }

@@ -9,6 +9,7 @@ use opendr_perception::object_detection_2d::{CenterNet, Nanodet};
 use opendr_perception::pose_estimation::{Movenet, Posenet};
 
 /// Every learner: those compiled in, and those that the program adds.
+#[rustfmt::skip] // One line a learner.
 pub fn registry() -> &'static Registry {
     static REGISTRY: OnceLock<Registry> = OnceLock::new();
     REGISTRY.get_or_init(|| {

@@ -64,7 +64,8 @@ where
     (0..3).for_each(|_| handle.infer_into(&image, &mut target).unwrap());
     let whole = fewest(|| handle.infer_into(&image, &mut target).unwrap());
 
-    let session = Session::open(&Model::open(&path).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
+    let session =
+        Session::open(&Model::open(&path).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
     let input = vec![0.0_f32; 3 * size[0] * size[1]];
     let input = [TensorView::new(&[1, 3, size[0], size[1]], &input).unwrap()];
     (0..3).for_each(|_| session.run(&input, |_| Ok(())).unwrap());

@@ -21,7 +21,8 @@ impl Models {
             println!("skipped: no OPENDR_TEST_DATA");
             return None;
         }
-        let cache = env::var_os("OPENDR_TEST_CACHE").map_or_else(|| root.join("target/test-cache"), PathBuf::from);
+        let cache =
+            env::var_os("OPENDR_TEST_CACHE").map_or_else(|| root.join("target/test-cache"), PathBuf::from);
         let mut options = ZooOptions::new(cache.join("opendr"));
         options.repository = Some(shared.join("models").to_string_lossy().into_owned());
         Some(Self { zoo: Zoo::new(options).unwrap(), shared })
