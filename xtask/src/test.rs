@@ -38,8 +38,12 @@ pub fn run() -> Result<()> {
     pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
     environment.apply(&mut pytest);
     step("tests from outside", &mut pytest)?;
-    if environment.data.is_some() {
-        realtime::run_with(|bench| environment.apply(bench))?;
+    if let Some(data) = &environment.data {
+        realtime::run_with(|bench| {
+            environment.apply(bench);
+            bench.env("OPENDR_CACHE", environment.cache.join("opendr"));
+            bench.env("OPENDR_MODEL_REPOSITORY", data.join("models"));
+        })?;
     }
     println!("\nall checks passed");
     Ok(())

@@ -2,14 +2,14 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use syn::{DeriveInput, Expr, Field, LitStr, Result, Token};
+use syn::{DeriveInput, Expr, ExprRange, Field, LitStr, Result};
 
 use crate::doc::{doc_of, named_fields};
 
 #[derive(Default)]
 struct Attributes {
     default: Option<Expr>,
-    range: Option<(Expr, Expr)>,
+    range: Option<ExprRange>,
     unit: Option<LitStr>,
     log: bool,
     live: bool,
@@ -22,10 +22,7 @@ fn attributes_of(field: &Field) -> Result<Attributes> {
             if meta.path.is_ident("default") {
                 found.default = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("range") {
-                let value = meta.value()?;
-                let low = value.parse()?;
-                value.parse::<Token![..=]>()?;
-                found.range = Some((low, value.parse()?));
+                found.range = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("unit") {
                 found.unit = Some(meta.value()?.parse()?);
             } else if meta.path.is_ident("log") {
@@ -55,9 +52,10 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
             None => quote!(::core::default::Default::default()),
         };
         let range = match range {
-            Some((low, high)) => quote! {
+            Some(ExprRange { start: Some(low), end: Some(high), .. }) => quote! {
                 ::core::option::Option::Some(::opendr_engine::params::ParamRange { low: #low as f64, high: #high as f64 })
             },
+            Some(range) => return Err(syn::Error::new_spanned(range, "LOW..=HIGH is wanted")),
             None => quote!(::core::option::Option::None),
         };
         let unit = unit.map_or_else(String::new, |unit| unit.value());
