@@ -3,6 +3,8 @@
 //! `OPENDR_TEST_DATA=../shared cargo bench -p opendr --bench frame_to_targets`; `benches/compare.py` runs the same in
 //! Python beside it.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 #[path = "../tests/models/mod.rs"]
 mod models;
 
