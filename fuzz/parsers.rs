@@ -19,7 +19,9 @@ pub const PARSERS: [(&str, Parser); 6] = [
 ];
 
 fn manifest_json(bytes: &[u8]) {
-    if let Ok(manifest) = Manifest::from_json(bytes) {
+    let Ok(manifest) = Manifest::from_json(bytes) else { return };
+    // OpenDR's own files state no checksums; what they say cannot be written as ours.
+    if manifest.files.iter().all(|file| file.size.is_some() && file.sha256.is_some()) {
         let json = manifest.to_json().unwrap();
         assert_eq!(Manifest::from_json(&json).unwrap(), manifest);
     }

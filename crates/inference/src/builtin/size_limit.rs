@@ -49,6 +49,10 @@ pub(super) fn check_constants(model: &[u8]) -> Result<()> {
             };
             for input in messages(node, 1) {
                 let Some(constant) = constants.get(input?) else { continue };
+                // What a `Pad` fills with may be anything, and infinite.
+                if kind == b"Pad" && !constant.whole {
+                    continue;
+                }
                 // Sizes of a `Resize`, unlike its scales, are whole.
                 if constant.product() > if constant.whole { MAX_ELEMENTS } else { most } {
                     return Err(too_large(constant.name, "asks for"));
