@@ -35,18 +35,31 @@ def nanodet(picture):
     return planes((cv2.resize(picture, (416, 416)).astype(np.float32) - MEAN) / STD)
 
 
-def letterbox(picture, side, pad=0):
+def letterbox(picture, side, centred=True):
     height, width = picture.shape[:2]
     scale = min(side / width, side / height)
     width, height = round(width * scale), round(height * scale)
-    left, top = (side - width) // 2, (side - height) // 2
+    left, top = ((side - width) // 2, (side - height) // 2) if centred else (0, 0)
     picture = cv2.resize(picture, (width, height))
     bottom, right = side - height - top, side - width - left
-    return cv2.copyMakeBorder(picture, top, bottom, left, right, cv2.BORDER_CONSTANT, value=(pad, pad, pad))
+    return cv2.copyMakeBorder(picture, top, bottom, left, right, cv2.BORDER_CONSTANT, value=0)
 
 
 def nanodet_letterbox(picture):
     return planes((letterbox(picture, 416).astype(np.float32) - MEAN) / STD)
+
+
+def posenet(picture):
+    return planes(cv2.cvtColor(letterbox(picture, 385), cv2.COLOR_BGR2RGB).astype(np.float32) / 127.5 - 1)
+
+
+def yunet(picture):
+    return planes(letterbox(picture, 640, centred=False).astype(np.float32))
+
+
+def ultra_light(picture):
+    picture = cv2.cvtColor(cv2.resize(picture, (320, 240)), cv2.COLOR_BGR2RGB)
+    return planes((picture.astype(np.float32) - 127) / 128)
 
 
 def movenet(picture):
@@ -62,7 +75,9 @@ CASES = {
     "centernet_1080p": lambda: rgb(CAMERA, 512, 512),
     "nanodet_1080p": lambda: nanodet(CAMERA),
     "nanodet_letterbox_1080p": lambda: nanodet_letterbox(CAMERA),
-    "third_1080p": lambda: rgb(CAMERA, 640, 360),
+    "posenet_1080p": lambda: posenet(CAMERA),
+    "yunet_1080p": lambda: yunet(CAMERA),
+    "ultra_light_1080p": lambda: ultra_light(CAMERA),
     "movenet_1080p": lambda: movenet(CAMERA),
     "centernet_320x240": lambda picture=frame(320, 240): rgb(picture, 512, 512),
     "centernet_1080p_chw": lambda picture=np.ascontiguousarray(CAMERA.transpose(2, 0, 1)): centernet_from_planes(picture),

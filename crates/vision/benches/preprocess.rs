@@ -38,7 +38,12 @@ fn preprocess(criterion: &mut Criterion) {
     case::<f32>(criterion, "nanodet_1080p", &nanodet, &camera);
     let letterbox = nanodet.letterbox(Anchor::Centre, 0.0);
     case::<f32>(criterion, "nanodet_letterbox_1080p", &letterbox, &camera);
-    case::<f32>(criterion, "third_1080p", &Preprocess::new(640, 360), &camera);
+    let posenet = Preprocess::new(385, 385).letterbox(Anchor::Centre, 0.0).normalise([127.5; 3], [127.5; 3]);
+    case::<f32>(criterion, "posenet_1080p", &posenet, &camera);
+    let yunet = Preprocess::new(640, 640).letterbox(Anchor::TopLeft, 0.0).order(ChannelOrder::Bgr);
+    case::<f32>(criterion, "yunet_1080p", &yunet, &camera);
+    let ultra_light = Preprocess::new(320, 240).normalise([127.0; 3], [128.0; 3]);
+    case::<f32>(criterion, "ultra_light_1080p", &ultra_light, &camera);
     let movenet = Preprocess::new(192, 192).letterbox(Anchor::Centre, 0.0).layout(Layout::Hwc);
     case::<i32>(criterion, "movenet_1080p", &movenet, &camera);
     case::<f32>(criterion, "centernet_320x240", &centernet, &frame(320, 240, Layout::Hwc));

@@ -9,6 +9,7 @@ use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_engine::{Error, Result, ResultExt};
 
+use crate::codec::orientation::upright;
 use crate::codec::{finding, jpeg};
 
 /// Bytes that tell the format.
@@ -67,12 +68,11 @@ impl Decoder {
     /// half a scene is no basis for acting), or one over [`Decoder::max_samples`]; `Unsupported` for a format that
     /// is known but not read.
     pub fn decode(&self, bytes: &[u8]) -> Result<Image> {
-        let (mut picture, orientation) = match finding::format_of(bytes)? {
+        let (stored, orientation) = match finding::format_of(bytes)? {
             ImageFormat::Jpeg => jpeg::decode(bytes, self.max_samples)?,
             format => self.decode_other(bytes, format)?,
         };
-        picture.apply_orientation(orientation);
-        image_from_dynamic(picture)
+        upright(stored, orientation)
     }
 
     fn read(&self, path: &Path) -> Result<Vec<u8>> {
@@ -101,7 +101,7 @@ impl Decoder {
         self.max_samples.saturating_mul(2).saturating_add(1 << 20)
     }
 
-    fn decode_other(&self, bytes: &[u8], format: ImageFormat) -> Result<(DynamicImage, Orientation)> {
+    fn decode_other(&self, bytes: &[u8], format: ImageFormat) -> Result<(Image, Orientation)> {
         let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
         let mut limits = Limits::no_limits();
         limits.max_alloc = Some(self.max_bytes());
@@ -111,7 +111,8 @@ impl Decoder {
         let (width, height) = decoder.dimensions();
         check_size(width, height, decoder.color_type().channel_count(), self.max_samples)?;
         let orientation = decoder.orientation().unwrap_or(Orientation::NoTransforms);
-        Ok((DynamicImage::from_decoder(decoder).map_err(damaged)?, orientation))
+        let picture = DynamicImage::from_decoder(decoder).map_err(damaged)?;
+        Ok((image_from_dynamic(picture)?, orientation))
     }
 }
 

@@ -1,7 +1,7 @@
 //! JPEG through `zune-jpeg`: baseline and progressive; grey, YCbCr, RGB, CMYK and YCCK.
 
 use image::metadata::Orientation;
-use image::{DynamicImage, GrayImage, RgbImage};
+use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_engine::{Error, Result};
 use zune_core::bytestream::ZCursor;
 use zune_core::colorspace::ColorSpace;
@@ -12,7 +12,7 @@ use zune_jpeg::errors::DecodeErrors;
 use crate::codec::decode::check_size;
 
 /// Decodes a JPEG of at most `max_samples` samples to grey or RGB, not yet turned upright.
-pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(DynamicImage, Orientation)> {
+pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(Image, Orientation)> {
     // Not strict: junk between markers is common and harmless. Truncation is what strictness would be for, and
     // the decoder overlooks it in the last row of blocks even then, so the end marker is looked for here.
     let options = DecoderOptions::default()
@@ -33,15 +33,10 @@ pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(DynamicImage, Or
     let colours = if grey { ColorSpace::Luma } else { ColorSpace::RGB };
     decoder.set_options(options.jpeg_set_out_colorspace(colours));
     let samples = decoder.decode().map_err(damaged)?;
+    let format = if grey { PixelFormat::Grey } else { PixelFormat::Rgb };
+    let image = Image::new(samples, width, height, format, Layout::Hwc)?;
     let orientation = decoder.exif().and_then(|exif| Orientation::from_exif_chunk(exif));
-    let (width, height) = (width as u32, height as u32);
-    let picture = if grey {
-        GrayImage::from_raw(width, height, samples).map(DynamicImage::ImageLuma8)
-    } else {
-        RgbImage::from_raw(width, height, samples).map(DynamicImage::ImageRgb8)
-    };
-    let picture = picture.ok_or_else(|| Error::internal("the JPEG decoder returned too few samples"))?;
-    Ok((picture, orientation.unwrap_or(Orientation::NoTransforms)))
+    Ok((image, orientation.unwrap_or(Orientation::NoTransforms)))
 }
 
 /// Whether an end marker follows the start of the first scan. The segments before it are walked, because an

@@ -7,6 +7,7 @@ mod decode;
 mod encode;
 mod finding;
 mod jpeg;
+mod orientation;
 
 pub use decode::{Decoder, decode, open};
 pub use encode::{Encoder, save};
