@@ -4,12 +4,12 @@ mod engine;
 mod repair;
 mod size_limit;
 mod substitute;
+mod threads;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Arc;
 
 use opendr_engine::{Device, Error, Result};
-use rten::{LoadErrorKind, ModelOptions, ThreadPool};
+use rten::{LoadErrorKind, ModelOptions};
 
 use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
@@ -61,7 +61,7 @@ impl Runtime for Builtin {
                 .with_source(error)
             })?;
         size_limit::check_shapes(&model, bytes)?;
-        let threads = Arc::new(ThreadPool::with_num_threads(options.thread_count()?));
+        let threads = threads::pool(options.thread_count()?);
         Ok(Box::new(BuiltinEngine::new(model, header, threads)?))
     }
 
