@@ -3,13 +3,16 @@
 
 #![cfg(test)]
 
+mod test_data;
+
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use opendr_engine::Device;
-use opendr_inference::{OnnxRuntime, describe};
+use opendr_engine::{Device, ErrorKind};
+use opendr_inference::{OnnxRuntime, Session, describe, runtimes};
+use test_data::test_data;
 
 const DEVICE: &str = "OPENDR_SELECTION_TEST";
 
@@ -172,4 +175,30 @@ fn a_real_one_is_found_in_python_and_in_the_cache() {
     let text = place.write("libonnxruntime.so", b"not a library");
     let line = place.said("auto", &[("ORT_DYLIB_PATH", &text)]);
     assert!(line.starts_with("ONNX Runtime "), "{line}");
+}
+
+#[test]
+fn a_device_that_is_not_there_is_an_error_that_lists_those_that_are() {
+    let Some(root) = test_data() else { return };
+    let model = fs::read(root.join("models/face_detection/yunet_n_320_320.onnx")).unwrap();
+    for runtime in runtimes() {
+        let devices = runtime.devices();
+        assert_eq!(devices.last(), Some(&Device::Cpu), "{}", runtime.name());
+        for device in
+            [Device::Cuda(0), Device::TensorRt(0), Device::OpenVino, Device::CoreMl, Device::Vulkan(0)]
+        {
+            if devices.contains(&device) {
+                continue;
+            }
+            let error = Session::open_with(&*runtime, &model, device).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Device, "{error}");
+            assert!(
+                error.message().contains(&device.to_string()) && error.message().contains("cpu"),
+                "{error}"
+            );
+        }
+        assert_eq!(Session::open_with(&*runtime, &model, Device::Cpu).unwrap().device(), Device::Cpu);
+        let auto = Session::open_with(&*runtime, &model, Device::Auto).unwrap();
+        assert!(devices.contains(&auto.device()));
+    }
 }

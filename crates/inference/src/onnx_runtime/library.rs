@@ -9,7 +9,7 @@ use opendr_engine::{Error, Result, cache_dir};
 use ort::environment::Environment;
 use ort::logging::LogLevel;
 
-use super::{OnnxRuntime, python};
+use super::{OnnxRuntime, python, words};
 
 /// A release of ONNX Runtime.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -134,7 +134,7 @@ fn start(path: &Path) -> Result<Environment> {
     })?;
     let environment = builder.with_name("opendr").with_telemetry(false).build().map_err(|error| {
         Error::internal(format!("ONNX Runtime at {} does not start", path.display()))
-            .with_source(error.to_string())
+            .with_source(words(&error))
     })?;
     // Whatever it would print to standard error comes back as an error too.
     if env::var_os("ORT_LOG").is_none() {

@@ -123,9 +123,8 @@ impl OnnxRuntime {
             let builder = builder.with_optimization_level(GraphOptimizationLevel::All)?;
             Ok(builder.with_intra_threads(threads)?)
         };
-        build().map_err(|error| {
-            Error::internal("ONNX Runtime refuses its options").with_source(error.message().to_owned())
-        })
+        build()
+            .map_err(|error| Error::internal("ONNX Runtime refuses its options").with_source(words(&error)))
     }
 
     fn open_on_cpu(&self, model: &[u8], options: &SessionOptions) -> Result<Session> {
@@ -138,22 +137,18 @@ impl OnnxRuntime {
                 ort::ErrorCode::NotImplemented => Error::unsupported(message),
                 _ => Error::format(message),
             }
-            .with_source(error.message().to_owned())
+            .with_source(words(&error))
         })
     }
 
     /// Opens a model on an accelerator, or says why that fails.
     fn open_on(&self, device: Device, model: &[u8], options: &SessionOptions) -> Result<Session> {
         let builder = self.builder(options)?;
-        provider::provider_from_device(device)
+        Some(provider::providers_from_device(device))
             .filter(|_| provider::is_built_in(device))
-            .ok_or_else(|| self.no_provider(device).to_owned())
-            .and_then(|provider| {
-                builder.with_execution_providers([provider]).map_err(|error| error.message().to_owned())
-            })
-            .and_then(|mut builder| {
-                builder.commit_from_memory(model).map_err(|error| error.message().to_owned())
-            })
+            .ok_or_else(|| self.no_provider(device))
+            .and_then(|providers| builder.with_execution_providers(providers).map_err(|error| words(&error)))
+            .and_then(|mut builder| builder.commit_from_memory(model).map_err(|error| words(&error)))
             .map_err(|reason| {
                 let devices: Vec<_> = self.devices().iter().map(ToString::to_string).collect();
                 Error::device(format!(
@@ -171,9 +166,8 @@ impl OnnxRuntime {
     /// Whether `device` can be set up, as far as that shows without a model.
     fn is_usable(&self, device: Device) -> bool {
         provider::is_built_in(device)
-            && provider::provider_from_device(device).is_none_or(|provider| {
-                self.builder(&SessionOptions { device, threads: 1 })
-                    .is_ok_and(|builder| builder.with_execution_providers([provider]).is_ok())
+            && self.builder(&SessionOptions { device, threads: 1 }).is_ok_and(|builder| {
+                builder.with_execution_providers(provider::providers_from_device(device)).is_ok()
             })
     }
 }
@@ -217,4 +211,11 @@ impl Runtime for OnnxRuntime {
     fn describe(&self) -> String {
         format!("ONNX Runtime {} ({})", self.version(), self.0.path.display())
     }
+}
+
+/// What ONNX Runtime says, without where in its source it says so.
+fn words<R>(error: &ort::Error<R>) -> String {
+    let text = error.message();
+    let said = text.split_once("[ONNXRuntimeError] : ").and_then(|(_, text)| text.splitn(3, " : ").nth(2));
+    said.unwrap_or(text).trim().to_owned()
 }

@@ -20,15 +20,19 @@ pub(super) fn is_built_in(device: Device) -> bool {
     built_in.unwrap_or(false)
 }
 
-/// The provider for `device`; `None` for the processor, which needs none.
-pub(super) fn provider_from_device(device: Device) -> Option<ExecutionProviderDispatch> {
+/// The providers for `device`, in order of preference; none for the processor, which takes what is left over anyway.
+pub(super) fn providers_from_device(device: Device) -> Vec<ExecutionProviderDispatch> {
     let index = |index: u32| i32::try_from(index).unwrap_or(i32::MAX);
-    let provider = match device {
-        Device::Cuda(gpu) => CUDA::default().with_device_id(index(gpu)).build(),
-        Device::TensorRt(gpu) => TensorRT::default().with_device_id(index(gpu)).build(),
-        Device::OpenVino => OpenVINO::default().build(),
-        Device::CoreMl => CoreML::default().build(),
-        _ => return None,
-    };
-    Some(provider.error_on_failure())
+    let cuda = |gpu| CUDA::default().with_device_id(index(gpu)).build();
+    match device {
+        Device::Cuda(gpu) => vec![cuda(gpu).error_on_failure()],
+        Device::TensorRt(gpu) => {
+            let tensor_rt = TensorRT::default().with_device_id(index(gpu)).build();
+            // What TensorRT lacks better stays on the GPU.
+            vec![tensor_rt.error_on_failure(), cuda(gpu).fail_silently()]
+        }
+        Device::OpenVino => vec![OpenVINO::default().build().error_on_failure()],
+        Device::CoreMl => vec![CoreML::default().build().error_on_failure()],
+        _ => Vec::new(),
+    }
 }
