@@ -1,5 +1,7 @@
 //! The named outputs of a learner.
 
+use std::fmt;
+
 use crate::{Datum, Header, Value, ValueRef, ValueType};
 
 /// One named output.
@@ -63,6 +65,13 @@ impl Outputs {
     /// Every output with its name.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = (&'static str, &Value)> {
         self.values.iter().map(|(name, value)| (*name, value))
+    }
+}
+
+/// The outputs one after the other, as they print themselves: `{}` in OpenDR's words, `{:#}` for people.
+impl fmt::Display for Outputs {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.values.iter().try_for_each(|(_, value)| fmt::Display::fmt(value, f))
     }
 }
 
