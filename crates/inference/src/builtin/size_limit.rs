@@ -42,17 +42,16 @@ pub(super) fn check_constants(model: &[u8]) -> Result<()> {
                     }
                 }
             }
-            let most = match kind {
-                b"ConstantOfShape" | b"Expand" | b"OneHot" | b"Pad" | b"Range" | b"Tile" => MAX_ELEMENTS,
-                b"Resize" => MAX_ENLARGEMENT,
+            // Which inputs are sizes, and how much they may make.
+            let (sizes, most) = match kind {
+                b"ConstantOfShape" => (0..1, MAX_ELEMENTS),
+                b"Expand" | b"OneHot" | b"Pad" | b"Tile" => (1..2, MAX_ELEMENTS),
+                b"Range" => (0..3, MAX_ELEMENTS),
+                b"Resize" => (2..4, MAX_ENLARGEMENT),
                 _ => continue,
             };
-            for input in messages(node, 1) {
+            for input in messages(node, 1).skip(sizes.start).take(sizes.len()) {
                 let Some(constant) = constants.get(input?) else { continue };
-                // What a `Pad` fills with may be anything, and infinite.
-                if kind == b"Pad" && !constant.whole {
-                    continue;
-                }
                 // Sizes of a `Resize`, unlike its scales, are whole.
                 if constant.product() > if constant.whole { MAX_ELEMENTS } else { most } {
                     return Err(too_large(constant.name, "asks for"));
@@ -157,4 +156,53 @@ impl<'a> Constant<'a> {
 
 fn floats(bytes: &[u8]) -> impl Iterator<Item = f64> {
     bytes.as_chunks().0.iter().map(|&bytes| f64::from(f32::from_le_bytes(bytes)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::protobuf::{put_bytes, put_varint};
+
+    fn message(fields: &[(u64, &[u8])]) -> Vec<u8> {
+        let mut message = Vec::new();
+        fields.iter().for_each(|(number, bytes)| put_bytes(&mut message, *number, bytes));
+        message
+    }
+
+    /// A model of one node with these constants: name, type, elements.
+    fn model(kind: &[u8], constants: &[(&[u8], u64, &[u8])]) -> Vec<u8> {
+        let (mut node, mut graph) = (Vec::new(), Vec::new());
+        for &(name, data_type, raw) in constants {
+            put_bytes(&mut node, 1, name);
+            let mut tensor = Vec::new();
+            put_varint(&mut tensor, 2 << 3);
+            put_varint(&mut tensor, data_type);
+            tensor.extend(message(&[(8, name), (9, raw)]));
+            put_bytes(&mut graph, 5, &tensor);
+        }
+        node.extend(message(&[(4, kind)]));
+        put_bytes(&mut graph, 1, &node);
+        message(&[(7, &graph)])
+    }
+
+    #[test]
+    fn sizes_are_limited_and_values_are_not() {
+        let large = [1_i64 << 20, 1 << 20].map(i64::to_le_bytes).concat();
+        let small = [1_i64 << 10, 1 << 10].map(i64::to_le_bytes).concat();
+        let infinite = f32::NEG_INFINITY.to_le_bytes();
+        let data = (&b"data"[..], 7, &large[..]);
+        let check = |kind: &[u8], sizes: &[u8]| {
+            check_constants(&model(kind, &[data, (b"sizes", 7, sizes), (b"value", 1, &infinite)]))
+        };
+        for kind in [&b"Expand"[..], b"Tile", b"Pad", b"OneHot"] {
+            assert!(check(kind, &small).is_ok());
+            assert!(check(kind, &large).unwrap_err().message().contains("\"sizes\" asks for more elements"));
+        }
+        assert!(check(b"Add", &large).is_ok());
+        let scales = [1.0_f32, 1.0, 300.0, 300.0].map(f32::to_le_bytes).concat();
+        let resize =
+            |scales: &[u8]| check_constants(&model(b"Resize", &[data, data, (b"scales", 1, scales)]));
+        assert!(resize(&scales[..12]).is_ok());
+        assert!(resize(&scales).is_err());
+    }
 }
