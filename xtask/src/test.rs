@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::realtime;
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
 
@@ -38,13 +37,6 @@ pub fn run() -> Result<()> {
     pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
     environment.apply(&mut pytest);
     step("tests from outside", &mut pytest)?;
-    if let Some(data) = &environment.data {
-        realtime::run_with(|bench| {
-            environment.apply(bench);
-            bench.env("OPENDR_CACHE", environment.cache.join("opendr"));
-            bench.env("OPENDR_MODEL_REPOSITORY", data.join("models"));
-        })?;
-    }
     println!("\nall checks passed");
     Ok(())
 }
