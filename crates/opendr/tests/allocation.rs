@@ -1,6 +1,8 @@
 //! After warm-up, pre- and post-processing of every learner allocate nothing: a call allocates what the bare run of its
 //! network allocates, and no more.
 
+#![allow(clippy::unwrap_used)]
+
 mod models;
 
 use std::alloc::{GlobalAlloc, Layout, System};

@@ -1,5 +1,7 @@
 //! What the fuzzers found interesting never makes a parser panic.
 
+#![allow(clippy::unwrap_used)]
+
 #[path = "../../../fuzz/parsers.rs"]
 mod parsers;
 

@@ -1,5 +1,7 @@
 //! Real models and pictures for tests.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::env;
 use std::path::{Path, PathBuf};
 
