@@ -43,7 +43,7 @@ fn card_toml(bytes: &[u8]) {
 }
 
 fn picture(bytes: &[u8]) {
-    let decoder = opendr_vision::Decoder { max_samples: 1 << 20, ..Default::default() };
+    let decoder = opendr_vision::Decoder { max_samples: 1 << 20 };
     if let Ok(image) = decoder.decode(bytes) {
         assert_eq!(image.pixels().len(), image.width() * image.height() * Image::channels(&image));
     }
