@@ -1,12 +1,15 @@
 //! Lists the model cards, so that a new card is one new file and no other edit.
 
+use std::ffi::OsString;
 use std::fmt::Write;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
 fn main() -> io::Result<()> {
-    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
+    // Asked at run time: a build folder that several checkouts share keeps this program.
+    let here = PathBuf::from(variable("CARGO_MANIFEST_DIR")?);
+    let models = here.join("../../models");
     let mut code = String::new();
     for (constant, folder, ending) in
         [("CARDS", models.clone(), "toml"), ("CLASS_LISTS", models.join("classes"), "txt")]
@@ -19,15 +22,19 @@ fn main() -> io::Result<()> {
         }
         code.push_str("];\n");
     }
-    println!("cargo::rustc-env=OPENDR_IMPORTER={}", importer()?);
-    let out = env::var_os("OUT_DIR").ok_or_else(|| io::Error::other("cargo sets OUT_DIR"))?;
-    fs::write(Path::new(&out).join("embedded.rs"), code)
+    println!("cargo::rustc-env=OPENDR_IMPORTER={}", importer(&here)?);
+    fs::write(Path::new(&variable("OUT_DIR")?).join("embedded.rs"), code)
+}
+
+/// A variable that cargo sets.
+fn variable(name: &str) -> io::Result<OsString> {
+    env::var_os(name).ok_or_else(|| io::Error::other(format!("cargo sets {name}")))
 }
 
 /// The importer's version with a fingerprint of its sources, where they are beside this crate.
-fn importer() -> io::Result<String> {
+fn importer(here: &Path) -> io::Result<String> {
     let mut hasher = DefaultHasher::new();
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("../import/src")];
+    let mut folders = vec![here.join("../import/src")];
     while let Some(folder) = folders.pop().filter(|folder| folder.is_dir()) {
         println!("cargo::rerun-if-changed={}", folder.display());
         let mut paths =

@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use opendr::learner::{AnyLearner, Entry};
 use opendr::params::ParamMap;
 use opendr::zoo::{Zoo, ZooOptions};
-use opendr::{Device, Progress, Result};
+use opendr::{Device, Progress, Result, inference};
 
 /// The id of the argument that names the learner.
 pub const LEARNER: &str = "learner";
@@ -31,7 +31,7 @@ pub fn flags() -> [Arg; 5] {
             .long("threads")
             .value_parser(value_parser!(u16))
             .value_name("N")
-            .help("Threads that work on one picture, 0 for all cores [env: OPENDR_THREADS]"),
+            .help("Threads that work on pictures, 0 for all cores [env: OPENDR_THREADS]"),
         Arg::new("model")
             .long("model")
             .value_parser(value_parser!(PathBuf))
@@ -83,14 +83,11 @@ pub fn device(matches: &ArgMatches) -> Result<Device> {
     device.or_environment()
 }
 
-/// Puts `--threads`, where a command has it, into the environment, which every session asks.
-///
-/// # Safety
-/// The process has one thread.
-pub unsafe fn set_threads(matches: &ArgMatches) {
-    if let Ok(Some(threads)) = matches.try_get_one::<u16>("threads") {
-        // SAFETY: nobody reads the environment meanwhile, as the caller says.
-        unsafe { std::env::set_var("OPENDR_THREADS", threads.to_string()) };
+/// Calls `work` with sessions that take as many threads as `--threads` says, where a command has that.
+pub fn with_threads<R>(matches: &ArgMatches, work: impl FnOnce() -> R) -> R {
+    match matches.try_get_one::<u16>("threads") {
+        Ok(Some(&threads)) => inference::with_threads(threads.into(), work),
+        _ => work(),
     }
 }
 

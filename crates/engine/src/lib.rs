@@ -9,6 +9,7 @@ mod error;
 mod header;
 #[allow(dead_code)]
 mod numpy_text;
+mod parallel;
 mod pool;
 mod progress;
 mod statistics;
@@ -28,6 +29,7 @@ pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};
 pub use header::Header;
 pub use model::Model;
+pub use parallel::map_in_order;
 pub use pool::{Pool, Pooled};
 pub use progress::{Progress, Silent, Unit};
 pub use statistics::Statistics;

@@ -8,12 +8,14 @@ mod runtime;
 mod selection;
 mod session;
 mod tensor;
+mod threads;
 
 pub mod timing;
 
 pub use builtin::Builtin;
 pub use onnx_runtime::OnnxRuntime;
 pub use runtime::{Engine, Runtime, SessionOptions, Sink};
-pub use selection::{default_runtime, describe, runtimes};
+pub use selection::{default_runtime, describe, device, runtimes};
 pub use session::Session;
 pub use tensor::{Element, ElementType, MAX_RANK, TensorData, TensorInfo, TensorView};
+pub use threads::{default_threads, with_threads};

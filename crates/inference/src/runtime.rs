@@ -1,11 +1,9 @@
 //! The two roles behind a session: a runtime opens models, an engine runs one of them.
 
-use std::num::NonZeroUsize;
-use std::thread;
-
-use opendr_engine::{Device, Error, Result};
+use opendr_engine::{Device, Result};
 
 use crate::tensor::{TensorInfo, TensorView};
+use crate::threads::default_threads;
 
 /// A library that opens models.
 pub trait Runtime: Send + Sync {
@@ -59,7 +57,7 @@ pub type Sink<'a> = dyn FnMut(&[TensorView<'_>]) -> Result<()> + 'a;
 pub struct SessionOptions {
     /// Where it runs.
     pub device: Device,
-    /// Threads that work on one run. 0 takes `OPENDR_THREADS`, or all cores where that is not set.
+    /// Threads that work on one run; 0 takes [`crate::default_threads`].
     pub threads: usize,
 }
 
@@ -67,22 +65,9 @@ impl SessionOptions {
     /// The number of threads to use, at least 1.
     ///
     /// # Errors
-    /// `InvalidParam` when `OPENDR_THREADS` is asked for and holds no number.
+    /// As [`crate::default_threads`].
     pub fn thread_count(&self) -> Result<usize> {
-        let cores = || thread::available_parallelism().map_or(1, NonZeroUsize::get);
-        if self.threads > 0 {
-            return Ok(self.threads);
-        }
-        match std::env::var("OPENDR_THREADS") {
-            Ok(text) if !text.is_empty() => match text.parse::<usize>() {
-                Ok(0) => Ok(cores()),
-                Ok(threads) => Ok(threads),
-                Err(_) => Err(Error::invalid_param(format!(
-                    "environment variable OPENDR_THREADS is {text:?}; give a number of threads, 0 for all cores"
-                ))),
-            },
-            _ => Ok(cores()),
-        }
+        if self.threads > 0 { Ok(self.threads) } else { default_threads() }
     }
 }
 

@@ -58,6 +58,21 @@ pub fn default_runtime(device: Device) -> Result<Arc<dyn Runtime>> {
     }
 }
 
+/// The device that [`crate::Session::open`] takes for `device`: itself, or the best one there is for `Auto`.
+/// `OPENDR_DEVICE` overrides it.
+///
+/// # Errors
+/// As [`default_runtime`].
+pub fn device(device: Device) -> Result<Device> {
+    let wanted = device.or_environment()?;
+    Ok(resolved(&*default_runtime(wanted)?, wanted))
+}
+
+fn resolved(runtime: &dyn Runtime, wanted: Device) -> Device {
+    let best = || runtime.devices().first().copied().unwrap_or(Device::Cpu);
+    if wanted == Device::Auto { best() } else { wanted }
+}
+
 /// One line for people about the runtime in use: `ONNX Runtime 1.31.1 (/path/libonnxruntime.so), cpu, 2 threads`.
 ///
 /// # Errors
@@ -66,8 +81,7 @@ pub fn describe(options: impl Into<SessionOptions>) -> Result<String> {
     let options = options.into();
     let wanted = options.device.or_environment()?;
     let runtime = default_runtime(wanted)?;
-    let best = || runtime.devices().first().copied().unwrap_or(Device::Cpu);
-    let device = if wanted == Device::Auto { best() } else { wanted };
+    let device = resolved(&*runtime, wanted);
     let threads = options.thread_count()?;
     let plural = if threads == 1 { "" } else { "s" };
     let mut line = format!("{}, {device}, {threads} thread{plural}", runtime.describe());

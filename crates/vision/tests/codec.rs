@@ -34,7 +34,7 @@ fn assert_near(found: [[u8; 3]; 4], wanted: [[u8; 3]; 4], most: u8) {
 }
 
 fn picture(name: &str) -> PathBuf {
-    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/pictures")).join(name)
+    PathBuf::from(std::env::var("CARGO_MANIFEST_DIR").unwrap()).join("tests/pictures").join(name)
 }
 
 /// A folder of this test alone, removed at its end.

@@ -1,12 +1,13 @@
 //! `opendr infer`: a learner over pictures, folders, videos, cameras.
 
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::vision::{Frame, Source, SourceOptions};
-use opendr::{Error, Progress, Result, Unit, ValueType};
+use opendr::{Device, Error, Progress, Result, Unit, ValueType, inference, map_in_order};
 
 use crate::exit::Outcome;
 use crate::port_file::PortFile;
@@ -15,6 +16,11 @@ use crate::report::{Json, Report};
 use crate::timings::Timings;
 use crate::writer::Writer;
 use crate::{learner_flags, loading};
+
+/// Learners that work at once; each holds a model.
+const MAX_WORKERS: usize = 4;
+/// With fewer frames for each, loading one more learner takes longer than it spares.
+const FRAMES_A_WORKER: u64 = 8;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -77,18 +83,19 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let frames =
         source.len_hint().map_or((limit < u64::MAX).then_some(limit), |count| Some(count.min(limit)));
     let writer = matches.get_one::<PathBuf>("out").map(|out| Writer::new(out, frames)).transpose()?;
-    let mut run = Run {
+    let params = learner_flags::params(entry, matches)?;
+    let load = || loading::load(spec, &params, matches, &bar);
+    let job = Job {
+        entry,
         port: picture_port(entry)?,
         further: learner_flags::port_files(entry, matches)?,
-        learner: loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?,
-        entry,
         sequence: matches.get_flag("sequence"),
-        stream: None,
     };
+    let mut workers = workers(how_many(&job, &source, frames, matches)?, load)?;
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let told = run.frames(source, limit, &mut report, writer.as_ref(), &bar);
+    let told = job.run(&mut workers, source, limit, &mut report, writer.as_ref(), &bar);
     bar.end();
     // Even when the report cannot go on, what was handed over is finished.
     for (input, error) in writer.map(Writer::finish).unwrap_or_default() {
@@ -96,6 +103,25 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     told?;
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
+}
+
+/// How many learners work at once. On a processor, pictures that have nothing to do with each other are inferred side
+/// by side, which uses the cores better than several threads on one picture do.
+fn how_many(job: &Job, source: &Source, frames: Option<u64>, matches: &ArgMatches) -> Result<usize> {
+    let on_processor = inference::device(loading::device(matches)?)? == Device::Cpu;
+    if !on_processor || job.sequence || !source.is_pictures() {
+        return Ok(1);
+    }
+    let worth = frames.unwrap_or(0) / FRAMES_A_WORKER;
+    let most = inference::default_threads()?.min(MAX_WORKERS);
+    Ok(usize::try_from(worth).unwrap_or(most).clamp(1, most))
+}
+
+/// `count` loaded learners that share the threads.
+fn workers(count: usize, load: impl Fn() -> Result<Box<dyn AnyLearner>>) -> Result<Vec<Worker>> {
+    let threads = (inference::default_threads()? / count).max(1);
+    let learner = || inference::with_threads(threads, &load);
+    (0..count).map(|_| Ok(Worker { learner: learner()?, stream: None })).collect()
 }
 
 /// The port that pictures go into: the first.
@@ -125,53 +151,68 @@ fn open(inputs: &[&PathBuf], report: &mut Report<'_>) -> Result<Source> {
     Source::open_all(good, SourceOptions::default())
 }
 
-/// A learner at work.
-struct Run {
+/// What is to be done with each frame.
+struct Job {
     entry: &'static Entry,
-    learner: Box<dyn AnyLearner>,
     port: &'static str,
     further: Vec<PortFile>,
     sequence: bool,
+}
+
+/// A learner at work.
+struct Worker {
+    learner: Box<dyn AnyLearner>,
     /// The video whose frames the learner's stream has seen; for pictures in a sequence, their folder.
     stream: Option<Arc<Path>>,
 }
 
-impl Run {
-    fn frames(
-        &mut self,
+/// A frame with what was found in it, or what failed and for which input.
+type Answer = std::result::Result<(Frame, Outputs, Timings), (Option<PathBuf>, Error)>;
+
+impl Job {
+    fn run(
+        &self,
+        workers: &mut [Worker],
         mut source: Source,
         limit: u64,
         report: &mut Report<'_>,
         writer: Option<&Writer>,
         bar: &Bar,
     ) -> Result<()> {
-        for _ in 0..limit {
-            let Some(frame) = source.next() else { break };
-            match frame.and_then(|frame| self.answer(frame)) {
+        let mut left = limit;
+        let frames = iter::from_fn(|| {
+            left = left.checked_sub(1).filter(|_| !interrupted())?;
+            let frame = source.next()?;
+            Some(frame.map_err(|error| (source.last_path().map(Path::to_owned), error)))
+        });
+        let answer = |worker: &mut Worker, frame: std::result::Result<Frame, _>| self.answer(worker, frame?);
+        map_in_order(workers, frames, answer, |answer| {
+            match answer {
                 Ok((frame, outputs, timings)) => {
                     report.frame(&frame, &outputs, timings)?;
                     if let Some(writer) = writer {
                         writer.put(frame, outputs)?;
                     }
                 }
-                Err(error) => report.failure(source.last_path(), &error)?,
+                Err((input, error)) => report.failure(input.as_deref(), &error)?,
             }
             bar.advance(1);
-            if interrupted() {
-                break;
+            Ok(())
+        })
+    }
+
+    fn answer(&self, worker: &mut Worker, frame: Frame) -> Answer {
+        let begins = self.follow(worker, &frame);
+        match self.infer(worker, &frame, begins) {
+            Ok((outputs, timings)) => Ok((frame, outputs, timings)),
+            Err(error) => {
+                let error = error.context(frame.path.display().to_string());
+                Err((Some(frame.path.to_path_buf()), error))
             }
         }
-        Ok(())
     }
 
-    fn answer(&mut self, frame: Frame) -> Result<(Frame, Outputs, Timings)> {
-        let begins = self.follow(&frame);
-        let (outputs, timings) =
-            self.infer(&frame, begins).map_err(|error| error.context(frame.path.display().to_string()))?;
-        Ok((frame, outputs, timings))
-    }
-
-    fn infer(&mut self, frame: &Frame, begins: bool) -> Result<(Outputs, Timings)> {
+    fn infer(&self, worker: &mut Worker, frame: &Frame, begins: bool) -> Result<(Outputs, Timings)> {
         let mut ports = Ports::default().with(self.port, &frame.image);
         for file in &self.further {
             let is_init = self.entry.ports.iter().any(|port| port.name == file.name() && port.init);
@@ -179,20 +220,20 @@ impl Run {
                 ports = ports.with(file.name(), file.value(frame.index)?);
             }
         }
-        Timings::of(|| self.learner.infer(&ports))
+        Timings::of(|| worker.learner.infer(&ports))
     }
 
     /// Every video is a stream of its own, and so is every picture unless they are a sequence. Whether one begins.
-    fn follow(&mut self, frame: &Frame) -> bool {
+    fn follow(&self, worker: &mut Worker, frame: &Frame) -> bool {
         let stream = match (&frame.video, self.sequence) {
             (Some(_), _) => Some(frame.path.clone()),
             (None, true) => frame.path.parent().map(Arc::from),
             (None, false) => None,
         };
-        let begins = stream.is_none() || stream != self.stream;
+        let begins = stream.is_none() || stream != worker.stream;
         if begins {
-            self.learner.reset();
-            self.stream = stream;
+            worker.learner.reset();
+            worker.stream = stream;
         }
         begins
     }

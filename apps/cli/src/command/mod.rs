@@ -58,19 +58,16 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
 /// # Errors
 /// Whatever kept it from running to its end.
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
-    if let Some((_, matches)) = matches.subcommand() {
-        // SAFETY: no command has begun, and only commands start threads.
-        unsafe { loading::set_threads(matches) };
-    }
-    match matches.subcommand() {
-        Some(("infer", matches)) => infer::run(matches),
-        Some(("models", matches)) => models::run(matches),
-        Some(("download", matches)) => download::run(matches),
-        Some(("bench", matches)) => bench::run(matches),
-        Some(("runtime", matches)) => runtime::run(matches),
-        Some(("demo", matches)) => demo::run(matches),
+    let Some((name, matches)) = matches.subcommand() else { return Ok(Outcome::Done) };
+    loading::with_threads(matches, || match name {
+        "infer" => infer::run(matches),
+        "models" => models::run(matches),
+        "download" => download::run(matches),
+        "bench" => bench::run(matches),
+        "runtime" => runtime::run(matches),
+        "demo" => demo::run(matches),
         _ => Ok(Outcome::Done),
-    }
+    })
 }
 
 /// The learner that is named by the first word after `command` which is neither a flag nor a flag's value.

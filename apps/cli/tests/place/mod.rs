@@ -45,6 +45,10 @@ impl Done {
     }
 }
 
+fn test_data() -> Option<PathBuf> {
+    std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from)
+}
+
 impl Place {
     pub fn new() -> Self {
         static COUNTER: AtomicU32 = AtomicU32::new(0);
@@ -56,25 +60,21 @@ impl Place {
 
     /// A place and the folder with real models and data; `None`, said, where there is none.
     pub fn with_data() -> Option<(Self, PathBuf)> {
-        let named = std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
-        let data = named.unwrap_or_else(|| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").into());
-        if data.join("models").is_dir() {
-            return Some((Self::new(), data));
+        let data = test_data();
+        if data.is_none() {
+            println!("skipped: no OPENDR_TEST_DATA");
         }
-        println!("skipped: no OPENDR_TEST_DATA");
-        None
+        Some((Self::new(), data?))
     }
 
     /// The command with this place's cache, in this place, off the network; models come from the test data.
     pub fn command(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_opendr"));
-        let named = std::env::var("OPENDR_TEST_DATA");
-        let data = named.unwrap_or_else(|_| concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared").into());
         command
             .args(arguments)
             .current_dir(&self.0)
             .env("OPENDR_CACHE", self.0.join("cache"))
-            .env("OPENDR_MODEL_REPOSITORY", Path::new(&data).join("models"))
+            .env("OPENDR_MODEL_REPOSITORY", test_data().unwrap_or_default().join("models"))
             .env("OPENDR_OFFLINE", "1")
             .env_remove("OPENDR_DEVICE");
         command

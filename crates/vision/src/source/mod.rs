@@ -125,6 +125,12 @@ impl Source {
         self.live
     }
 
+    /// Whether what is left are picture files only, no videos and no cameras.
+    pub fn is_pictures(&self) -> bool {
+        matches!(self.reading, None | Some(Reading::Pictures(_)))
+            && self.waiting.iter().all(|segment| matches!(segment, Segment::Pictures(_)))
+    }
+
     /// How many frames a slow consumer of a live source has missed.
     pub fn dropped(&self) -> u64 {
         let current = match &self.reading {
