@@ -104,7 +104,7 @@ mod tests {
         let mut next = 0;
         let work = |_: &mut (), n: usize| {
             // Later items are ready first.
-            thread::sleep(Duration::from_micros(if n % 3 == 0 { 300 } else { 0 }));
+            thread::sleep(Duration::from_micros(if n.is_multiple_of(3) { 300 } else { 0 }));
             n
         };
         map_in_order(&mut [(); 3], items, work, |n| {

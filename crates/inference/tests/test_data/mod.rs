@@ -1,7 +1,7 @@
 //! Where the models and pictures for tests are.
 
 use std::env;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The folder with models and data; `None`, said aloud, where there is none.
 pub fn test_data() -> Option<PathBuf> {

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::env;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use opendr::zoo::{Zoo, ZooOptions};
 use opendr::{ErrorKind, Silent};
