@@ -1,7 +1,6 @@
 //! How the command ends.
 
 use std::io;
-use std::process::ExitCode;
 
 use opendr::{Error, ErrorKind, Result};
 
@@ -21,21 +20,23 @@ pub const CODES: &str = "\
 Exit codes: 0 done; 1 some inputs failed, the rest is done; 2 wrong usage; 11 InvalidInput, 12 InvalidParam,
 13 NotFound, 14 Io, 15 Network, 16 Integrity, 17 Format, 18 Unsupported, 19 Device, 20 Internal; 130 Ctrl-C.";
 
+const DONE: u8 = 0;
+const SOME_FAILED: u8 = 1;
 /// Exit code of a command stopped by Ctrl-C, as shells have it.
 const INTERRUPTED: u8 = 130;
 /// Errors exit with this plus the number of their kind.
 const ERRORS: u8 = 10;
 
 /// Prints the error, once, and picks the exit code.
-pub fn code_from(result: Result<Outcome>) -> ExitCode {
+pub fn code_from(result: Result<Outcome>) -> u8 {
     match result {
-        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
-        _ if interrupted() => ExitCode::from(INTERRUPTED),
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::SomeFailed) => ExitCode::FAILURE,
+        Err(error) if is_closed_pipe(&error) => DONE,
+        _ if interrupted() => INTERRUPTED,
+        Ok(Outcome::Done) => DONE,
+        Ok(Outcome::SomeFailed) => SOME_FAILED,
         Err(error) => {
             eprintln!("error: {error}");
-            ExitCode::from(ERRORS + error.kind() as u8)
+            ERRORS + error.kind() as u8
         }
     }
 }

@@ -11,8 +11,9 @@ use syn::{DeriveInput, parse_macro_input};
 
 /// Makes a struct a set of parameters: table of fields, defaults, access by name.
 ///
-/// Attribute of a field: `#[param(default = EXPR, range = LOW..=HIGH, unit = "px", log, live)]`. Without a default the
-/// field's type's is taken. The doc comment is the documentation on every surface and must be there.
+/// Attribute of a field: `#[param(default = EXPR, range = LOW..=HIGH, unit = "px", log, live, alias = "old_name")]`.
+/// Without a default the field's type's is taken. The doc comment is the documentation on every surface and must be
+/// there.
 #[proc_macro_derive(Params, attributes(param))]
 pub fn params(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);

@@ -13,6 +13,7 @@ struct Attributes {
     unit: Option<LitStr>,
     log: bool,
     live: bool,
+    aliases: Vec<LitStr>,
 }
 
 fn attributes_of(field: &Field) -> Result<Attributes> {
@@ -29,8 +30,10 @@ fn attributes_of(field: &Field) -> Result<Attributes> {
                 found.log = true;
             } else if meta.path.is_ident("live") {
                 found.live = true;
+            } else if meta.path.is_ident("alias") {
+                found.aliases.push(meta.value()?.parse()?);
             } else {
-                return Err(meta.error("default, range, unit, log or live is wanted"));
+                return Err(meta.error("default, range, unit, log, live or alias is wanted"));
             }
             Ok(())
         })?;
@@ -43,7 +46,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let (mut rows, mut defaults, mut gets, mut sets) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (index, field) in named_fields(input)?.iter().enumerate() {
         let (ident, kind, doc) = (&field.ident, &field.ty, doc_of(field)?);
-        let Attributes { default, range, unit, log, live } = attributes_of(field)?;
+        let Attributes { default, range, unit, log, live, aliases } = attributes_of(field)?;
         let default = match default {
             Some(Expr::Lit(literal)) if matches!(literal.lit, syn::Lit::Str(_)) => {
                 quote!(::core::convert::From::from(#literal))
@@ -71,6 +74,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
                 unit: #unit,
                 log_scale: #log,
                 live: #live,
+                aliases: &[#(#aliases),*],
                 default: || { let default: #kind = #default; #param::to_value(&default) },
             }
         });

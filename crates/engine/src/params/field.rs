@@ -41,6 +41,8 @@ pub struct Field {
     pub log_scale: bool,
     /// Whether it may change while the learner runs.
     pub live: bool,
+    /// Other names that Python takes for it: those that it had in OpenDR.
+    pub aliases: &'static [&'static str],
     /// Its default.
     pub default: fn() -> ParamValue,
 }

@@ -55,7 +55,23 @@ const FIELDS: usize = 6;
 impl Learner for CenterNet {
     const SPEC: Spec = Spec::new("centernet", Task::ObjectDetection2d)
         .class("CenterNetDetectorLearner")
-        .about("CenterNet on MobileNetV3 finds the 80 COCO classes; the best of the light detectors here.");
+        .about("CenterNet on MobileNetV3 finds the 80 COCO classes; the best of the light detectors here.")
+        .without_effect(&[
+            ("img_size", "the network's input has one size"),
+            ("keep_size", "the whole picture is looked at, at the network's size"),
+            ("num_workers", Spec::OF_TRAINING),
+            ("epochs", Spec::OF_TRAINING),
+            ("val_after", Spec::OF_TRAINING),
+            ("log_after", Spec::OF_TRAINING),
+            ("weight_decay", Spec::OF_TRAINING),
+            ("momentum", Spec::OF_TRAINING),
+            ("wh_weight", Spec::OF_TRAINING),
+            ("center_reg_weight", Spec::OF_TRAINING),
+            ("lr_decay_epoch", Spec::OF_TRAINING),
+            ("lr_decay", Spec::OF_TRAINING),
+            ("warmup_epochs", Spec::OF_TRAINING),
+            ("flip_validation", Spec::OF_TRAINING),
+        ]);
     type Params = CenterNetParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;

@@ -19,13 +19,13 @@ use crate::suppression::{Candidate, Suppression, SuppressionKind};
 #[derive(Debug, Clone, Params)]
 pub struct NanodetParams {
     /// Detections below this score are dropped.
-    #[param(default = 0.35, range = 0.0..=1.0, live)]
+    #[param(default = 0.35, range = 0.0..=1.0, live, alias = "conf_threshold")]
     pub threshold: f32,
     /// Boxes of one class that overlap more than this (intersection over union) are one object.
     #[param(default = 0.6, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
     /// At most this many boxes a picture.
-    #[param(default = 100, range = 1..=1000, live)]
+    #[param(default = 100, range = 1..=1000, live, alias = "nms_max_num")]
     pub max_detections: usize,
     /// How overlapping boxes are thinned out.
     #[param(live)]
@@ -66,7 +66,19 @@ const STD_BGR: [f32; 3] = [57.375, 57.12, 58.395];
 impl Learner for Nanodet {
     const SPEC: Spec = Spec::new("nanodet", Task::ObjectDetection2d)
         .class("NanodetLearner")
-        .about("NanoDet finds the 80 COCO classes; light, good on small things.");
+        .about("NanoDet finds the 80 COCO classes; light, good on small things.")
+        .without_effect(&[
+            ("model_to_use", "the container that is loaded says which network it is"),
+            ("hf", "the runtime chooses the precision"),
+            ("dynamic", "the network's input has one size"),
+            ("ch_l", "the runtime chooses the memory layout"),
+            ("weight_decay", Spec::OF_TRAINING),
+            ("warmup_steps", Spec::OF_TRAINING),
+            ("warmup_ratio", Spec::OF_TRAINING),
+            ("lr_schedule_T_max", Spec::OF_TRAINING),
+            ("lr_schedule_eta_min", Spec::OF_TRAINING),
+            ("grad_clip", Spec::OF_TRAINING),
+        ]);
     type Params = NanodetParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
