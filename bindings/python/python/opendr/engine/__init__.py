@@ -1,0 +1,1 @@
+"""What every algorithm speaks: data, targets, data sets, learners."""

@@ -1,0 +1,95 @@
+"""Data that are one array."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Optional
+
+from opendr.engine._array_protocol import as_array, dlpack
+from opendr.engine.data.data import Data
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+
+class ArrayData(Data):
+    """Data that are one array, float32 unless the class says otherwise.
+
+    An array of the right type is kept as it is, without a copy: later changes of it are seen. ``data`` is this
+    array, ``numpy()`` a copy; ``numpy.asarray(datum)`` and ``numpy.from_dlpack(datum)`` copy nothing.
+
+    Args:
+        data: Numbers of as many axes as the class has; None leaves it empty until ``data`` is set.
+
+    Raises:
+        TypeError: The data are no numbers.
+        ValueError: There are other axes, or no number.
+    """
+
+    _axes: ClassVar[tuple[str, ...]] = ()
+    #: OpenDR's name of the class in messages, where it is another.
+    _title: ClassVar[str] = ""
+    _fields: ClassVar[tuple[str, ...]] = ("_data",)
+
+    def __init__(self, data: Optional[ArrayLike] = None) -> None:
+        super().__init__()
+        if data is not None:
+            self.data = data
+
+    @property
+    def data(self) -> NDArray[Any]:
+        """The array itself, in OpenDR's layout.
+
+        Raises:
+            ValueError: There is none yet.
+        """
+        if self._data is None:
+            raise ValueError(f"{self._title or type(self).__name__} is empty")
+        data: NDArray[Any] = self._data
+        return data
+
+    @data.setter
+    def data(self, data: ArrayLike) -> None:
+        self._data = self._checked(data)
+
+    def numpy(self) -> NDArray[Any]:
+        """A copy of the array, its last axis contiguous."""
+        return self.data.copy("C")
+
+    def __str__(self) -> str:
+        return str(self.data)
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        return as_array(self.data, dtype, copy)
+
+    def __dlpack__(self, **options: Any) -> Any:
+        return dlpack(self.data, **options)
+
+    def __dlpack_device__(self) -> tuple[Any, Any]:
+        return self.data.__dlpack_device__()
+
+    def _checked(self, data: ArrayLike) -> NDArray[Any]:
+        array = array_of(data, "float32", type(self).__name__)
+        if array.ndim != len(self._axes) or array.size == 0:
+            raise ValueError(
+                f"a {type(self).__name__} of shape {array.shape} should have the axes [{', '.join(self._axes)}], "
+                "each of at least one element"
+            )
+        return array
+
+
+def array_of(data: ArrayLike, dtype: Optional[DTypeLike], what: str) -> NDArray[Any]:
+    """``data`` as an array of ``dtype`` (of its own type when None), not copied where it is one.
+
+    Raises:
+        TypeError: They are no numbers.
+        ValueError: They are lists of different lengths.
+    """
+    import numpy as np
+
+    try:
+        array = np.asarray(data)
+    except (TypeError, ValueError) as error:
+        raise type(error)(f"{what} should be an array of numbers, not {data!r:.200}: {error}") from error
+    if array.dtype.kind not in "biuf":
+        raise TypeError(f"{what} should be an array of numbers, not of {array.dtype}: {data!r:.200}")
+    return array if dtype is None else array.astype(dtype, copy=False)

@@ -1,0 +1,38 @@
+"""The root of all data."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any
+
+from opendr.engine._datum import Datum
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Data(Datum, ABC):
+    """Whatever can be handed to a learner.
+
+    ``timestamp`` (nanoseconds, or None) and ``frame_id`` travel to every target that is made of it.
+    """
+
+    def __init__(self, data: Any = None) -> None:
+        self._data = data
+
+    @property
+    def data(self) -> Any:
+        """The data in OpenDR's layout."""
+        return self._data
+
+    @data.setter
+    def data(self, data: Any) -> None:
+        self._data = data
+
+    @abstractmethod
+    def numpy(self) -> NDArray[Any]:
+        """A copy of the data as a NumPy array."""
+
+    @abstractmethod
+    def __str__(self) -> str:
+        """OpenDR's text."""

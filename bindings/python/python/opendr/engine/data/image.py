@@ -1,0 +1,195 @@
+"""Pictures."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, Optional, Union
+
+from opendr import _opendr
+from opendr.engine.data.array_data import ArrayData, array_of
+
+if TYPE_CHECKING:
+    import PIL.Image
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+_DTYPES = ("uint8", "uint16", "float32")
+
+
+class Image(ArrayData):
+    """A picture ``[channels, height, width]``: grey, RGB or RGBA.
+
+    Samples are uint8 in [0, 255]; with ``dtype``, uint16 (depth in millimetres, thermal counts) or float32 (depth in
+    metres, or colours in the range of their source).
+
+    An array of the right type is kept without a copy, whatever its layout: later changes of it are seen. ``data`` is
+    this array, ``numpy()`` a copy.
+
+    With ``guess_format``, the layout is guessed from the shape alone, by OpenDR's rule:
+
+    * last axis 3: ``[height, width, 3]`` in OpenCV's order **BGR**,
+    * last axis smaller than both others: ``[height, width, channels]``, the channels in order,
+    * everything else: ``[channels, height, width]``, RGB.
+
+    So a ``[3, height, 3]`` array, a picture three pixels wide, is taken for OpenCV's; say ``guess_format=False``.
+
+    Args:
+        data: An array of 3 axes, or another :class:`Image`.
+        dtype: uint8, uint16 or float32. Numbers of another type are converted when they are in range.
+        guess_format: Whether to guess the layout; else it is ``[channels, height, width]``, RGB.
+
+    Raises:
+        TypeError: The data are no numbers.
+        ValueError: They are None, have other axes, no pixel or other than 1, 3 or 4 channels, or do not fit the type.
+    """
+
+    def __init__(
+        self,
+        data: Union[ArrayLike, Image, None] = None,
+        dtype: Optional[DTypeLike] = None,
+        guess_format: bool = True,
+    ) -> None:
+        if data is None:
+            raise ValueError("Image is of type None")
+        given = data if isinstance(data, Image) else None
+        if given is not None:
+            data, guess_format = given.data, False
+            self.timestamp, self.frame_id = given.timestamp, given.frame_id
+        self._dtype = _dtype(given.dtype if given is not None and dtype is None else dtype)
+        super().__init__()
+        self.data = _chw_from_guess(data) if guess_format else data
+
+    @classmethod
+    def open(cls, filename: Union[str, os.PathLike[str]]) -> Image:
+        """Reads a picture file (JPEG, PNG, BMP, WebP), turned upright as its EXIF data say.
+
+        Raises:
+            FileNotFoundError: There is none.
+            ValueError: It is no picture.
+        """
+        path = os.fspath(filename)
+        if not os.path.exists(path):
+            raise FileNotFoundError("The image file does not exist.")
+        return _opendr.open_image(path)
+
+    @classmethod
+    def from_pil(cls, picture: PIL.Image.Image) -> Image:
+        """Takes a picture of Pillow; other modes than L, RGB and RGBA become RGB."""
+        import numpy as np
+
+        picture = picture if picture.mode in ("L", "RGB", "RGBA") else picture.convert("RGB")
+        array = np.asarray(picture)
+        return cls(np.atleast_3d(array).transpose(2, 0, 1), guess_format=False)
+
+    @property
+    def dtype(self) -> Any:
+        """The type of the samples."""
+        return self._data.dtype if self._data is not None else None
+
+    @property
+    def channels(self) -> int:
+        """1 (grey), 3 (RGB) or 4 (RGBA)."""
+        return int(self.data.shape[0])
+
+    @property
+    def height(self) -> int:
+        """Rows."""
+        return int(self.data.shape[1])
+
+    @property
+    def width(self) -> int:
+        """Pixels a row."""
+        return int(self.data.shape[2])
+
+    def convert(self, format: str = "channels_first", channel_order: str = "rgb") -> NDArray[Any]:
+        """A copy of the picture in another layout.
+
+        Args:
+            format: ``"channels_first"`` gives ``[channels, height, width]``, ``"channels_last"``
+                ``[height, width, channels]``.
+            channel_order: ``"rgb"`` or ``"bgr"``; the fourth channel stays the last, grey stays grey.
+
+        Raises:
+            ValueError: It is another word.
+        """
+        if format not in ("channels_first", "channels_last"):
+            raise ValueError(f"format should be 'channels_first' or 'channels_last', not {format!r}")
+        if channel_order not in ("rgb", "bgr"):
+            raise ValueError(f"channel_order should be 'rgb' or 'bgr', not {channel_order!r}")
+        array = self.data
+        if channel_order == "bgr" and self.channels > 1:
+            array = array[[2, 1, 0, 3][: self.channels]]
+        if format == "channels_last":
+            array = array.transpose(1, 2, 0)
+        return array.copy("C")
+
+    def opencv(self) -> NDArray[Any]:
+        """A copy as OpenCV has it: ``[height, width, channels]``, BGR (BGRA; one channel for grey)."""
+        return self.convert("channels_last", "bgr")
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes the picture; the ending of the name says how (``.jpg``, ``.png``, ...).
+
+        Raises:
+            ValueError: Nothing writes this ending, or these samples.
+            OSError: The file cannot be written.
+        """
+        _opendr.save_image(self, os.fspath(path))
+
+    def to_pil(self) -> PIL.Image.Image:
+        """The picture for Pillow; the samples must be uint8.
+
+        Raises:
+            ImportError: Pillow is not installed.
+            ValueError: The samples are of another type.
+        """
+        try:
+            import PIL.Image
+        except ImportError as error:
+            raise ImportError(f"to_pil() needs the package Pillow ({error}): pip install pillow") from error
+        if self.dtype != "uint8":
+            raise ValueError(f"Pillow takes pictures of uint8, not of {self.dtype}; scale the samples to [0, 255]")
+        pixels = self.convert("channels_last")
+        return PIL.Image.fromarray(pixels[:, :, 0] if self.channels == 1 else pixels)
+
+    def _checked(self, data: ArrayLike) -> NDArray[Any]:
+        array = array_of(data, None, "an Image")
+        if array.ndim != 3:
+            raise ValueError(
+                f"3-dimensional images are expected, not of shape {array.shape}; give a grey image as array[None]"
+            )
+        if array.shape[0] not in (1, 3, 4) or array.size == 0:
+            raise ValueError(
+                f"an image of shape {array.shape} should be [channels, height, width] with 1, 3 or 4 channels and at "
+                "least one pixel; transpose it, or let guess_format do so"
+            )
+        return _converted(array, self._dtype)
+
+
+def _dtype(dtype: Optional[DTypeLike]) -> str:
+    import numpy as np
+
+    name = "uint8" if dtype is None else np.dtype(dtype).name
+    if name not in _DTYPES:
+        raise ValueError(f"an Image of {name}; give {', '.join(_DTYPES)}")
+    return name
+
+
+def _chw_from_guess(data: ArrayLike) -> NDArray[Any]:
+    array = array_of(data, None, "an Image")
+    if array.ndim != 3 or not (array.shape[2] == 3 or array.shape[2] < min(array.shape[:2])):
+        return array
+    if array.shape[2] == 3:
+        array = array[:, :, ::-1]
+    return array.transpose(2, 0, 1)
+
+
+def _converted(array: NDArray[Any], dtype: str) -> NDArray[Any]:
+    if array.dtype == dtype:
+        return array
+    if dtype != "float32" and array.dtype.kind != "b":
+        low, high, limit = array.min(), array.max(), 255 if dtype == "uint8" else 65535
+        if not (low >= 0 and high <= limit):
+            raise ValueError(
+                f"samples from {low} to {high} do not fit {dtype}; scale them to [0, {limit}], or say dtype='float32'"
+            )
+    return array.astype(dtype)

@@ -1,0 +1,22 @@
+"""Measurements in the order of time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from opendr.engine.data.array_data import ArrayData
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Timeseries(ArrayData):
+    """Measurements ``[time, features]``, float32. ``len`` and ``[]`` go by time."""
+
+    _axes: ClassVar[tuple[str, ...]] = ("time", "features")
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+    def __getitem__(self, time: int) -> NDArray[Any]:
+        return self.data[time]  # type: ignore[no-any-return]

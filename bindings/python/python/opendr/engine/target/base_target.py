@@ -1,0 +1,88 @@
+"""The roots of all targets."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Optional, TypeVar, Union
+
+from opendr import _opendr
+from opendr.engine._datum import Datum
+from opendr.engine.target.action import Action, ActionBase
+
+Self = TypeVar("Self", bound="BaseTarget")
+
+
+class BaseTarget(Datum):
+    """Whatever can stand beside a datum, as an annotation or as an answer.
+
+    Types that only annotate inherit from this class and not from :class:`Target`.
+    """
+
+    def __str__(self) -> str:
+        """OpenDR's text."""
+        return _opendr.text(self)
+
+    def to_json(self) -> str:
+        """The target as one JSON object (``docs/json.md``), the same on every surface.
+
+        A single box, track or pose is written as the list that holds only it.
+        """
+        return _opendr.json(self._as_value())
+
+    @classmethod
+    def from_json(cls: type[Self], text: Union[str, bytes]) -> Self:
+        """Reads what :meth:`to_json` writes.
+
+        Raises:
+            ValueError: The text is no JSON of a target.
+            TypeError: It is a target of another class.
+        """
+        value = cls._from_value(_opendr.value_from_json(text.decode() if isinstance(text, bytes) else text))
+        if not isinstance(value, cls):
+            raise TypeError(f"the JSON is of a {type(value).__name__}, not of a {cls.__name__}; read it as that")
+        return value
+
+    def _as_value(self) -> BaseTarget:
+        """The target that has a JSON form and holds this one: itself, or a list of it."""
+        return self
+
+    @classmethod
+    def _from_value(cls, value: Any) -> Any:
+        """The inverse of :meth:`_as_value`."""
+        return value
+
+
+class Target(BaseTarget):
+    """What can be both an annotation and the answer of a learner."""
+
+    _data: Any = None
+    _confidence: Any = None
+    _action: Optional[ActionBase] = None
+    _fields: ClassVar[tuple[str, ...]] = ("data", "confidence")
+
+    @property
+    def data(self) -> Any:
+        """What was found; its type is that of the class."""
+        return self._data
+
+    @data.setter
+    def data(self, data: Any) -> None:
+        self._data = data
+
+    @property
+    def confidence(self) -> Any:
+        """Score in [0, 1]; None where there is none."""
+        return self._confidence
+
+    @confidence.setter
+    def confidence(self, confidence: Any) -> None:
+        self._confidence = confidence
+
+    @property
+    def action(self) -> Optional[ActionBase]:
+        """How the robot should move to see better; None where the learner does not tell."""
+        return self._action
+
+    @action.setter
+    def action(self, action: Union[ActionBase, Sequence[float], None]) -> None:
+        self._action = action if action is None or isinstance(action, ActionBase) else Action(action)

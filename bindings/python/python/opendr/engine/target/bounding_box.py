@@ -1,0 +1,149 @@
+"""Boxes in a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
+
+from opendr import _opendr
+from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
+from opendr.engine.target.base_target import Target
+from opendr.engine.target.target_list import NamedTargetList
+
+if TYPE_CHECKING:
+    import numpy as np
+    import supervision
+    from numpy.typing import NDArray
+
+
+class BoundingBox(Target):
+    """A box in a picture: left-top corner and size in pixels.
+
+    Args:
+        name: Class index, or label.
+        left: Left edge, pixels.
+        top: Upper edge, pixels.
+        width: Pixels to the right edge.
+        height: Pixels to the lower edge.
+        score: Confidence in [0, 1].
+        class_name: The label of a class index, where the learner knows it. It is for reading; lists carry the
+            labels of all their boxes in ``classes``.
+        landmarks: Points that belong to the box (eyes, nose, corners of the mouth of a face), ``[x, y]`` in pixels.
+
+    Raises:
+        TypeError: A coordinate is no number, or the name neither int nor str.
+        ValueError: A number is NaN or infinite.
+    """
+
+    _fields: ClassVar[tuple[str, ...]] = (
+        *("name", "left", "top", "width", "height", "confidence"),
+        *("class_name", "landmarks"),
+    )
+
+    def __init__(
+        self,
+        name: Union[int, str, SupportsIndex],
+        left: Real,
+        top: Real,
+        width: Real,
+        height: Real,
+        score: Real = 0,
+        *,
+        class_name: str = "",
+        landmarks: Iterable[Sequence[Real]] = (),
+    ) -> None:
+        self.name: Union[int, str] = class_name_or_index(name)
+        self.left: float = real(left, "left")
+        self.top: float = real(top, "top")
+        self.width: float = real(width, "width")
+        self.height: float = real(height, "height")
+        self._confidence = real(score, "score")
+        self.class_name: str = text(class_name, "class_name")
+        self.landmarks: list[tuple[float, ...]] = [reals(point, 2, "a landmark") for point in landmarks]
+
+    def mot(self, with_confidence: bool = True, frame: int = -1) -> NDArray[np.float32]:
+        """``[frame, left, top, width, height, confidence]``, float32; ``confidence`` only when asked for."""
+        import numpy as np
+
+        return np.array(_opendr.mot(self, with_confidence, frame)[0], dtype=np.float32)
+
+    def coco(self, with_confidence: bool = True) -> dict[str, Any]:
+        """The box as an entry of a COCO file: ``bbox``, ``category_id``, ``area`` in square pixels, and ``confidence``
+        when asked for."""
+        return _opendr.coco(self, with_confidence)[0]
+
+    def _as_value(self) -> BoundingBoxList:
+        return BoundingBoxList([self])
+
+    @classmethod
+    def _from_value(cls, value: Any) -> Any:
+        return value[0] if isinstance(value, BoundingBoxList) and len(value) == 1 else value
+
+
+class BoundingBoxList(NamedTargetList[BoundingBox]):
+    """The boxes found in one picture, best first.
+
+    Args:
+        boxes: The boxes.
+        image_id: The picture's number in its data set; -1 when it has none.
+        classes: What class indices mean: ``classes[0]`` is class 0.
+
+    Raises:
+        TypeError: Something else than a :class:`BoundingBox` is among the boxes.
+    """
+
+    _item = BoundingBox
+    _fields: ClassVar[tuple[str, ...]] = ("data", "classes", "image_id")
+
+    def __init__(
+        self,
+        boxes: Optional[Iterable[BoundingBox]] = None,
+        image_id: SupportsIndex = -1,
+        *,
+        classes: Iterable[str] = (),
+    ) -> None:
+        super().__init__(boxes, classes=classes)
+        self.image_id: int = whole(image_id, "image_id")
+
+    def add_box(self, box: BoundingBox) -> None:
+        """Adds a box at the end.
+
+        Raises:
+            TypeError: It is no :class:`BoundingBox`.
+        """
+        self.append(box)
+
+    def mot(self, with_confidence: bool = True, frame: int = -1) -> NDArray[np.float32]:
+        """``[boxes, 6]`` (``[boxes, 5]`` without confidence), float32; rows as :meth:`BoundingBox.mot`."""
+        import numpy as np
+
+        rows = _opendr.mot(self, with_confidence, frame)
+        return np.array(rows, dtype=np.float32).reshape(-1, 6 if with_confidence else 5)
+
+    def coco(self, with_confidence: bool = True) -> list[dict[str, Any]]:
+        """An entry of a COCO file per box, each with ``image_id`` where the list has one."""
+        return _opendr.coco(self, with_confidence)
+
+    @staticmethod
+    def from_coco(boxes_coco: Iterable[dict[str, Any]], image_id: SupportsIndex = 0) -> BoundingBoxList:
+        """The boxes of the entries of a COCO file; entries with an outline become ``CocoBoundingBox``.
+
+        Args:
+            boxes_coco: Dictionaries with ``bbox``, ``category_id`` and, optionally, ``area``, ``segmentation``,
+                ``iscrowd`` and ``confidence`` (or ``score``).
+            image_id: The picture's number.
+
+        Raises:
+            ValueError: A dictionary is no such entry.
+        """
+        return _opendr.from_coco(list(boxes_coco), whole(image_id, "image_id"))
+
+    def to_supervision(self) -> supervision.Detections:
+        """The boxes as ``supervision.Detections``.
+
+        Raises:
+            ImportError: The package supervision is not installed.
+        """
+        from opendr.engine.target._supervision import detections
+
+        return detections(self.data, self.classes)

@@ -1,0 +1,75 @@
+"""One of several classes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
+
+from opendr.engine._checks import real, text, whole
+from opendr.engine.target.base_target import Target
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+
+class Category(Target):
+    """The class that a datum belongs to; ``data`` is its index.
+
+    Args:
+        prediction: Class index.
+        description: What the class means.
+        confidence: Score of the class in [0, 1], or a vector of the scores of all classes.
+        probabilities: Scores of all classes, ``[classes]``, besides a single ``confidence``.
+
+    Raises:
+        TypeError: The description is no text, or the confidence no number.
+        ValueError: The prediction is no whole number, or a score is not finite.
+    """
+
+    _fields: ClassVar[tuple[str, ...]] = ("data", "description", "confidence", "probabilities")
+
+    def __init__(
+        self,
+        prediction: SupportsIndex,
+        description: Optional[str] = None,
+        confidence: Union[float, ArrayLike, None] = None,
+        *,
+        probabilities: Optional[ArrayLike] = None,
+    ) -> None:
+        self.data = prediction
+        self.description: Optional[str] = None if description is None else text(description, "description")
+        self.probabilities: Optional[NDArray[np.float32]] = None if probabilities is None else _scores(probabilities)
+        self.confidence = confidence
+
+    @property
+    def data(self) -> int:
+        """Class index."""
+        return int(self._data)
+
+    @data.setter
+    def data(self, prediction: SupportsIndex) -> None:
+        try:
+            self._data = whole(prediction, "the class")
+        except TypeError:
+            raise ValueError(f"a Category has the index of its class, not {prediction!r}; give an int") from None
+
+    @property
+    def confidence(self) -> Union[float, NDArray[np.float32], None]:
+        """Score of the class; the scores of all classes when only these are known; else None."""
+        return self.probabilities if self._confidence is None else float(self._confidence)
+
+    @confidence.setter
+    def confidence(self, confidence: Any) -> None:
+        if getattr(confidence, "ndim", 0) or isinstance(confidence, (list, tuple)):
+            self._confidence, self.probabilities = None, _scores(confidence)
+        else:
+            self._confidence = None if confidence is None else real(confidence, "confidence")
+
+
+def _scores(values: ArrayLike) -> NDArray[np.float32]:
+    import numpy as np
+
+    scores = np.asarray(values, dtype=np.float32)
+    if scores.ndim != 1 or not np.isfinite(scores).all():
+        raise ValueError(f"scores of shape {scores.shape} should be finite numbers in a row, one a class")
+    return scores

@@ -1,0 +1,80 @@
+"""A class or a score for every place."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import TYPE_CHECKING, Any, ClassVar, Optional
+
+from opendr.engine._checks import text
+from opendr.engine._equality import is_array
+from opendr.engine.target.base_target import Target
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class Heatmap(Target):
+    """A map of class numbers (``[height, width]``) or of scores (any shape, e.g. ``[classes, height, width]``).
+
+    Args:
+        data: An array of 1 to 8 axes. Whole numbers (none below 0) are classes or instances and are kept as they
+            are; floats are scores and are kept as they are.
+        class_names: What class numbers mean.
+
+    Raises:
+        TypeError: ``data`` is no NumPy array of numbers, or ``class_names`` no dictionary of texts.
+        ValueError: It has no axis or more than 8, or a class number is below 0.
+    """
+
+    _fields: ClassVar[tuple[str, ...]] = ("data", "class_names")
+
+    def __init__(self, data: NDArray[Any], class_names: Optional[dict[Any, str]] = None) -> None:
+        self.data = data
+        self.class_names = class_names
+
+    @property
+    def data(self) -> NDArray[Any]:
+        """The array."""
+        data: NDArray[Any] = self._data
+        return data
+
+    @data.setter
+    def data(self, data: NDArray[Any]) -> None:
+        if not is_array(data) or data.dtype.kind not in "biuf":
+            raise TypeError(f"a Heatmap is made of a NumPy array of numbers, not {data!r:.200}")
+        if not 1 <= data.ndim <= 8:
+            raise ValueError(f"a Heatmap of {data.ndim} axes; give 1 to 8")
+        if data.dtype.kind == "i" and data.size and int(data.min()) < 0:
+            raise ValueError(f"a Heatmap of class numbers down to {data.min()}; give none below 0, or scores as floats")
+        self._data = data
+
+    @property
+    def class_names(self) -> Optional[dict[Any, str]]:
+        """What class numbers mean; None when they have no names."""
+        return self._class_names
+
+    @class_names.setter
+    def class_names(self, class_names: Optional[dict[Hashable, str]]) -> None:
+        if class_names is not None:
+            if not isinstance(class_names, dict):
+                raise TypeError(f"class_names should be a dictionary, e.g. {{0: 'road'}}, not {class_names!r:.200}")
+            for name in class_names.values():
+                text(name, "a name in class_names")
+        self._class_names = class_names
+
+    def numpy(self) -> NDArray[Any]:
+        """A copy of the array."""
+        return self.data.copy()
+
+    def opencv(self) -> NDArray[Any]:
+        """A copy of the array: OpenCV takes maps as they are."""
+        return self.data.copy()
+
+    def shape(self) -> tuple[int, ...]:
+        """Size of each axis."""
+        return self.data.shape
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        from opendr.engine._array_protocol import as_array
+
+        return as_array(self.data, dtype, copy)

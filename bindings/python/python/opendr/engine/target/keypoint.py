@@ -1,0 +1,69 @@
+"""A point found in a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Optional, Union
+
+from opendr.engine._checks import Real, real, reals
+from opendr.engine.target.base_target import Target
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+
+class Keypoint(Target):
+    """A point in a picture: ``x`` and ``y`` in pixels from the left-top corner; (-1, -1) means not found.
+
+    ``point.x``, ``point[0]`` and ``point["x"]`` are the same; ``x, y = point`` works too.
+
+    Args:
+        keypoint: ``[x, y]``.
+        confidence: Score in [0, 1], or None.
+
+    Raises:
+        TypeError: They are no numbers.
+        ValueError: There are not two, or one is not finite.
+    """
+
+    _fields: ClassVar[tuple[str, ...]] = ("data", "confidence")
+
+    def __init__(self, keypoint: Sequence[Real], confidence: Optional[Real] = None) -> None:
+        self.data = keypoint
+        self._confidence = None if confidence is None else real(confidence, "confidence")
+
+    @property
+    def data(self) -> list[float]:
+        """``[x, y]``, pixels."""
+        return [self.x, self.y]
+
+    @data.setter
+    def data(self, keypoint: Sequence[Real]) -> None:
+        self.x, self.y = reals(keypoint, 2, "a keypoint")
+
+    def __len__(self) -> int:
+        return 2
+
+    def __iter__(self) -> Iterator[float]:
+        return iter((self.x, self.y))
+
+    def __getitem__(self, key: Union[int, str]) -> float:
+        if key == "x" or key == "y":
+            return self.x if key == "x" else self.y
+        if isinstance(key, int) and -2 <= key < 2:
+            return (self.x, self.y)[key]
+        # Python ends `for` and unpacking at an IndexError.
+        error = IndexError if isinstance(key, int) else ValueError
+        raise error(f"a keypoint has 0, 1, 'x' and 'y', not {key!r}")
+
+    def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
+        import numpy as np
+
+        return np.array([self.x, self.y], dtype=dtype or np.float32)
+
+    def numpy(self) -> NDArray[np.float32]:
+        """``[x, y]`` as a float32 array."""
+        import numpy as np
+
+        return np.array([self.x, self.y], dtype=np.float32)

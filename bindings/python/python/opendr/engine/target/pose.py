@@ -1,0 +1,150 @@
+"""Persons by their joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
+
+from opendr.engine._checks import Real, real, whole
+from opendr.engine.target.base_target import Target
+from opendr.engine.target.keypoint import Keypoint
+from opendr.engine.target.skeleton import JOINTS, skeleton_of
+from opendr.engine.target.target_list import TargetList
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+class Pose(Target):
+    """One person (or hand, or animal): its joints in a picture, in pixels, in the order of its skeleton.
+
+    ``pose["l_wri"]`` and ``pose[7]`` are :class:`Keypoint` objects.
+
+    Args:
+        keypoints: ``[joints, 2]``, x and y in pixels; (-1, -1) means not found. An array, a list of pairs, or a
+            list of :class:`Keypoint`, whose scores are kept.
+        confidence: Score of the whole, in [0, 1].
+        id: The person's track.
+        skeleton: What the joints are: ``"opendr18"`` or ``"coco17"``; guessed from their number when left out.
+        keypoint_confidences: Score of each joint, in [0, 1]; 0 when left out.
+
+    Raises:
+        TypeError: Something is no number.
+        ValueError: The shape is another, a number is not finite, or there is no such skeleton.
+    """
+
+    #: OpenDR's names of its 18 joints; those of this pose are ``joints``.
+    kpt_names: ClassVar[list[str]] = list(JOINTS["opendr18"])
+    num_kpts: ClassVar[int] = 18
+    _fields: ClassVar[tuple[str, ...]] = ("data", "confidence", "id", "skeleton", "keypoint_confidences")
+
+    def __init__(
+        self,
+        keypoints: Union[ArrayLike, Iterable[Keypoint]],
+        confidence: Real,
+        *,
+        id: Optional[SupportsIndex] = None,
+        skeleton: Optional[str] = None,
+        keypoint_confidences: Optional[ArrayLike] = None,
+    ) -> None:
+        if isinstance(keypoints, (list, tuple)) and any(isinstance(point, Keypoint) for point in keypoints):
+            if keypoint_confidences is None:
+                keypoint_confidences = [getattr(point, "confidence", None) or 0.0 for point in keypoints]
+            keypoints = [list(point) for point in keypoints]
+        self.data = keypoints
+        self.confidence = real(confidence, "confidence")
+        self.id: Optional[int] = None if id is None else whole(id, "id")
+        self.skeleton: str = skeleton_of(skeleton, len(self.data))
+        self.keypoint_confidences = [0.0] * len(self.data) if keypoint_confidences is None else keypoint_confidences
+
+    @property
+    def data(self) -> NDArray[Any]:
+        """``[joints, 2]``, pixels: int32 when given as whole numbers, else float32."""
+        data: NDArray[Any] = self._data
+        return data
+
+    @data.setter
+    def data(self, keypoints: Any) -> None:
+        import numpy as np
+
+        points = np.asarray(keypoints)
+        if points.dtype.kind not in "iuf":
+            raise TypeError(f"keypoints should be numbers [joints, 2], not {keypoints!r:.200}")
+        if points.ndim != 2 or points.shape[0] < 1 or points.shape[1] != 2 or not np.isfinite(points).all():
+            raise ValueError(
+                f"keypoints of shape {points.shape} should be finite numbers [joints, 2]; give x and y of each joint"
+            )
+        self._data = points.astype(np.float32 if points.dtype.kind == "f" else np.int32, copy=False)
+
+    @property
+    def keypoint_confidences(self) -> NDArray[Any]:
+        """Score of each joint, ``[joints]``, float32."""
+        return self._keypoint_confidences
+
+    @keypoint_confidences.setter
+    def keypoint_confidences(self, confidences: ArrayLike) -> None:
+        import numpy as np
+
+        scores = np.asarray(confidences, dtype=np.float32)
+        if scores.shape != (len(self.data),) or not np.isfinite(scores).all():
+            raise ValueError(
+                f"keypoint_confidences of shape {scores.shape} should be {len(self.data)} finite numbers, one a joint"
+            )
+        self._keypoint_confidences: NDArray[Any] = scores
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The names of the joints, in order."""
+        return JOINTS[self.skeleton]
+
+    @property
+    def keypoints(self) -> list[Keypoint]:
+        """The joints with their scores."""
+        return list(self)
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+    def __iter__(self) -> Iterator[Keypoint]:
+        return (self[index] for index in range(len(self)))
+
+    def __getitem__(self, key: Union[SupportsIndex, str]) -> Keypoint:
+        """The joint of that number or name.
+
+        Raises:
+            ValueError: There is none.
+        """
+        if isinstance(key, str):
+            if key not in self.joints[: len(self)]:
+                raise ValueError(f"no keypoint {key!r}; there are {', '.join(self.joints[: len(self)])}")
+            index = self.joints.index(key)
+        else:
+            index = whole(key, "the number of a keypoint")
+        if not 0 <= index < len(self):
+            raise ValueError(f"no keypoint {index}; there are 0 to {len(self) - 1}")
+        return Keypoint(self.data[index].tolist(), self._keypoint_confidences[index])
+
+    def _as_value(self) -> PoseList:
+        return PoseList([self])
+
+    @classmethod
+    def _from_value(cls, value: Any) -> Any:
+        return value[0] if isinstance(value, PoseList) and len(value) == 1 else value
+
+
+class PoseList(TargetList[Pose]):
+    """The persons found in one picture, best first.
+
+    Args:
+        poses: The persons.
+    """
+
+    _item = Pose
+
+    def __init__(self, poses: Optional[Iterable[Pose]] = None) -> None:
+        super().__init__(poses)
+
+    @property
+    def poses(self) -> list[Pose]:
+        """The persons; the same list as ``data``."""
+        return self.data

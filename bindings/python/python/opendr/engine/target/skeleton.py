@@ -1,0 +1,28 @@
+"""The names of the joints of a pose."""
+
+from __future__ import annotations
+
+#: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's.
+JOINTS: dict[str, tuple[str, ...]] = {
+    "opendr18": (
+        *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
+        *("r_ank", "l_hip", "l_knee", "l_ank", "r_eye", "l_eye", "r_ear", "l_ear"),
+    ),
+    "coco17": (
+        *("nose", "l_eye", "r_eye", "l_ear", "r_ear", "l_sho", "r_sho", "l_elb", "r_elb", "l_wri"),
+        *("r_wri", "l_hip", "r_hip", "l_knee", "r_knee", "l_ank", "r_ank"),
+    ),
+}
+
+
+def skeleton_of(name: str | None, joints: int) -> str:
+    """``name`` when it is a skeleton; without one, that which has as many joints (``"opendr18"`` when none has).
+
+    Raises:
+        ValueError: There is no such skeleton.
+    """
+    if name is None:
+        return next((known for known, names in JOINTS.items() if len(names) == joints), "opendr18")
+    if name not in JOINTS:
+        raise ValueError(f"no skeleton {name!r}; there are {', '.join(JOINTS)}")
+    return name

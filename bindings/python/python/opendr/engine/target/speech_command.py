@@ -1,0 +1,50 @@
+"""A spoken command."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import ClassVar, Optional, SupportsIndex, Union
+
+from opendr.engine._checks import Real, class_name_or_index, real, reals
+from opendr.engine.target.base_target import Target
+
+
+class SpeechCommand(Target):
+    """A command that was heard; ``data`` is the same as ``command``.
+
+    Args:
+        command: Class index, or word.
+        confidence: Score in [0, 1].
+        span_s: Begin and end within the sound, seconds; None when they are not known.
+
+    Raises:
+        TypeError: The command is neither int nor str, or something is no number.
+        ValueError: A number is not finite.
+    """
+
+    _fields: ClassVar[tuple[str, ...]] = ("command", "confidence", "span_s")
+
+    def __init__(
+        self,
+        command: Union[int, str, SupportsIndex],
+        confidence: Real = 0,
+        span_s: Optional[Sequence[Real]] = None,
+    ) -> None:
+        self.data = command
+        self.confidence = real(confidence, "confidence")
+        self.span_s: Optional[tuple[float, ...]] = None if span_s is None else reals(span_s, 2, "span_s")
+
+    @property
+    def data(self) -> Union[int, str]:
+        """Class index, or word."""
+        data: Union[int, str] = self._data
+        return data
+
+    @data.setter
+    def data(self, command: Union[int, str, SupportsIndex]) -> None:
+        self._data = class_name_or_index(command)
+
+    @property
+    def command(self) -> Union[int, str]:
+        """Class index, or word."""
+        return self.data

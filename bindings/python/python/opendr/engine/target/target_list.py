@@ -1,0 +1,94 @@
+"""What the lists of targets have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any, ClassVar, Generic, NoReturn, Optional, TypeVar, Union, overload
+
+from opendr.engine._checks import text
+from opendr.engine.target.base_target import Target
+
+T = TypeVar("T", bound=Target)
+
+
+class TargetList(Target, Generic[T]):
+    """Targets of one datum, in a list that may be changed: ``data`` is the list itself.
+
+    ``timestamp`` and ``frame_id`` are those of the datum. ``classes`` names the class numbers: ``classes[0]`` is
+    class 0; it is empty where they have no names.
+    """
+
+    _item: ClassVar[type[Any]] = Target
+    _fields: ClassVar[tuple[str, ...]] = ("data",)
+
+    def __init__(self, items: Optional[Iterable[T]] = None) -> None:
+        self.data = [] if items is None else items
+
+    @property
+    def data(self) -> list[T]:
+        """The items."""
+        items: list[T] = self._data
+        return items
+
+    @data.setter
+    def data(self, items: Iterable[T]) -> None:
+        # A list stays the caller's own, as with OpenDR.
+        items = items if isinstance(items, list) else list(self._iterable(items))
+        for item in items:
+            self._check(item)
+        self._data = items
+
+    @property
+    def confidence(self) -> float:
+        """Mean of the items' scores as they are now; 0 for an empty list."""
+        return sum(item.confidence for item in self.data) / max(len(self.data), 1)
+
+    @confidence.setter
+    def confidence(self, confidence: object) -> NoReturn:
+        raise AttributeError("the confidence of a list is the mean of its items'; set theirs")
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+    def __iter__(self) -> Iterator[T]:
+        return iter(self.data)
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[T]: ...
+    def __getitem__(self, index: Union[int, slice]) -> Union[T, list[T]]:
+        return self.data[index]
+
+    def append(self, item: T) -> None:
+        """Adds an item at the end.
+
+        Raises:
+            TypeError: It is of another class.
+        """
+        self._check(item)
+        self.data.append(item)
+
+    def _check(self, item: object) -> None:
+        if not isinstance(item, self._item):
+            raise TypeError(f"a {type(self).__name__} holds {self._item.__name__} objects, not {item!r}")
+
+    def _iterable(self, items: Iterable[T]) -> Iterable[T]:
+        if isinstance(items, (str, bytes)) or not isinstance(items, Iterable):
+            raise TypeError(f"a {type(self).__name__} is made of a list of {self._item.__name__}, not {items!r}")
+        return items
+
+
+class NamedTargetList(TargetList[T]):
+    """A list whose items have classes."""
+
+    _fields: ClassVar[tuple[str, ...]] = ("data", "classes")
+
+    def __init__(self, items: Optional[Iterable[T]] = None, *, classes: Iterable[str] = ()) -> None:
+        super().__init__(items)
+        self.classes: list[str] = [text(name, "a name in classes") for name in classes]
+
+    @property
+    def boxes(self) -> list[T]:
+        """The items; the same list as ``data``."""
+        return self.data

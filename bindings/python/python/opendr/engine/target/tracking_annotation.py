@@ -1,0 +1,174 @@
+"""Boxes with an identity."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
+
+from opendr import _opendr
+from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
+from opendr.engine.target.base_target import Target
+from opendr.engine.target.bounding_box import BoundingBox, BoundingBoxList
+from opendr.engine.target.coco_bounding_box import CocoBoundingBox, Segmentation, segmentation_of
+from opendr.engine.target.target_list import NamedTargetList
+
+if TYPE_CHECKING:
+    import numpy as np
+    import supervision
+    from numpy.typing import NDArray
+
+
+class TrackingAnnotation(Target):
+    """A box of one object that is followed through a video: left-top corner and size in pixels.
+
+    Args:
+        name: Class index, or label.
+        left: Left edge, pixels.
+        top: Upper edge, pixels.
+        width: Pixels to the right edge.
+        height: Pixels to the lower edge.
+        id: The object's number, the same in every picture; -1 when it is not known.
+        score: Confidence in [0, 1].
+        frame: Number of the picture in its video; -1 when it has none.
+        class_name: The label of a class index, where the learner knows it.
+        landmarks: Points that belong to the box, ``[x, y]`` in pixels.
+        segmentation: Outline of the object as in :class:`CocoBoundingBox`; None when it is not known.
+        area: Square pixels of the object.
+        iscrowd: 1 for a crowd.
+
+    Raises:
+        TypeError: A coordinate is no number, an id no int, or the name neither int nor str.
+        ValueError: A number is NaN or infinite.
+    """
+
+    _fields: ClassVar[tuple[str, ...]] = (
+        *("name", "left", "top", "width", "height", "id", "confidence", "frame"),
+        *("class_name", "landmarks", "segmentation", "area", "iscrowd"),
+    )
+
+    def __init__(
+        self,
+        name: Union[int, str, SupportsIndex],
+        left: Real,
+        top: Real,
+        width: Real,
+        height: Real,
+        id: SupportsIndex,
+        score: Real = 0,
+        frame: SupportsIndex = -1,
+        *,
+        class_name: str = "",
+        landmarks: Iterable[Sequence[Real]] = (),
+        segmentation: Union[Segmentation, Sequence[Sequence[Real]], None] = None,
+        area: Real = 0,
+        iscrowd: SupportsIndex = 0,
+    ) -> None:
+        self.name: Union[int, str] = class_name_or_index(name)
+        self.left: float = real(left, "left")
+        self.top: float = real(top, "top")
+        self.width: float = real(width, "width")
+        self.height: float = real(height, "height")
+        self.id: int = whole(id, "id")
+        self._confidence = real(score, "score")
+        self.frame: int = whole(frame, "frame")
+        self.class_name: str = text(class_name, "class_name")
+        self.landmarks: list[tuple[float, ...]] = [reals(point, 2, "a landmark") for point in landmarks]
+        self.segmentation: Optional[Segmentation] = None if segmentation is None else segmentation_of(segmentation)
+        self.area: float = real(area, "area")
+        self.iscrowd: int = whole(iscrowd, "iscrowd")
+
+    def mot(self, with_confidence: bool = True) -> NDArray[np.float32]:
+        """``[frame, id, left, top, width, height, confidence]``, float32; ``confidence`` only when asked for."""
+        import numpy as np
+
+        return np.array(_opendr.mot(self, with_confidence, self.frame)[0], dtype=np.float32)
+
+    @staticmethod
+    def from_mot(data: Sequence[Real]) -> TrackingAnnotation:
+        """Reads ``[frame, id, left, top, width, height]``, with or without a confidence (1 when it is left out).
+
+        The class is 0.
+
+        Raises:
+            ValueError: There are fewer than 6 or more than 10 numbers, or one is not finite.
+        """
+        return TrackingAnnotationList.from_mot([data])[0]
+
+    def bounding_box(self) -> BoundingBox:
+        """The box without its identity; a :class:`CocoBoundingBox` when there is an outline."""
+        place = (self.name, self.left, self.top, self.width, self.height)
+        box: BoundingBox
+        if self.segmentation is None:
+            box = BoundingBox(*place, self.confidence, class_name=self.class_name, landmarks=self.landmarks)
+        else:
+            outline = (self.segmentation, self.area, self.iscrowd, self.confidence)
+            box = CocoBoundingBox(*place, *outline, class_name=self.class_name, landmarks=self.landmarks)
+        box.timestamp, box.frame_id, box.action = self.timestamp, self.frame_id, self.action
+        return box
+
+    def _as_value(self) -> TrackingAnnotationList:
+        return TrackingAnnotationList([self])
+
+    @classmethod
+    def _from_value(cls, value: Any) -> Any:
+        return value[0] if isinstance(value, TrackingAnnotationList) and len(value) == 1 else value
+
+
+class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
+    """The followed objects of one picture, or of a whole video.
+
+    Args:
+        annotations: The objects.
+        classes: What class indices mean: ``classes[0]`` is class 0.
+
+    Raises:
+        TypeError: Something else than a :class:`TrackingAnnotation` is among them.
+    """
+
+    _item = TrackingAnnotation
+
+    def __init__(
+        self, annotations: Optional[Iterable[TrackingAnnotation]] = None, *, classes: Iterable[str] = ()
+    ) -> None:
+        super().__init__(annotations, classes=classes)
+
+    def add_annotation(self, annotation: TrackingAnnotation) -> None:
+        """Adds an object at the end.
+
+        Raises:
+            TypeError: It is no :class:`TrackingAnnotation`.
+        """
+        self.append(annotation)
+
+    def mot(self, with_confidence: bool = True) -> NDArray[np.float32]:
+        """``[objects, 7]`` (``[objects, 6]`` without confidence), float32; rows as :meth:`TrackingAnnotation.mot`."""
+        import numpy as np
+
+        rows = _opendr.mot(self, with_confidence, -1)
+        return np.array(rows, dtype=np.float32).reshape(-1, 7 if with_confidence else 6)
+
+    @staticmethod
+    def from_mot(data: Iterable[Sequence[Real]]) -> TrackingAnnotationList:
+        """Reads rows as :meth:`TrackingAnnotation.from_mot`, e.g. an array ``[objects, 7]``.
+
+        Raises:
+            TypeError: A row has something else than numbers.
+            ValueError: A row is none.
+        """
+        return _opendr.from_mot([[real(number, "a number of a MOT row") for number in row] for row in data])
+
+    def bounding_box_list(self) -> BoundingBoxList:
+        """The boxes without their identities."""
+        boxes = BoundingBoxList([track.bounding_box() for track in self.data], classes=self.classes)
+        boxes.timestamp, boxes.frame_id, boxes.action = self.timestamp, self.frame_id, self.action
+        return boxes
+
+    def to_supervision(self) -> supervision.Detections:
+        """The objects as ``supervision.Detections`` with ``tracker_id``.
+
+        Raises:
+            ImportError: The package supervision is not installed.
+        """
+        from opendr.engine.target._supervision import detections
+
+        return detections(self.data, self.classes)
