@@ -19,7 +19,7 @@ pub fn add(command: Command, entry: &'static Entry) -> Command {
 }
 
 fn param_flag(entry: &'static Entry, field: &'static Field) -> Arg {
-    let mut help = format!("{} [default: {}]", field.doc.trim_end_matches('.'), (field.default)());
+    let mut help = format!("{} [default: {}]", field.doc.trim_end_matches('.'), field.default.value());
     if let Some(range) = field.range {
         let unit = if field.unit.is_empty() { String::new() } else { format!(" {}", field.unit) };
         help += &format!(" [range: {} to {}{unit}]", range.low, range.high);

@@ -50,6 +50,11 @@ impl Bar {
     /// A bar, or nothing at all when `quiet`. From here on Ctrl-C only asks to stop.
     pub fn new(quiet: bool) -> Self {
         watch_interrupt();
+        Self::without_interrupt(quiet)
+    }
+
+    /// As [`Bar::new`], for a process whose Ctrl-C is somebody else's.
+    pub fn without_interrupt(quiet: bool) -> Self {
         Self { shown: Mutex::new(Shown::Nothing), quiet }
     }
 

@@ -75,7 +75,10 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
                 log_scale: #log,
                 live: #live,
                 aliases: &[#(#aliases),*],
-                default: || { let default: #kind = #default; #param::to_value(&default) },
+                default: ::opendr_engine::params::FieldDefault::Made(|| {
+                    let default: #kind = #default;
+                    #param::to_value(&default)
+                }),
             }
         });
         defaults.push(quote!(#ident: #default));

@@ -69,7 +69,7 @@ impl Check<'_> {
         for field in self.entry.params.iter().chain(self.entry.fit_params) {
             must(snake(field.name), "parameters are snake_case")?;
             must(field.doc.ends_with('.'), &format!("the documentation of {} is sentences", field.name))?;
-            field.check(&(field.default)()).context(|| "default")?;
+            field.check(&field.default.value()).context(|| "default")?;
         }
         must(!self.entry.ports.is_empty(), "there is an input")?;
         must(!self.entry.outputs.is_empty(), "there is an output")

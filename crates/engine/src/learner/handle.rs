@@ -54,7 +54,7 @@ impl<L: Learner> Handle<L> {
         let mut params = self.params.clone();
         for (index, field) in L::Params::FIELDS.iter().enumerate() {
             if let Some(stated) = model.params().get(field.name)
-                && params.get_at(index) == (field.default)()
+                && params.get_at(index) == field.default.value()
             {
                 params.set(field.name, stated.clone()).context(context)?;
             }

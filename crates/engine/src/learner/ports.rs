@@ -94,11 +94,11 @@ impl<'a> Ports<'a> {
         })
     }
 
-    /// Checks the names against the table of a learner and that an init port is given when its stream begins.
+    /// Checks the names against the table of a learner.
     ///
     /// # Errors
-    /// `InvalidInput` for a port that the learner does not have, or a missing init port.
-    pub(crate) fn check(&self, table: &[Port], begins: bool) -> Result<()> {
+    /// `InvalidInput` for a port that the learner does not have.
+    pub fn check_names(&self, table: &[Port]) -> Result<()> {
         for (name, _) in &self.values {
             if !table.iter().any(|port| port.name == *name) {
                 let names: Vec<_> = table.iter().map(|port| port.name).collect();
@@ -108,6 +108,15 @@ impl<'a> Ports<'a> {
                 )));
             }
         }
+        Ok(())
+    }
+
+    /// Checks the names, and that an init port is given when its stream begins.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a port that the learner does not have, or a missing init port.
+    pub(crate) fn check(&self, table: &[Port], begins: bool) -> Result<()> {
+        self.check_names(table)?;
         match table.iter().find(|port| begins && port.init && self.get(port.name).is_none()) {
             Some(port) => Err(Error::invalid_input(format!(
                 "input {:?} ({}) must be given with the first call of a stream; give it, or reset and begin again",

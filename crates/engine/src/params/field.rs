@@ -20,6 +20,25 @@ impl fmt::Display for ParamRange {
     }
 }
 
+/// Where the default of a [`Field`] comes from.
+#[derive(Debug, Clone, Copy)]
+pub enum FieldDefault {
+    /// From the definition of a struct.
+    Made(fn() -> ParamValue),
+    /// From a learner that is registered at run time.
+    Given(&'static ParamValue),
+}
+
+impl FieldDefault {
+    /// The default.
+    pub fn value(self) -> ParamValue {
+        match self {
+            Self::Made(make) => make(),
+            Self::Given(value) => value.clone(),
+        }
+    }
+}
+
 /// One parameter: all that any surface needs to know of it.
 #[derive(Debug, Clone, Copy)]
 pub struct Field {
@@ -44,7 +63,7 @@ pub struct Field {
     /// Other names that Python takes for it: those that it had in OpenDR.
     pub aliases: &'static [&'static str],
     /// Its default.
-    pub default: fn() -> ParamValue,
+    pub default: FieldDefault,
 }
 
 impl Field {

@@ -12,7 +12,7 @@ mod value;
 use std::collections::BTreeMap;
 use std::fmt::Debug;
 
-pub use field::{Field, ParamRange};
+pub use field::{Field, FieldDefault, ParamRange};
 pub use opendr_derive::Params;
 pub use param::{Param, ParamKind};
 pub use value::ParamValue;

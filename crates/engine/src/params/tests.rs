@@ -41,10 +41,10 @@ fn table_is_complete() {
     assert!(threshold.live && !size.live && rate.log_scale && limit.optional);
     assert_eq!((size.unit, size.kind), ("px", ParamKind::Int));
     assert_eq!(mode.choices, ["fast", "exact"]);
-    assert_eq!((threshold.default)(), ParamValue::Float(0.35));
-    assert_eq!((name.default)(), ParamValue::Text("none at all".into()));
+    assert_eq!(threshold.default.value(), ParamValue::Float(0.35));
+    assert_eq!(name.default.value(), ParamValue::Text("none at all".into()));
     assert_eq!(strides.kind, ParamKind::List);
-    assert_eq!((verbose.default)(), ParamValue::Bool(false));
+    assert_eq!(verbose.default.value(), ParamValue::Bool(false));
     All::default().check().unwrap();
 }
 

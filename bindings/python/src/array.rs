@@ -1,0 +1,239 @@
+//! Memory of NumPy arrays, read and shown.
+
+use std::sync::Arc;
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyTuple};
+
+/// A NumPy array's memory: where it is and how it is laid out.
+///
+/// It is valid as long as the array lives and the interpreter lock is held; elements are copied out byte by byte, so
+/// neither alignment nor a thread of the user's that writes meanwhile can do more harm than a torn picture.
+pub struct ArrayMemory {
+    start: *const u8,
+    shape: Vec<usize>,
+    /// Bytes from one element to the next along each axis.
+    strides: Vec<isize>,
+    type_text: String,
+}
+
+/// An element type of arrays.
+pub trait Element: Copy + Default {
+    /// As `__array_interface__` writes it.
+    const TYPE_TEXT: &'static str;
+}
+
+impl Element for u8 {
+    const TYPE_TEXT: &'static str = "|u1";
+}
+
+impl Element for u16 {
+    const TYPE_TEXT: &'static str = if cfg!(target_endian = "little") { "<u2" } else { ">u2" };
+}
+
+impl Element for u32 {
+    const TYPE_TEXT: &'static str = if cfg!(target_endian = "little") { "<u4" } else { ">u4" };
+}
+
+impl Element for f32 {
+    const TYPE_TEXT: &'static str = if cfg!(target_endian = "little") { "<f4" } else { ">f4" };
+}
+
+impl ArrayMemory {
+    /// The memory of `array`, which must be a NumPy array: nothing else is trusted to describe its memory rightly.
+    pub fn of(array: &Bound<'_, PyAny>) -> PyResult<Self> {
+        static NDARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        let py = array.py();
+        let ndarray =
+            NDARRAY.get_or_try_init(py, || py.import("numpy")?.getattr("ndarray").map(Bound::unbind))?;
+        if !array.is_instance(ndarray.bind(py))? {
+            let given = array.get_type().name()?;
+            return Err(PyTypeError::new_err(format!("a numpy.ndarray is wanted, not {given}")));
+        }
+        let interface = array.getattr("__array_interface__")?.cast_into::<PyDict>()?;
+        let entry = |name: &str| {
+            interface
+                .get_item(name)?
+                .ok_or_else(|| PyTypeError::new_err("the array does not describe its memory"))
+        };
+        let (address, _): (usize, bool) = entry("data")?.extract()?;
+        let shape: Vec<usize> = entry("shape")?.extract()?;
+        let strides: Vec<isize> = array.getattr("strides")?.extract()?;
+        let type_text = entry("typestr")?.extract()?;
+        Ok(Self { start: address as *const u8, shape, strides, type_text })
+    }
+
+    /// Size of each axis.
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Elements from one to the next along each axis, when these are whole numbers of `T`.
+    pub fn element_strides<T>(&self) -> Option<Vec<isize>> {
+        let size = size_of::<T>() as isize;
+        let whole = |stride: &isize| (stride % size == 0).then_some(stride / size);
+        self.strides.iter().map(whole).collect()
+    }
+
+    /// Whether the elements are of `T`.
+    pub fn is<T: Element>(&self) -> bool {
+        self.type_text == T::TYPE_TEXT
+    }
+
+    /// NumPy's letters for the element type, for messages.
+    pub fn type_text(&self) -> &str {
+        &self.type_text
+    }
+
+    /// All elements, last axis fastest.
+    pub fn to_vec<T: Element>(&self) -> PyResult<Vec<T>> {
+        let mut elements = Vec::new();
+        self.copy_into(&mut elements)?;
+        Ok(elements)
+    }
+
+    /// Puts all elements, last axis fastest, into `elements`, whose memory is used again.
+    pub fn copy_into<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<()> {
+        if !self.is::<T>() {
+            return Err(PyTypeError::new_err(format!(
+                "an array of {} is wanted, not of {}; use astype",
+                T::TYPE_TEXT,
+                self.type_text
+            )));
+        }
+        copy(self.start, &self.shape, &self.strides, elements)
+    }
+
+    /// A picture seen as `[channels, height, width]` whose pixels lie together in memory: its elements as
+    /// `[height, width, channels]`, and whether the channels lie in reverse. `None`, with nothing copied, when
+    /// its pixels do not lie together.
+    pub fn copy_pixels<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<Option<bool>> {
+        let (&[channels, ..], Some(strides)) = (&self.shape[..], self.element_strides::<T>()) else {
+            return Ok(None);
+        };
+        let &[channel, _, column] = &strides[..] else { return Ok(None) };
+        if !self.is::<T>() || column != channels as isize || channels < 3 {
+            return Ok(None);
+        }
+        let packed = |start: *const u8, elements: &mut Vec<T>| {
+            let shape = [self.shape[1], self.shape[2] * channels];
+            copy(start, &shape, &[self.strides[1], size_of::<T>() as isize], elements)
+        };
+        match channel {
+            1 => packed(self.start, elements).map(|()| Some(false)),
+            // Three channels only: reversed opacity would come first.
+            -1 if channels == 3 => {
+                packed(self.start.wrapping_sub(2 * size_of::<T>()), elements).map(|()| Some(true))
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+fn copy<T: Element>(
+    start: *const u8,
+    shape: &[usize],
+    strides: &[isize],
+    elements: &mut Vec<T>,
+) -> PyResult<()> {
+    let count = shape.iter().try_fold(1usize, |count, &side| count.checked_mul(side));
+    let count = count.ok_or_else(|| PyValueError::new_err("the array is too large"))?;
+    elements.clear();
+    elements
+        .try_reserve_exact(count)
+        .map_err(|_| PyValueError::new_err(format!("no memory for {count} elements")))?;
+    if count > 0 {
+        copy_axis(start, shape, strides, elements);
+    }
+    Ok(())
+}
+
+fn copy_axis<T: Element>(start: *const u8, shape: &[usize], strides: &[isize], elements: &mut Vec<T>) {
+    let size = size_of::<T>();
+    match (shape, strides) {
+        (&[side], &[stride]) if stride == size as isize => {
+            let filled = elements.len();
+            // SAFETY: NumPy says that `side` elements lie here one after the other; room for all was reserved; T is
+            // a plain number, for which any bytes will do.
+            unsafe {
+                let room = elements.as_mut_ptr().add(filled).cast::<u8>();
+                std::ptr::copy_nonoverlapping(start, room, side * size);
+                elements.set_len(filled + side);
+            }
+        }
+        (&[side], &[stride]) => {
+            for index in 0..side as isize {
+                // SAFETY: NumPy says that an element lies here; it may be unaligned.
+                elements.push(unsafe { start.wrapping_offset(index * stride).cast::<T>().read_unaligned() });
+            }
+        }
+        (&[side, ref shape @ ..], &[stride, ref strides @ ..]) => {
+            for index in 0..side as isize {
+                copy_axis(start.wrapping_offset(index * stride), shape, strides, elements);
+            }
+        }
+        // No axes: one number.
+        _ => {
+            // SAFETY: NumPy says that an element lies here; it may be unaligned.
+            elements.push(unsafe { start.cast::<T>().read_unaligned() });
+        }
+    }
+}
+
+/// Where an array's elements lie, for `__array_interface__`; NumPy keeps the object that said so alive.
+pub fn array_interface<'py>(
+    py: Python<'py>,
+    address: usize,
+    shape: &[usize],
+    strides: Option<&[isize]>,
+    type_text: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let interface = PyDict::new(py);
+    let read_only = true;
+    interface.set_item("version", 3)?;
+    interface.set_item("data", (address, read_only))?;
+    interface.set_item("shape", PyTuple::new(py, shape)?)?;
+    interface.set_item("typestr", type_text)?;
+    if let Some(strides) = strides {
+        interface.set_item("strides", PyTuple::new(py, strides)?)?;
+    }
+    Ok(interface)
+}
+
+/// Numbers of a target, shared with NumPy without a copy: `numpy.asarray(it)`, read-only.
+#[pyclass(frozen, module = "opendr._opendr")]
+pub struct NativeArray {
+    elements: Elements,
+    shape: Vec<usize>,
+}
+
+enum Elements {
+    U32(Arc<Vec<u32>>),
+    F32(Arc<Vec<f32>>),
+}
+
+impl NativeArray {
+    /// Class numbers.
+    pub fn from_labels(labels: Arc<Vec<u32>>, shape: &[usize]) -> Self {
+        Self { elements: Elements::U32(labels), shape: shape.to_vec() }
+    }
+
+    /// Scores.
+    pub fn from_scores(scores: Arc<Vec<f32>>, shape: &[usize]) -> Self {
+        Self { elements: Elements::F32(scores), shape: shape.to_vec() }
+    }
+}
+
+#[pymethods]
+impl NativeArray {
+    #[getter]
+    fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (address, type_text) = match &self.elements {
+            Elements::U32(labels) => (labels.as_ptr() as usize, u32::TYPE_TEXT),
+            Elements::F32(scores) => (scores.as_ptr() as usize, f32::TYPE_TEXT),
+        };
+        array_interface(py, address, &self.shape, None, type_text)
+    }
+}

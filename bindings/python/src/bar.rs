@@ -1,0 +1,57 @@
+//! Progress of long calls, and Ctrl-C while Python waits for them.
+
+use std::sync::{Mutex, PoisonError};
+
+use opendr::{Progress, Result, Unit};
+use opendr_cli::Bar;
+use pyo3::prelude::*;
+
+use crate::error::ToPython;
+
+/// The command's bar; work stops when a signal handler of Python raises.
+pub struct PythonBar {
+    bar: Bar,
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl PythonBar {
+    /// A bar, or nothing at all when `quiet`.
+    pub fn new(quiet: bool) -> Self {
+        Self { bar: Bar::without_interrupt(quiet), raised: Mutex::default() }
+    }
+
+    /// Does `work` with the interpreter released, and raises what stopped it.
+    pub fn run<T: Send>(self, py: Python<'_>, work: impl FnOnce(&Self) -> Result<T> + Send) -> PyResult<T> {
+        let done = py.detach(|| work(&self));
+        match self.raised.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            Some(raised) => Err(raised),
+            None => done.to_python(py),
+        }
+    }
+}
+
+impl Progress for PythonBar {
+    fn begin(&self, what: &str, total: Option<u64>, unit: Unit) {
+        self.bar.begin(what, total, unit);
+    }
+
+    fn advance(&self, amount: u64) {
+        self.bar.advance(amount);
+    }
+
+    fn end(&self) {
+        self.bar.end();
+    }
+
+    fn note(&self, line: &str) {
+        self.bar.note(line);
+    }
+
+    fn stopped(&self) -> bool {
+        let mut raised = self.raised.lock().unwrap_or_else(PoisonError::into_inner);
+        if raised.is_none() {
+            *raised = Python::attach(|py| py.check_signals()).err();
+        }
+        raised.is_some()
+    }
+}

@@ -1,0 +1,11 @@
+//! The `opendr` command, for `python -m opendr` and the script that the wheel installs.
+
+use std::ffi::OsString;
+
+use pyo3::prelude::*;
+
+/// Runs the command; its exit code. Learners that were registered from Python are there too.
+#[pyfunction]
+pub fn main(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| opendr_cli::run(arguments))
+}

@@ -1,0 +1,158 @@
+//! Data on their way from Python: objects that own NumPy arrays.
+
+use opendr::data::{
+    Audio, Calibration, ImageWithDetections, Observation, PointCloud, PointCloudWithCalibration,
+    SkeletonSequence, Timeseries, Vector, Video,
+};
+use opendr::{Error, Header, Result, Value, ValueRef, ValueType};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::array::{ArrayMemory, NativeArray};
+use crate::error::ToPython;
+use crate::pixels::{Pixels, image_from_python};
+use crate::target::{payload, target_from_python};
+
+/// The value of type `wanted` that a Python object is.
+pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResult<Value> {
+    if wanted.is_target() {
+        return target_from_python(object);
+    }
+    let py = object.py();
+    let numbers = || Numbers::of(&object.getattr("data")?);
+    let mut value = match wanted {
+        ValueType::Image => return image_from_python(object, Vec::new()).map(Value::Image),
+        ValueType::Video => Value::Video(numbers()?.datum(Video::new)?),
+        ValueType::PointCloud => Value::PointCloud(numbers()?.datum(PointCloud::new)?),
+        ValueType::Timeseries => Value::Timeseries(numbers()?.datum(Timeseries::new)?),
+        ValueType::Vector => Value::Vector(numbers()?.datum(Vector::new)?),
+        ValueType::SkeletonSequence => Value::SkeletonSequence(numbers()?.datum(SkeletonSequence::new)?),
+        ValueType::Audio => Value::Audio(audio(object)?),
+        ValueType::Calibration => Value::Calibration(calibration(object)?),
+        ValueType::Observation => Value::Observation(observation(object)?),
+        ValueType::PointCloudWithCalibration => {
+            let cloud = numbers()?.datum(PointCloud::new)?;
+            let calibration = calibration(&object.getattr("calib")?)?;
+            let image_shape = object.getattr("image_shape")?.extract()?;
+            Value::PointCloudWithCalibration(PointCloudWithCalibration::new(cloud, calibration, image_shape))
+        }
+        ValueType::ImageWithDetections => {
+            let image = image_from_python(object, Vec::new())?;
+            let Value::BoundingBoxList(boxes) = target_from_python(&object.getattr("boundingBoxList")?)?
+            else {
+                return Err(PyTypeError::new_err("boundingBoxList should be a BoundingBoxList"));
+            };
+            Value::ImageWithDetections(ImageWithDetections::new(image, boxes))
+        }
+        other => return Err(Error::unsupported(format!("{} from Python", other.name()))).to_python(py),
+    };
+    *value.header_mut() = header_from_python(object)?;
+    Ok(value)
+}
+
+/// The Python object of a value.
+pub fn python_from_value<'py>(py: Python<'py>, value: ValueRef<'_>) -> PyResult<Bound<'py, PyAny>> {
+    let fields = py.import("opendr._fields")?;
+    let name = value.value_type().name();
+    let array = |numbers: &[f32], shape: &[usize]| NativeArray::from_scores(numbers.to_vec().into(), shape);
+    let (numbers, header) = match value {
+        ValueRef::Image(image) => {
+            let pixels = Pixels::new(image.clone()).to_python(py)?;
+            return fields.call_method1("image", (pixels,));
+        }
+        ValueRef::Video(data) => (array(data.as_slice(), &data.shape()), &data.header),
+        ValueRef::PointCloud(data) => (array(data.as_slice(), &data.shape()), &data.header),
+        ValueRef::Timeseries(data) => (array(data.as_slice(), &data.shape()), &data.header),
+        ValueRef::Vector(data) => (array(data.as_slice(), &data.shape()), &data.header),
+        ValueRef::SkeletonSequence(data) => (array(data.as_slice(), &data.shape()), &data.header),
+        other if other.value_type().is_target() => {
+            let (json, array) = payload(&other.to_value()).to_python(py)?;
+            return fields.call_method1("target", (json, array));
+        }
+        _ => {
+            return Err(Error::unsupported(format!("{name} as the input of a Python learner"))).to_python(py);
+        }
+    };
+    fields.call_method1("datum", (name, numbers, header.stamp_ns, header.frame_id.as_deref()))
+}
+
+/// Time stamp and frame id of a Python datum or target.
+pub fn header_from_python(object: &Bound<'_, PyAny>) -> PyResult<Header> {
+    let stamp_ns = object.getattr("timestamp")?.extract()?;
+    let frame_id: Option<String> = object.getattr("frame_id")?.extract()?;
+    Ok(Header { stamp_ns, frame_id: frame_id.filter(|id| !id.is_empty()).map(Into::into) })
+}
+
+/// The elements of an array of floats.
+struct Numbers<'py> {
+    py: Python<'py>,
+    shape: Vec<usize>,
+    elements: Vec<f32>,
+}
+
+impl<'py> Numbers<'py> {
+    fn of(array: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let memory = ArrayMemory::of(array)?;
+        Ok(Self { py: array.py(), shape: memory.shape().to_vec(), elements: memory.to_vec()? })
+    }
+
+    fn datum<T, const D: usize>(self, make: impl FnOnce(Vec<f32>, [usize; D]) -> Result<T>) -> PyResult<T> {
+        let shape = <[usize; D]>::try_from(self.shape).map_err(|shape| {
+            PyValueError::new_err(format!("an array of {D} axes is wanted, not one of shape {shape:?}"))
+        })?;
+        make(self.elements, shape).to_python(self.py)
+    }
+}
+
+fn audio(object: &Bound<'_, PyAny>) -> PyResult<Audio> {
+    let samples = Numbers::of(&object.getattr("data")?)?;
+    let sample_rate = object.getattr("sample_rate")?.extract()?;
+    samples.datum(|elements, [_, channels]: [usize; 2]| Audio::new(elements, channels, sample_rate))
+}
+
+/// From a dictionary of KITTI's matrices or an object with such attributes.
+fn calibration(object: &Bound<'_, PyAny>) -> PyResult<Calibration> {
+    let matrix = |name: &str| match object.cast::<PyDict>() {
+        Ok(dict) => dict.as_any().get_item(name),
+        Err(_) => object.getattr(name.to_lowercase().as_str()),
+    };
+    Ok(Calibration {
+        header: Header::default(),
+        p2: rows(&matrix("P2")?)?,
+        r0_rect: rows(&matrix("R0_rect")?)?,
+        tr_velo_to_cam: rows(&matrix("Tr_velo_to_cam")?)?,
+    })
+}
+
+/// The rows of a matrix given flat or as rows; of a bottom row of homogeneous coordinates nothing is kept.
+fn rows<const COLUMNS: usize>(matrix: &Bound<'_, PyAny>) -> PyResult<[[f64; COLUMNS]; 3]> {
+    let flat: Vec<f64> =
+        matrix.py().import("numpy")?.call_method1("ravel", (matrix,))?.call_method0("tolist")?.extract()?;
+    let mut rows = [[0.0; COLUMNS]; 3];
+    if flat.len() < 3 * COLUMNS {
+        return Err(PyValueError::new_err(format!(
+            "a matrix of 3x{COLUMNS} is wanted, not of {} numbers",
+            flat.len()
+        )));
+    }
+    for (row, numbers) in rows.iter_mut().zip(flat.chunks_exact(COLUMNS)) {
+        row.copy_from_slice(numbers);
+    }
+    Ok(rows)
+}
+
+/// From one array, or a dictionary of arrays by name.
+fn observation(object: &Bound<'_, PyAny>) -> PyResult<Observation> {
+    let py = object.py();
+    let data = object.getattr("data")?;
+    let Ok(parts) = data.cast::<PyDict>() else {
+        return Observation::from_data(Numbers::of(&data)?.elements).to_python(py);
+    };
+    let mut read = Vec::with_capacity(parts.len());
+    for (name, array) in parts.iter() {
+        read.push((name.extract::<String>()?, Numbers::of(&array)?));
+    }
+    let parts = read.iter().map(|(name, numbers)| (name.as_str(), &numbers.shape[..], &numbers.elements[..]));
+    Observation::from_parts(parts).to_python(py)
+}

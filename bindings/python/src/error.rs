@@ -1,0 +1,37 @@
+//! Errors as exceptions: one class per kind, made in `opendr/_errors.py`.
+
+use opendr::Error;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+
+/// The exception of an error, with the error's kind as its class and its message as its text.
+pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
+    // What a Python learner raised goes on as it was.
+    if let Some(raised) = std::error::Error::source(error).and_then(|source| source.downcast_ref::<PyErr>()) {
+        return raised.clone_ref(py);
+    }
+    let class = py.import("opendr._errors").and_then(|module| module.getattr(error.kind().name()));
+    match class.and_then(|class| class.call1((error.to_string(),))) {
+        Ok(value) => PyErr::from_value(value),
+        Err(_) => PyRuntimeError::new_err(error.to_string()),
+    }
+}
+
+/// The error that a Python exception is, with the exception as its source.
+pub fn error_from_exception(py: Python<'_>, raised: PyErr) -> Error {
+    let text = raised.value(py).to_string();
+    let name = raised.get_type(py).name().map(|name| name.to_string()).unwrap_or_default();
+    Error::internal(format!("{name}: {text}")).with_source(raised)
+}
+
+/// Turns results of the toolkit into results of Python.
+pub trait ToPython<T> {
+    /// With the error as an exception.
+    fn to_python(self, py: Python<'_>) -> PyResult<T>;
+}
+
+impl<T> ToPython<T> for opendr::Result<T> {
+    fn to_python(self, py: Python<'_>) -> PyResult<T> {
+        self.map_err(|error| exception(py, &error))
+    }
+}

@@ -1,0 +1,58 @@
+//! The native half of the Python package `opendr`: registry, learners, values, sources, zoo, command.
+//!
+//! It knows data and target types, never learners. Data are Python objects that own NumPy arrays; their memory is read
+//! through raw pointers in one pass with the interpreter lock held, since other threads may write to it. Targets cross
+//! as the JSON objects of `docs/json.md`, so that one schema serves every surface. The lock is released in every long
+//! call.
+
+mod array;
+mod bar;
+mod command;
+mod convert;
+mod datum;
+mod error;
+mod handle;
+mod param;
+mod pixels;
+mod plugin;
+mod registry;
+mod source;
+mod target;
+mod zoo;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<handle::Handle>()?;
+    module.add_class::<handle::Stream>()?;
+    module.add_class::<pixels::Pixels>()?;
+    module.add_class::<array::NativeArray>()?;
+    module.add_class::<source::Source>()?;
+    for function in [
+        wrap_pyfunction!(registry::entries, module)?,
+        wrap_pyfunction!(plugin::register, module)?,
+        wrap_pyfunction!(plugin::check_learner, module)?,
+        wrap_pyfunction!(command::main, module)?,
+        wrap_pyfunction!(convert::canonical_json, module)?,
+        wrap_pyfunction!(convert::checked_json, module)?,
+        wrap_pyfunction!(convert::text, module)?,
+        wrap_pyfunction!(convert::mot, module)?,
+        wrap_pyfunction!(convert::coco, module)?,
+        wrap_pyfunction!(convert::kitti, module)?,
+        wrap_pyfunction!(convert::from_coco, module)?,
+        wrap_pyfunction!(convert::from_mot, module)?,
+        wrap_pyfunction!(convert::from_kitti, module)?,
+        wrap_pyfunction!(pixels::open_image, module)?,
+        wrap_pyfunction!(pixels::save_image, module)?,
+        wrap_pyfunction!(pixels::draw, module)?,
+        wrap_pyfunction!(zoo::download, module)?,
+        wrap_pyfunction!(zoo::sample, module)?,
+        wrap_pyfunction!(zoo::models, module)?,
+        wrap_pyfunction!(zoo::runtime, module)?,
+    ] {
+        module.add_function(function)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,156 @@
+//! Pictures: read from NumPy's memory, shown as NumPy's memory, opened, saved, drawn on.
+
+use std::path::PathBuf;
+
+use opendr::data::{Image, ImageView, Layout, PixelFormat, Pixels as Samples, Samples as SamplesView};
+use opendr::vision;
+use opendr::vision::draw::Style;
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::array::{ArrayMemory, Element, array_interface};
+use crate::datum::header_from_python;
+use crate::error::ToPython;
+use crate::target::target_from_python;
+
+/// A picture in native memory. `numpy.asarray(it)` is a read-only view as `[channels, height, width]`, RGB, without a
+/// copy, however the pixels are stored.
+#[pyclass(frozen, module = "opendr._opendr")]
+pub struct Pixels {
+    image: Image,
+}
+
+impl Pixels {
+    /// A picture for Python. Opacity before the colours cannot be shown as RGBA without a copy, so it is copied.
+    pub fn new(image: Image) -> opendr::Result<Self> {
+        if image.format() != PixelFormat::Bgra {
+            return Ok(Self { image });
+        }
+        let pixels = image.hwc_u8(PixelFormat::Rgba);
+        let copy = Image::new(pixels, image.width(), image.height(), PixelFormat::Rgba, Layout::Hwc)?;
+        Ok(Self { image: copy.with_header(image.header.clone()) })
+    }
+}
+
+#[pymethods]
+impl Pixels {
+    #[getter]
+    fn __array_interface__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let view = self.image.view();
+        match view.samples() {
+            SamplesView::U8(samples) => interface(py, &view, samples),
+            SamplesView::U16(samples) => interface(py, &view, samples),
+            SamplesView::F32(samples) => interface(py, &view, samples),
+        }
+    }
+
+    /// `(channels, height, width)`.
+    #[getter]
+    fn shape(&self) -> (usize, usize, usize) {
+        (self.image.channels(), self.image.height(), self.image.width())
+    }
+
+    /// Nanoseconds, or `None`.
+    #[getter]
+    fn timestamp(&self) -> Option<i64> {
+        self.image.header.stamp_ns
+    }
+
+    /// The coordinate frame; empty when unknown.
+    #[getter]
+    fn frame_id(&self) -> &str {
+        self.image.header.frame_id.as_deref().unwrap_or_default()
+    }
+}
+
+fn interface<'py, T: Element>(
+    py: Python<'py>,
+    view: &ImageView<'_>,
+    samples: &[T],
+) -> PyResult<Bound<'py, PyDict>> {
+    let size = size_of::<T>() as isize;
+    let [channel, row, column] = view.strides().map(|stride| stride as isize * size);
+    let [red, green, _] = view.format().rgb_offsets().map(|offset| offset as isize);
+    let reversed = green < red;
+    let start =
+        if reversed { samples.as_ptr().wrapping_offset(red * channel / size) } else { samples.as_ptr() };
+    let strides = [if reversed { -channel } else { channel }, row, column];
+    let shape = [view.format().channels(), view.height(), view.width()];
+    array_interface(py, start as usize, &shape, Some(&strides), T::TYPE_TEXT)
+}
+
+/// The picture that a Python `Image` is. `spare` becomes its memory where that is of bytes.
+pub fn image_from_python(object: &Bound<'_, PyAny>, spare: Vec<u8>) -> PyResult<Image> {
+    let native = object.getattr("_pixels")?;
+    let header = header_from_python(object)?;
+    if let Ok(pixels) = native.cast::<Pixels>() {
+        return Ok(pixels.get().image.clone().with_header(header));
+    }
+    let memory = ArrayMemory::of(&object.getattr("data")?)?;
+    let image = if memory.is::<u8>() {
+        image_of(object.py(), &memory, spare)
+    } else if memory.is::<u16>() {
+        image_of::<u16>(object.py(), &memory, Vec::new())
+    } else if memory.is::<f32>() {
+        image_of::<f32>(object.py(), &memory, Vec::new())
+    } else {
+        let given = memory.type_text();
+        Err(PyTypeError::new_err(format!(
+            "a picture is of uint8, uint16 or float32, not {given}; use astype"
+        )))
+    };
+    Ok(image?.with_header(header))
+}
+
+fn image_of<T: Element>(py: Python<'_>, memory: &ArrayMemory, mut samples: Vec<T>) -> PyResult<Image>
+where
+    Samples: From<Vec<T>>,
+{
+    let &[channels, height, width] = memory.shape() else {
+        return Err(PyValueError::new_err(format!(
+            "a picture has 3 axes (channels, height, width), not the shape {:?}",
+            memory.shape()
+        )));
+    };
+    let format = match channels {
+        1 => PixelFormat::Grey,
+        3 => PixelFormat::Rgb,
+        4 => PixelFormat::Rgba,
+        _ => return Err(PyValueError::new_err(format!("a picture has 1, 3 or 4 channels, not {channels}"))),
+    };
+    let (format, layout) = match memory.copy_pixels(&mut samples)? {
+        Some(true) => (PixelFormat::Bgr, Layout::Hwc),
+        Some(false) => (format, Layout::Hwc),
+        None => {
+            memory.copy_into(&mut samples)?;
+            (format, Layout::Chw)
+        }
+    };
+    Image::new(samples, width, height, format, layout).to_python(py)
+}
+
+/// A picture file, as [`Pixels`].
+#[pyfunction]
+pub fn open_image(py: Python<'_>, path: PathBuf) -> PyResult<Pixels> {
+    py.detach(|| vision::open(path).and_then(Pixels::new)).to_python(py)
+}
+
+/// Writes a Python `Image` to a file; the extension says in which format.
+#[pyfunction]
+pub fn save_image(py: Python<'_>, image: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {
+    let image = image_from_python(image, Vec::new())?;
+    py.detach(|| vision::save(&image, path)).to_python(py)
+}
+
+/// A Python `Image` with a target drawn on it, as [`Pixels`].
+#[pyfunction]
+pub fn draw(py: Python<'_>, image: &Bound<'_, PyAny>, target: &Bound<'_, PyAny>) -> PyResult<Pixels> {
+    let mut image = image_from_python(image, Vec::new())?;
+    let target = target_from_python(target)?;
+    py.detach(|| {
+        vision::draw::draw(&mut image, target.as_value_ref(), &Style::default());
+        Pixels::new(image)
+    })
+    .to_python(py)
+}

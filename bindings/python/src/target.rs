@@ -1,0 +1,73 @@
+//! Targets on their way between Python and the toolkit: the JSON objects of `docs/json.md`, large arrays beside them.
+
+use opendr::learner::Outputs;
+use opendr::target::{Heatmap, HeatmapValues};
+use opendr::{Error, Value};
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+
+use crate::array::{ArrayMemory, NativeArray};
+use crate::error::ToPython;
+
+/// One output for Python: its name, its JSON, and its numbers where these are too many for JSON.
+pub type Payload = (&'static str, String, Option<NativeArray>);
+
+/// The outputs of one call.
+pub fn payloads(outputs: &Outputs) -> opendr::Result<Vec<Payload>> {
+    outputs
+        .iter()
+        .map(|(name, value)| {
+            let (json, array) = payload(value)?;
+            Ok((name, json, array))
+        })
+        .collect()
+}
+
+pub fn payload(value: &Value) -> opendr::Result<(String, Option<NativeArray>)> {
+    let Value::Heatmap(map) = value else { return Ok((json(value)?, None)) };
+    let array = match map.values() {
+        HeatmapValues::Labels(labels) => NativeArray::from_labels(labels.clone(), map.shape()),
+        HeatmapValues::Scores(scores) => NativeArray::from_scores(scores.clone(), map.shape()),
+    };
+    Ok((json(&Value::Heatmap(frame_of(map)?))?, Some(array)))
+}
+
+/// All of a map but its numbers.
+fn frame_of(map: &Heatmap) -> opendr::Result<Heatmap> {
+    let mut frame = Heatmap::from_scores(Vec::new(), &[0])?;
+    frame.header.clone_from(&map.header);
+    frame.classes.clone_from(&map.classes);
+    frame.action.clone_from(&map.action);
+    Ok(frame)
+}
+
+/// The JSON of a value, as every surface writes it.
+pub fn json(value: &Value) -> opendr::Result<String> {
+    serde_json::to_string(&value.as_value_ref())
+        .map_err(|error| Error::invalid_input("this value has no JSON form").with_source(error))
+}
+
+/// The value that a Python target is: its `_fields()`, written by Python's `json`, and its `_array()` where it has one.
+pub fn target_from_python(object: &Bound<'_, PyAny>) -> PyResult<Value> {
+    static DUMPS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    let py = object.py();
+    let dumps =
+        DUMPS.get_or_try_init(py, || py.import("opendr._fields")?.getattr("dumps").map(Bound::unbind))?;
+    let text: String = dumps.bind(py).call1((object,))?.extract()?;
+    let value: Value = value_from_json(&text).to_python(py)?;
+    let Value::Heatmap(frame) = value else { return Ok(value) };
+    let memory = ArrayMemory::of(&object.getattr("data")?)?;
+    let values = if memory.is::<u32>() {
+        HeatmapValues::Labels(memory.to_vec::<u32>()?.into())
+    } else {
+        HeatmapValues::Scores(memory.to_vec::<f32>()?.into())
+    };
+    let mut map = Heatmap::new(values, memory.shape()).to_python(py)?;
+    (map.header, map.classes, map.action) = (frame.header, frame.classes, frame.action);
+    Ok(Value::Heatmap(map))
+}
+
+/// Reads the JSON of a target.
+pub fn value_from_json(text: &str) -> opendr::Result<Value> {
+    serde_json::from_str(text).map_err(|error| Error::invalid_input(format!("no target in JSON: {error}")))
+}
