@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar, Optional
+from typing import Any, ClassVar, Optional
 
 from opendr.engine._equality import equal, is_array
 
@@ -36,10 +36,9 @@ class Datum:
         return f"{type(self).__name__}({', '.join(shown)})"
 
 
-def _shown(value: object) -> str:
+def _shown(value: Any) -> str:
     if not is_array(value):
         return repr(value)
-    array = value
-    if array.size <= 16:  # type: ignore[attr-defined]
-        return repr(array.tolist())  # type: ignore[attr-defined]
-    return f"<{array.dtype} {'x'.join(map(str, array.shape))}>"  # type: ignore[attr-defined]
+    if value.size <= 16:
+        return repr(value.tolist())
+    return f"<{value.dtype} {'x'.join(map(str, value.shape))}>"

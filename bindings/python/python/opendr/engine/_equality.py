@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from typing import Any
 
 
 def is_array(value: object) -> bool:
@@ -11,14 +12,14 @@ def is_array(value: object) -> bool:
     return numpy is not None and isinstance(value, numpy.ndarray)
 
 
-def equal(one: object, other: object) -> bool:
+def equal(one: Any, other: Any) -> bool:
     """``one == other``, arrays compared by ``numpy.array_equal``, also inside lists, tuples and dictionaries."""
     if one is other:
         return True
     if is_array(one) or is_array(other):
         import numpy as np
 
-        return is_array(one) and is_array(other) and bool(np.array_equal(one, other))  # type: ignore[arg-type]
+        return is_array(one) and is_array(other) and bool(np.array_equal(one, other))
     if isinstance(one, dict) and isinstance(other, dict):
         return one.keys() == other.keys() and all(equal(one[key], other[key]) for key in one)
     if isinstance(one, (list, tuple)) and isinstance(other, (list, tuple)):

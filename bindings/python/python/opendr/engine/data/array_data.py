@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Optional
 
-from opendr.engine._array_protocol import as_array, dlpack
+from opendr.engine._arrays import array_of, as_array, dlpack
 from opendr.engine.data.data import Data
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, DTypeLike, NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 
 class ArrayData(Data):
@@ -75,21 +75,3 @@ class ArrayData(Data):
                 "each of at least one element"
             )
         return array
-
-
-def array_of(data: ArrayLike, dtype: Optional[DTypeLike], what: str) -> NDArray[Any]:
-    """``data`` as an array of ``dtype`` (of its own type when None), not copied where it is one.
-
-    Raises:
-        TypeError: They are no numbers.
-        ValueError: They are lists of different lengths.
-    """
-    import numpy as np
-
-    try:
-        array = np.asarray(data)
-    except (TypeError, ValueError) as error:
-        raise type(error)(f"{what} should be an array of numbers, not {data!r:.200}: {error}") from error
-    if array.dtype.kind not in "biuf":
-        raise TypeError(f"{what} should be an array of numbers, not of {array.dtype}: {data!r:.200}")
-    return array if dtype is None else array.astype(dtype, copy=False)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, SupportsIndex
 
+from opendr.engine._arrays import array_of
 from opendr.engine._checks import whole
-from opendr.engine.data.array_data import ArrayData, array_of
+from opendr.engine.data.array_data import ArrayData
 
 if TYPE_CHECKING:
     import numpy as np

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, ClassVar
 
-from opendr.engine.data.array_data import array_of
+from opendr.engine._arrays import array_of
 from opendr.engine.data.data import Data
 
 if TYPE_CHECKING:
@@ -45,13 +45,20 @@ class Calibration(Data):
         """
         missing = [name for name in ("P2", "R0_rect", "Tr_velo_to_cam") if name not in matrices]
         if missing:
-            raise ValueError(f"no {', '.join(missing)} among {', '.join(matrices)}; give KITTI's three matrices")
+            raise ValueError(
+                f"no {', '.join(missing)} among {', '.join(matrices)}; give KITTI's three matrices"
+            )
         return cls(matrices["P2"], matrices["R0_rect"], matrices["Tr_velo_to_cam"])
 
     @property
     def data(self) -> dict[str, NDArray[np.float64]]:
         """KITTI's dictionary of the three matrices."""
         return {"P2": self.p2, "R0_rect": self.r0_rect, "Tr_velo_to_cam": self.tr_velo_to_cam}
+
+    @data.setter
+    def data(self, data: Mapping[str, ArrayLike]) -> None:
+        read = self.from_dict(data)
+        self.p2, self.r0_rect, self.tr_velo_to_cam = read.p2, read.r0_rect, read.tr_velo_to_cam
 
     def numpy(self) -> NDArray[np.float64]:
         """From points of the lidar's frame, ``[x, y, z, 1]`` in metres, to pixels times depth: a matrix ``[3, 4]``."""
@@ -76,4 +83,6 @@ def _matrix(values: ArrayLike, columns: int, name: str) -> NDArray[np.float64]:
         fits = np.array_equal(extra_rows, unit[3 : matrix.shape[0], : matrix.shape[1]])
         if fits and not extra_columns.any() and np.isfinite(matrix).all():
             return matrix[:3, :columns]
-    raise ValueError(f"{name} of shape {matrix.shape} should be 3 rows of {columns} finite numbers; mend the matrix")
+    raise ValueError(
+        f"{name} of shape {matrix.shape} should be 3 rows of {columns} finite numbers; mend the matrix"
+    )

@@ -6,7 +6,8 @@ import os
 from typing import TYPE_CHECKING, Any, Optional, Union
 
 from opendr import _opendr
-from opendr.engine.data.array_data import ArrayData, array_of
+from opendr.engine._arrays import array_of
+from opendr.engine.data.array_data import ArrayData
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -147,7 +148,9 @@ class Image(ArrayData):
         except ImportError as error:
             raise ImportError(f"to_pil() needs the package Pillow ({error}): pip install pillow") from error
         if self.dtype != "uint8":
-            raise ValueError(f"Pillow takes pictures of uint8, not of {self.dtype}; scale the samples to [0, 255]")
+            raise ValueError(
+                f"Pillow takes pictures of uint8, not of {self.dtype}; scale the samples to [0, 255]"
+            )
         pixels = self.convert("channels_last")
         return PIL.Image.fromarray(pixels[:, :, 0] if self.channels == 1 else pixels)
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, ClassVar, Optional, Union
 
-from opendr.engine._array_protocol import as_array
-from opendr.engine.data.array_data import array_of
+from opendr.engine._arrays import array_of, as_array
 from opendr.engine.data.data import Data
 
 if TYPE_CHECKING:

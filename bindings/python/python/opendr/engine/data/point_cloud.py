@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from opendr.engine.data.array_data import ArrayData, array_of
+from opendr.engine._arrays import array_of
+from opendr.engine.data.array_data import ArrayData
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -26,7 +26,9 @@ def detections(
     try:
         import supervision
     except ImportError as error:
-        raise ImportError(f"to_supervision() needs the package supervision ({error}): pip install supervision") from error
+        raise ImportError(
+            f"to_supervision() needs the package supervision ({error}): pip install supervision"
+        ) from error
 
     corners = [[box.left, box.top, box.left + box.width, box.top + box.height] for box in boxes]
     numbers = {name: index for index, name in enumerate(classes)}

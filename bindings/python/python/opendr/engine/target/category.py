@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 
+from opendr.engine._arrays import array_of
 from opendr.engine._checks import real, text, whole
 from opendr.engine.target.base_target import Target
 
@@ -38,7 +39,9 @@ class Category(Target):
     ) -> None:
         self.data = prediction
         self.description: Optional[str] = None if description is None else text(description, "description")
-        self.probabilities: Optional[NDArray[np.float32]] = None if probabilities is None else _scores(probabilities)
+        self.probabilities: Optional[NDArray[np.float32]] = (
+            None if probabilities is None else _scores(probabilities)
+        )
         self.confidence = confidence
 
     @property
@@ -47,11 +50,11 @@ class Category(Target):
         return int(self._data)
 
     @data.setter
-    def data(self, prediction: SupportsIndex) -> None:
+    def data(self, data: SupportsIndex) -> None:
         try:
-            self._data = whole(prediction, "the class")
+            self._data = whole(data, "the class")
         except TypeError:
-            raise ValueError(f"a Category has the index of its class, not {prediction!r}; give an int") from None
+            raise ValueError(f"a Category has the index of its class, not {data!r}; give an int") from None
 
     @property
     def confidence(self) -> Union[float, NDArray[np.float32], None]:
@@ -69,7 +72,7 @@ class Category(Target):
 def _scores(values: ArrayLike) -> NDArray[np.float32]:
     import numpy as np
 
-    scores = np.asarray(values, dtype=np.float32)
+    scores = array_of(values, "float32", "the scores of a Category")
     if scores.ndim != 1 or not np.isfinite(scores).all():
         raise ValueError(f"scores of shape {scores.shape} should be finite numbers in a row, one a class")
     return scores

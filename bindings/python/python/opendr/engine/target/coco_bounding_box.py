@@ -49,9 +49,7 @@ class CocoBoundingBox(BoundingBox):
         class_name: str = "",
         landmarks: Iterable[Sequence[Real]] = (),
     ) -> None:
-        super().__init__(
-            name, left, top, width, height, score, class_name=class_name, landmarks=landmarks
-        )
+        super().__init__(name, left, top, width, height, score, class_name=class_name, landmarks=landmarks)
         self.segmentation: Segmentation = segmentation_of([] if segmentation is None else segmentation)
         self.area: float = real(area, "area")
         self.iscrowd: int = whole(iscrowd, "iscrowd")

@@ -45,7 +45,9 @@ class Heatmap(Target):
         if not 1 <= data.ndim <= 8:
             raise ValueError(f"a Heatmap of {data.ndim} axes; give 1 to 8")
         if data.dtype.kind == "i" and data.size and int(data.min()) < 0:
-            raise ValueError(f"a Heatmap of class numbers down to {data.min()}; give none below 0, or scores as floats")
+            raise ValueError(
+                f"a Heatmap of class numbers down to {data.min()}; give none below 0, or scores as floats"
+            )
         self._data = data
 
     @property
@@ -57,7 +59,9 @@ class Heatmap(Target):
     def class_names(self, class_names: Optional[dict[Hashable, str]]) -> None:
         if class_names is not None:
             if not isinstance(class_names, dict):
-                raise TypeError(f"class_names should be a dictionary, e.g. {{0: 'road'}}, not {class_names!r:.200}")
+                raise TypeError(
+                    f"class_names should be a dictionary, e.g. {{0: 'road'}}, not {class_names!r:.200}"
+                )
             for name in class_names.values():
                 text(name, "a name in class_names")
         self._class_names = class_names
@@ -75,6 +79,6 @@ class Heatmap(Target):
         return self.data.shape
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
-        from opendr.engine._array_protocol import as_array
+        from opendr.engine._arrays import as_array
 
         return as_array(self.data, dtype, copy)

@@ -39,8 +39,8 @@ class Keypoint(Target):
         return [self.x, self.y]
 
     @data.setter
-    def data(self, keypoint: Sequence[Real]) -> None:
-        self.x, self.y = reals(keypoint, 2, "a keypoint")
+    def data(self, data: Sequence[Real]) -> None:
+        self.x, self.y = reals(data, 2, "a keypoint")
 
     def __len__(self) -> int:
         return 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 
+from opendr.engine._arrays import array_of
 from opendr.engine._checks import Real, real, whole
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.keypoint import Keypoint
@@ -47,15 +48,19 @@ class Pose(Target):
         skeleton: Optional[str] = None,
         keypoint_confidences: Optional[ArrayLike] = None,
     ) -> None:
-        if isinstance(keypoints, (list, tuple)) and any(isinstance(point, Keypoint) for point in keypoints):
+        points = list(keypoints) if isinstance(keypoints, Iterable) else []
+        joints = [point for point in points if isinstance(point, Keypoint)]
+        if joints and len(joints) == len(points):
+            keypoints = [joint.data for joint in joints]
             if keypoint_confidences is None:
-                keypoint_confidences = [getattr(point, "confidence", None) or 0.0 for point in keypoints]
-            keypoints = [list(point) for point in keypoints]
+                keypoint_confidences = [joint.confidence or 0.0 for joint in joints]
         self.data = keypoints
         self.confidence = real(confidence, "confidence")
         self.id: Optional[int] = None if id is None else whole(id, "id")
         self.skeleton: str = skeleton_of(skeleton, len(self.data))
-        self.keypoint_confidences = [0.0] * len(self.data) if keypoint_confidences is None else keypoint_confidences
+        self.keypoint_confidences = (
+            [0.0] * len(self.data) if keypoint_confidences is None else keypoint_confidences
+        )
 
     @property
     def data(self) -> NDArray[Any]:
@@ -64,12 +69,10 @@ class Pose(Target):
         return data
 
     @data.setter
-    def data(self, keypoints: Any) -> None:
+    def data(self, data: Any) -> None:
         import numpy as np
 
-        points = np.asarray(keypoints)
-        if points.dtype.kind not in "iuf":
-            raise TypeError(f"keypoints should be numbers [joints, 2], not {keypoints!r:.200}")
+        points = array_of(data, None, "keypoints")
         if points.ndim != 2 or points.shape[0] < 1 or points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError(
                 f"keypoints of shape {points.shape} should be finite numbers [joints, 2]; give x and y of each joint"
@@ -85,7 +88,7 @@ class Pose(Target):
     def keypoint_confidences(self, confidences: ArrayLike) -> None:
         import numpy as np
 
-        scores = np.asarray(confidences, dtype=np.float32)
+        scores = array_of(confidences, "float32", "keypoint_confidences")
         if scores.shape != (len(self.data),) or not np.isfinite(scores).all():
             raise ValueError(
                 f"keypoint_confidences of shape {scores.shape} should be {len(self.data)} finite numbers, one a joint"

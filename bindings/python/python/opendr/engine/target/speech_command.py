@@ -41,8 +41,8 @@ class SpeechCommand(Target):
         return data
 
     @data.setter
-    def data(self, command: Union[int, str, SupportsIndex]) -> None:
-        self._data = class_name_or_index(command)
+    def data(self, data: Union[int, str, SupportsIndex]) -> None:
+        self._data = class_name_or_index(data)
 
     @property
     def command(self) -> Union[int, str]:

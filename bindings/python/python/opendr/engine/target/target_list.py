@@ -31,9 +31,9 @@ class TargetList(Target, Generic[T]):
         return items
 
     @data.setter
-    def data(self, items: Iterable[T]) -> None:
+    def data(self, data: Iterable[T]) -> None:
         # A list stays the caller's own, as with OpenDR.
-        items = items if isinstance(items, list) else list(self._iterable(items))
+        items = data if isinstance(data, list) else list(self._iterable(data))
         for item in items:
             self._check(item)
         self._data = items
@@ -41,7 +41,8 @@ class TargetList(Target, Generic[T]):
     @property
     def confidence(self) -> float:
         """Mean of the items' scores as they are now; 0 for an empty list."""
-        return sum(item.confidence for item in self.data) / max(len(self.data), 1)
+        scores = [float(item.confidence) for item in self.data]
+        return sum(scores) / max(len(scores), 1)
 
     @confidence.setter
     def confidence(self, confidence: object) -> NoReturn:
@@ -75,7 +76,9 @@ class TargetList(Target, Generic[T]):
 
     def _iterable(self, items: Iterable[T]) -> Iterable[T]:
         if isinstance(items, (str, bytes)) or not isinstance(items, Iterable):
-            raise TypeError(f"a {type(self).__name__} is made of a list of {self._item.__name__}, not {items!r}")
+            raise TypeError(
+                f"a {type(self).__name__} is made of a list of {self._item.__name__}, not {items!r}"
+            )
         return items
 
 

@@ -142,7 +142,9 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
         """
         id_list = [whole(id, "an id") for id in ids]
         frame_list = None if frames is None else [whole(frame, "a frame") for frame in frames]
-        tracks: TrackingAnnotation3DList = _opendr.from_kitti(columns_from_arrays(boxes_kitti), id_list, frame_list)
+        tracks: TrackingAnnotation3DList = _opendr.from_kitti(
+            columns_from_arrays(boxes_kitti), id_list, frame_list
+        )
         return tracks
 
     def bounding_box_3d_list(self) -> BoundingBox3DList:

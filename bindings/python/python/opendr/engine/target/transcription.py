@@ -30,8 +30,8 @@ class BaseTranscription(Target):
         return str(self._data)
 
     @data.setter
-    def data(self, text: str) -> None:
-        self._data = checked_text(text, "text")
+    def data(self, data: str) -> None:
+        self._data = checked_text(data, "text")
 
     @property
     def text(self) -> str:
@@ -59,7 +59,9 @@ class WhisperTranscription(BaseTranscription):
         self.segments: list[dict[str, Any]] = list(segments)
         for segment in self.segments:
             if not isinstance(segment, dict):
-                raise TypeError(f"a segment should be a dictionary, e.g. {{'start': 0.5, ...}}, not {segment!r:.200}")
+                raise TypeError(
+                    f"a segment should be a dictionary, e.g. {{'start': 0.5, ...}}, not {segment!r:.200}"
+                )
 
 
 class VoskTranscription(BaseTranscription):
