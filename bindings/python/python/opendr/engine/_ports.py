@@ -1,0 +1,90 @@
+"""What a learner written in Python takes and answers: the annotations of its ``infer``."""
+
+from __future__ import annotations
+
+import inspect
+import typing
+from dataclasses import dataclass
+from typing import Annotated, Any, get_args, get_origin
+
+from opendr.engine import data, target
+from opendr.engine._parameters import without_none
+
+_DATA = (
+    *("Image", "ImageWithDetections", "Video", "PointCloud", "PointCloudWithCalibration", "Calibration"),
+    *("Timeseries", "Vector", "Audio", "SkeletonSequence", "Observation"),
+)
+_TARGETS = (
+    *(
+        "BoundingBoxList",
+        "TrackingAnnotationList",
+        "BoundingBox3DList",
+        "TrackingAnnotation3DList",
+        "PoseList",
+    ),
+    *(
+        "Category",
+        "Heatmap",
+        "SpeechCommand",
+        "BaseTranscription",
+        "WhisperTranscription",
+        "VoskTranscription",
+    ),
+)
+_CLASSES: dict[type, str] = {
+    **{getattr(data, name): name for name in _DATA},
+    **{getattr(target, name): name for name in _TARGETS},
+}
+
+
+@dataclass(frozen=True)
+class Init:
+    """The input is given once, with the first call of a stream: ``first_box: Annotated[BoundingBoxList, Init()]``."""
+
+
+def ports_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
+    """The inputs of ``infer``: ``name``, ``type``, ``init``, ``optional``. What is wrong is added to ``problems``."""
+    hints, ports = _hints(infer, problems), []
+    for name, parameter in list(inspect.signature(infer).parameters.items())[1:]:
+        # Python 3.9 and 3.10 put Optional around the annotation of a parameter whose default is None.
+        hint, implicit = without_none(hints.get(name))
+        init = False
+        if get_origin(hint) is Annotated:
+            hint, *extras = get_args(hint)
+            init = any(isinstance(extra, Init) or extra is Init for extra in extras)
+        hint, optional = without_none(hint)
+        if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
+            problems.append(f"infer takes *{name}; name each input")
+        elif hint not in _CLASSES:
+            problems.append(
+                f"the parameter {name!r} of infer has no data or target type, e.g. `{name}: Image`"
+            )
+        else:
+            given = optional or implicit or parameter.default is not parameter.empty
+            ports.append({"name": name, "type": _CLASSES[hint], "init": init, "optional": given})
+    return ports
+
+
+def outputs_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
+    """The outputs of ``infer``: ``name`` and ``type``; the name of a single output is None, which means the usual one
+    of its type. Several are a ``NamedTuple``, or another class with annotations, of targets."""
+    answer = _hints(infer, []).get("return")
+    if answer in _CLASSES:
+        return [{"name": None, "type": _CLASSES[answer]}]
+    fields = _hints(answer, []) if isinstance(answer, type) else {}
+    if not fields or not all(hint in _CLASSES for hint in fields.values()):
+        problems.append(
+            "infer does not say what it answers: write `-> BoundingBoxList`, or a NamedTuple of targets"
+        )
+        return []
+    return [{"name": name, "type": _CLASSES[hint]} for name, hint in fields.items()]
+
+
+def _hints(annotated: Any, problems: list[str]) -> dict[str, Any]:
+    try:
+        return typing.get_type_hints(annotated, include_extras=True)
+    except (NameError, TypeError) as error:
+        problems.append(
+            f"the annotations of infer cannot be read ({error}); import their names in the module"
+        )
+        return {}
