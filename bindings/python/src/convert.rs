@@ -5,108 +5,131 @@ use opendr::target::{
 };
 use opendr::{Error, Result, Value};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use crate::error::ToPython;
-use crate::target::{json, target_from_python, value_from_json};
+use crate::target::{item_or_target_from_python, python_from_target, target_from_python, value_from_json};
 
 /// The JSON of a Python target, as every surface writes it.
 #[pyfunction]
-pub fn canonical_json(py: Python<'_>, target: &Bound<'_, PyAny>) -> PyResult<String> {
-    json(&target_from_python(target)?).to_python(py)
+pub fn json(target: &Bound<'_, PyAny>) -> PyResult<String> {
+    crate::target::json(&target_from_python(target)?).to_python(target.py())
 }
 
-/// OpenDR's text of a Python target; with `item` that of the first item of a list, with `readable` people's text.
+/// The Python target that a JSON object is.
 #[pyfunction]
-#[pyo3(signature = (target, item=false, readable=false))]
-pub fn text(py: Python<'_>, target: &Bound<'_, PyAny>, item: bool, readable: bool) -> PyResult<String> {
-    let value = target_from_python(target)?;
-    let text = match (&value, item, readable) {
-        (_, false, true) => format!("{:#}", value.as_value_ref()),
-        (_, false, false) => value.as_value_ref().to_string(),
-        (Value::BoundingBoxList(list), ..) => text_of_first(&list.boxes),
-        (Value::BoundingBox3DList(list), ..) => text_of_first(&list.boxes),
-        (Value::TrackingAnnotationList(list), ..) => text_of_first(&list.annotations),
-        (Value::TrackingAnnotation3DList(list), ..) => text_of_first(&list.annotations),
-        (Value::PoseList(list), ..) => text_of_first(&list.poses),
-        _ => return Err(no_such(&value, "items")).to_python(py),
-    };
-    Ok(text)
+#[pyo3(name = "value_from_json")]
+pub fn value_from_json_text<'py>(py: Python<'py>, text: &str) -> PyResult<Bound<'py, PyAny>> {
+    python_from_target(py, &value_from_json(text).to_python(py)?)
+}
+
+/// OpenDR's text of a Python target or of a single item.
+#[pyfunction]
+pub fn text(target: &Bound<'_, PyAny>) -> PyResult<String> {
+    let (value, is_item) = item_or_target_from_python(target)?;
+    Ok(match &value {
+        Value::BoundingBoxList(list) if is_item => text_of_first(&list.boxes),
+        Value::BoundingBox3DList(list) if is_item => text_of_first(&list.boxes),
+        Value::TrackingAnnotationList(list) if is_item => text_of_first(&list.annotations),
+        Value::TrackingAnnotation3DList(list) if is_item => text_of_first(&list.annotations),
+        Value::PoseList(list) if is_item => text_of_first(&list.poses),
+        _ => value.as_value_ref().to_string(),
+    })
 }
 
 fn text_of_first(items: &[impl ToString]) -> String {
     items.first().map(ToString::to_string).unwrap_or_default()
 }
 
-/// The rows of `mot()`: `[frame, left, top, width, height, confidence]`, with the id after the frame for tracks.
+/// What was found, a readable line each.
 #[pyfunction]
-#[pyo3(signature = (target, frame=None))]
-pub fn mot(py: Python<'_>, target: &Bound<'_, PyAny>, frame: Option<i64>) -> PyResult<Vec<Vec<f32>>> {
+pub fn readable_text(target: &Bound<'_, PyAny>) -> PyResult<String> {
+    Ok(format!("{:#}", target_from_python(target)?.as_value_ref()))
+}
+
+/// The rows of `mot()`: `[frame, left, top, width, height, confidence]`, with the id after the frame for tracks; the
+/// confidence on demand.
+#[pyfunction]
+pub fn mot(target: &Bound<'_, PyAny>, with_confidence: bool, frame: i64) -> PyResult<Vec<Vec<f32>>> {
+    let mut rows: Vec<Vec<f32>> = match target_from_python(target)? {
+        Value::BoundingBoxList(list) => list.mot(Some(frame)).iter().map(|row| row.to_vec()).collect(),
+        Value::TrackingAnnotationList(list) => list.mot().iter().map(|row| row.to_vec()).collect(),
+        other => return Err(no_such(&other, "mot()")).to_python(target.py()),
+    };
+    if !with_confidence {
+        rows.iter_mut().for_each(|row| row.truncate(row.len().saturating_sub(1)));
+    }
+    Ok(rows)
+}
+
+/// Tracks from rows of `mot()`.
+#[pyfunction]
+pub fn from_mot(py: Python<'_>, rows: Vec<Vec<f32>>) -> PyResult<Bound<'_, PyAny>> {
+    let tracks = TrackingAnnotationList::from_mot(rows.iter().map(Vec::as_slice)).to_python(py)?;
+    python_from_target(py, &Value::TrackingAnnotationList(tracks))
+}
+
+/// The entries of `coco()`.
+#[pyfunction]
+pub fn coco<'py>(target: &Bound<'py, PyAny>, with_confidence: bool) -> PyResult<Bound<'py, PyAny>> {
     match target_from_python(target)? {
-        Value::BoundingBoxList(list) => Ok(list.mot(frame).iter().map(|row| row.to_vec()).collect()),
-        Value::TrackingAnnotationList(list) => Ok(list.mot().iter().map(|row| row.to_vec()).collect()),
-        other => Err(no_such(&other, "mot()")).to_python(py),
+        Value::BoundingBoxList(list) => python_from(target.py(), &list.coco(with_confidence)),
+        other => Err(no_such(&other, "coco()")).to_python(target.py()),
     }
 }
 
-/// Tracks from rows of `mot()`, as JSON.
+/// Boxes from COCO's entries.
 #[pyfunction]
-pub fn from_mot(py: Python<'_>, rows: Vec<Vec<f32>>) -> PyResult<String> {
-    let tracks = TrackingAnnotationList::from_mot(rows.iter().map(Vec::as_slice));
-    tracks.and_then(|tracks| json(&Value::TrackingAnnotationList(tracks))).to_python(py)
+pub fn from_coco<'py>(entries: &Bound<'py, PyAny>, image_id: i64) -> PyResult<Bound<'py, PyAny>> {
+    let boxes = BoundingBoxList::from_coco(from_python::<Vec<_>>(entries)?, Some(image_id));
+    python_from_target(entries.py(), &Value::BoundingBoxList(boxes))
 }
 
-/// The entries of `coco()`, as JSON.
+/// The columns of `kitti()`.
 #[pyfunction]
-pub fn coco(py: Python<'_>, target: &Bound<'_, PyAny>, with_confidence: bool) -> PyResult<String> {
-    match target_from_python(target)? {
-        Value::BoundingBoxList(list) => written(&list.coco(with_confidence)).to_python(py),
-        other => Err(no_such(&other, "coco()")).to_python(py),
-    }
-}
-
-/// Boxes from the JSON of COCO's entries, as JSON.
-#[pyfunction]
-#[pyo3(signature = (entries, image_id=None))]
-pub fn from_coco(py: Python<'_>, entries: &str, image_id: Option<i64>) -> PyResult<String> {
-    let boxes = read::<Vec<_>>(entries).map(|entries| BoundingBoxList::from_coco(entries, image_id));
-    boxes.and_then(|boxes| json(&Value::BoundingBoxList(boxes))).to_python(py)
-}
-
-/// The columns of `kitti()`, as JSON.
-#[pyfunction]
-pub fn kitti(py: Python<'_>, target: &Bound<'_, PyAny>, with_tracking_info: bool) -> PyResult<String> {
+pub fn kitti<'py>(target: &Bound<'py, PyAny>, with_tracking_info: bool) -> PyResult<Bound<'py, PyAny>> {
     let columns = match target_from_python(target)? {
         Value::BoundingBox3DList(list) => list.kitti(),
         Value::TrackingAnnotation3DList(list) => list.kitti(with_tracking_info),
-        other => return Err(no_such(&other, "kitti()")).to_python(py),
+        other => return Err(no_such(&other, "kitti()")).to_python(target.py()),
     };
-    written(&columns).to_python(py)
+    python_from(target.py(), &columns)
 }
 
-/// Boxes in space, or tracks when the columns say whose, from the JSON of KITTI's columns, as JSON.
+/// Boxes in space from KITTI's columns, or tracks where `ids` tell whose.
 #[pyfunction]
-pub fn from_kitti(py: Python<'_>, columns: &str) -> PyResult<String> {
-    let value = read::<KittiColumns>(columns).and_then(|columns| match columns.id {
+#[pyo3(signature = (columns, ids=None, frames=None))]
+pub fn from_kitti<'py>(
+    columns: &Bound<'py, PyDict>,
+    ids: Option<Vec<i64>>,
+    frames: Option<Vec<i64>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = columns.py();
+    let columns = KittiColumns { id: ids, frame: frames, ..from_python(columns)? };
+    let value = match columns.id {
         Some(_) => TrackingAnnotation3DList::from_kitti(&columns).map(Value::TrackingAnnotation3DList),
         None => BoundingBox3DList::from_kitti(&columns).map(Value::BoundingBox3DList),
-    });
-    value.and_then(|value| json(&value)).to_python(py)
-}
-
-/// Reads the JSON of a target and writes it again: whether it is one, with what was left out filled in.
-#[pyfunction]
-pub fn checked_json(py: Python<'_>, text: &str) -> PyResult<String> {
-    value_from_json(text).and_then(|value| json(&value)).to_python(py)
+    };
+    python_from_target(py, &value.to_python(py)?)
 }
 
 fn no_such(value: &Value, what: &str) -> Error {
     Error::unsupported(format!("{} has no {what}", value.as_value_ref().value_type().name()))
 }
 
-fn written(value: &impl serde::Serialize) -> Result<String> {
-    serde_json::to_string(value).map_err(|error| Error::internal("no JSON form").with_source(error))
+/// Plain Python of anything that has a JSON form.
+fn python_from<'py>(py: Python<'py>, value: &impl Serialize) -> PyResult<Bound<'py, PyAny>> {
+    let text = serde_json::to_string(value);
+    let text: Result<_> = text.map_err(|error| Error::internal("no JSON form").with_source(error));
+    py.import("json")?.call_method1("loads", (text.to_python(py)?,))
 }
 
-fn read<T: serde::de::DeserializeOwned>(text: &str) -> Result<T> {
-    serde_json::from_str(text).map_err(|error| Error::invalid_input(error.to_string()))
+/// Anything that has a JSON form, of plain Python.
+fn from_python<T: DeserializeOwned>(value: &Bound<'_, PyAny>) -> PyResult<T> {
+    let text: String = value.py().import("json")?.call_method1("dumps", (value,))?.extract()?;
+    let read: Result<T> =
+        serde_json::from_str(&text).map_err(|error| Error::invalid_input(error.to_string()));
+    read.to_python(value.py())
 }

@@ -11,8 +11,8 @@ use pyo3::types::PyDict;
 
 use crate::array::{ArrayMemory, NativeArray};
 use crate::error::ToPython;
-use crate::pixels::{Pixels, image_from_python};
-use crate::target::{payload, target_from_python};
+use crate::pixels::{image_from_python, python_from_image};
+use crate::target::{python_from_target, target_from_python};
 
 /// The value of type `wanted` that a Python object is.
 pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResult<Value> {
@@ -53,13 +53,11 @@ pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResu
 
 /// The Python object of a value.
 pub fn python_from_value<'py>(py: Python<'py>, value: ValueRef<'_>) -> PyResult<Bound<'py, PyAny>> {
-    let fields = py.import("opendr._fields")?;
     let name = value.value_type().name();
     let array = |numbers: &[f32], shape: &[usize]| NativeArray::from_scores(numbers.to_vec().into(), shape);
     let (numbers, header) = match value {
         ValueRef::Image(image) => {
-            let pixels = Pixels::new(image.clone()).to_python(py)?;
-            return fields.call_method1("image", (pixels,));
+            return python_from_image(py, image.clone());
         }
         ValueRef::Video(data) => (array(data.as_slice(), &data.shape()), &data.header),
         ValueRef::PointCloud(data) => (array(data.as_slice(), &data.shape()), &data.header),
@@ -67,14 +65,14 @@ pub fn python_from_value<'py>(py: Python<'py>, value: ValueRef<'_>) -> PyResult<
         ValueRef::Vector(data) => (array(data.as_slice(), &data.shape()), &data.header),
         ValueRef::SkeletonSequence(data) => (array(data.as_slice(), &data.shape()), &data.header),
         other if other.value_type().is_target() => {
-            let (json, array) = payload(&other.to_value()).to_python(py)?;
-            return fields.call_method1("target", (json, array));
+            return python_from_target(py, &other.to_value());
         }
         _ => {
             return Err(Error::unsupported(format!("{name} as the input of a Python learner"))).to_python(py);
         }
     };
-    fields.call_method1("datum", (name, numbers, header.stamp_ns, header.frame_id.as_deref()))
+    let schema = py.import("opendr._schema")?;
+    schema.call_method1("datum_from_array", (name, numbers, header.stamp_ns, header.frame_id.as_deref()))
 }
 
 /// Time stamp and frame id of a Python datum or target.

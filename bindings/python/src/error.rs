@@ -10,7 +10,8 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     if let Some(raised) = std::error::Error::source(error).and_then(|source| source.downcast_ref::<PyErr>()) {
         return raised.clone_ref(py);
     }
-    let class = py.import("opendr._errors").and_then(|module| module.getattr(error.kind().name()));
+    let classes = py.import("opendr._errors").and_then(|module| module.getattr("BY_KIND"));
+    let class = classes.and_then(|classes| classes.get_item(error.kind().name()));
     match class.and_then(|class| class.call1((error.to_string(),))) {
         Ok(value) => PyErr::from_value(value),
         Err(_) => PyRuntimeError::new_err(error.to_string()),

@@ -24,6 +24,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let prefix = module.py().import("sys")?.getattr("prefix")?;
+    opendr::inference::prefer_python(prefix.extract()?);
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<handle::Handle>()?;
     module.add_class::<handle::Stream>()?;
@@ -35,8 +37,9 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(plugin::register, module)?,
         wrap_pyfunction!(plugin::check_learner, module)?,
         wrap_pyfunction!(command::main, module)?,
-        wrap_pyfunction!(convert::canonical_json, module)?,
-        wrap_pyfunction!(convert::checked_json, module)?,
+        wrap_pyfunction!(convert::json, module)?,
+        wrap_pyfunction!(convert::value_from_json_text, module)?,
+        wrap_pyfunction!(convert::readable_text, module)?,
         wrap_pyfunction!(convert::text, module)?,
         wrap_pyfunction!(convert::mot, module)?,
         wrap_pyfunction!(convert::coco, module)?,

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use opendr::data::{Image, ImageView, Layout, PixelFormat, Pixels as Samples, Samples as SamplesView};
-use opendr::vision;
+use opendr::target::Classes;
 use opendr::vision::draw::Style;
+use opendr::{Value, vision};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -70,7 +71,7 @@ fn interface<'py, T: Element>(
     samples: &[T],
 ) -> PyResult<Bound<'py, PyDict>> {
     let size = size_of::<T>() as isize;
-    let [channel, row, column] = view.strides().map(|stride| stride as isize * size);
+    let [row, column, channel] = view.strides().map(|stride| stride as isize * size);
     let [red, green, _] = view.format().rgb_offsets().map(|offset| offset as isize);
     let reversed = green < red;
     let start =
@@ -130,10 +131,17 @@ where
     Image::new(samples, width, height, format, layout).to_python(py)
 }
 
-/// A picture file, as [`Pixels`].
+/// The Python `Image` of a picture.
+pub fn python_from_image(py: Python<'_>, image: Image) -> PyResult<Bound<'_, PyAny>> {
+    let pixels = Pixels::new(image).to_python(py)?;
+    py.import("opendr._schema")?.call_method1("image_from_pixels", (pixels,))
+}
+
+/// A picture file as a Python `Image`.
 #[pyfunction]
-pub fn open_image(py: Python<'_>, path: PathBuf) -> PyResult<Pixels> {
-    py.detach(|| vision::open(path).and_then(Pixels::new)).to_python(py)
+pub fn open_image(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
+    let image = py.detach(|| vision::open(path)).to_python(py)?;
+    python_from_image(py, image)
 }
 
 /// Writes a Python `Image` to a file; the extension says in which format.
@@ -143,14 +151,26 @@ pub fn save_image(py: Python<'_>, image: &Bound<'_, PyAny>, path: PathBuf) -> Py
     py.detach(|| vision::save(&image, path)).to_python(py)
 }
 
-/// A Python `Image` with a target drawn on it, as [`Pixels`].
+/// A Python `Image` with a target drawn on it; `class_names` replace those of the target.
 #[pyfunction]
-pub fn draw(py: Python<'_>, image: &Bound<'_, PyAny>, target: &Bound<'_, PyAny>) -> PyResult<Pixels> {
-    let mut image = image_from_python(image, Vec::new())?;
-    let target = target_from_python(target)?;
-    py.detach(|| {
-        vision::draw::draw(&mut image, target.as_value_ref(), &Style::default());
-        Pixels::new(image)
-    })
-    .to_python(py)
+#[pyo3(signature = (image, target, class_names=None))]
+pub fn draw<'py>(
+    image: &Bound<'py, PyAny>,
+    target: &Bound<'py, PyAny>,
+    class_names: Option<Vec<String>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let py = image.py();
+    let mut picture = image_from_python(image, Vec::new())?;
+    let mut target = target_from_python(target)?;
+    if let Some(names) = class_names {
+        let classes = Classes::from_iter(names);
+        match &mut target {
+            Value::BoundingBoxList(list) => list.classes = classes,
+            Value::TrackingAnnotationList(list) => list.classes = classes,
+            Value::Heatmap(map) => map.classes = classes,
+            _ => {}
+        }
+    }
+    py.detach(|| vision::draw::draw(&mut picture, target.as_value_ref(), &Style::default()));
+    python_from_image(py, picture)
 }

@@ -144,7 +144,9 @@ fn port(row: &Tables<'_, '_>) -> PyResult<Port> {
 }
 
 fn output(row: &Tables<'_, '_>) -> PyResult<Output> {
-    Ok(Output { name: row.text("name")?, doc: "", value_type: row.value_type()? })
+    let value_type = row.value_type()?;
+    let name: Option<String> = row.get("name")?.extract()?;
+    Ok(Output { name: name.map_or(value_type.port(), leak_text), doc: "", value_type })
 }
 
 /// Calls Python; what it raises becomes the source of the error.

@@ -11,7 +11,7 @@ use opendr::{Error, Result};
 use pyo3::prelude::*;
 
 use crate::error::ToPython;
-use crate::pixels::Pixels;
+use crate::pixels::python_from_image;
 
 /// How often a wait for a frame looks for Ctrl-C.
 const LOOK: Duration = Duration::from_millis(100);
@@ -63,9 +63,9 @@ impl Source {
         this
     }
 
-    /// The next frame: its pixels, the file or device, its number there. An error is that of one frame; the next call
+    /// The next frame: its picture, the file or device, its number there. An error is that of one frame; the next call
     /// goes on.
-    fn __next__(&self, py: Python<'_>) -> PyResult<Option<(Pixels, PathBuf, u64)>> {
+    fn __next__<'py>(&self, py: Python<'py>) -> PyResult<Option<(Bound<'py, PyAny>, PathBuf, u64)>> {
         loop {
             py.check_signals()?;
             let answer = py.detach(|| self.thread.lock().unwrap_or_else(PoisonError::into_inner).wait());
@@ -73,8 +73,8 @@ impl Source {
                 Some(None) => return Ok(None),
                 Some(Some(frame)) => {
                     let frame = frame.to_python(py)?;
-                    let pixels = Pixels::new(frame.image).to_python(py)?;
-                    return Ok(Some((pixels, frame.path.to_path_buf(), frame.number)));
+                    let image = python_from_image(py, frame.image)?;
+                    return Ok(Some((image, frame.path.to_path_buf(), frame.number)));
                 }
                 None => {}
             }

@@ -4,25 +4,23 @@ use opendr::learner::Outputs;
 use opendr::target::{Heatmap, HeatmapValues};
 use opendr::{Error, Value};
 use pyo3::prelude::*;
-use pyo3::sync::PyOnceLock;
 
 use crate::array::{ArrayMemory, NativeArray};
 use crate::error::ToPython;
+
+/// The module that writes and reads the JSON in Python.
+const SCHEMA: &str = "opendr._schema";
 
 /// One output for Python: its name, its JSON, and its numbers where these are too many for JSON.
 pub type Payload = (&'static str, String, Option<NativeArray>);
 
 /// The outputs of one call.
 pub fn payloads(outputs: &Outputs) -> opendr::Result<Vec<Payload>> {
-    outputs
-        .iter()
-        .map(|(name, value)| {
-            let (json, array) = payload(value)?;
-            Ok((name, json, array))
-        })
-        .collect()
+    let named = outputs.iter().map(|(name, value)| payload(value).map(|(json, array)| (name, json, array)));
+    named.collect()
 }
 
+/// A target's JSON, without its numbers where these come beside it.
 pub fn payload(value: &Value) -> opendr::Result<(String, Option<NativeArray>)> {
     let Value::Heatmap(map) = value else { return Ok((json(value)?, None)) };
     let array = match map.values() {
@@ -47,16 +45,24 @@ pub fn json(value: &Value) -> opendr::Result<String> {
         .map_err(|error| Error::invalid_input("this value has no JSON form").with_source(error))
 }
 
-/// The value that a Python target is: its `_fields()`, written by Python's `json`, and its `_array()` where it has one.
+/// The Python object of a target.
+pub fn python_from_target<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    py.import(SCHEMA)?.call_method1("target_from_json", payload(value).to_python(py)?)
+}
+
+/// The value that a Python target is.
 pub fn target_from_python(object: &Bound<'_, PyAny>) -> PyResult<Value> {
-    static DUMPS: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+    item_or_target_from_python(object).map(|(value, _)| value)
+}
+
+/// The value that a Python target is, and whether that is a single item, which becomes a list of only itself.
+pub fn item_or_target_from_python(object: &Bound<'_, PyAny>) -> PyResult<(Value, bool)> {
     let py = object.py();
-    let dumps =
-        DUMPS.get_or_try_init(py, || py.import("opendr._fields")?.getattr("dumps").map(Bound::unbind))?;
-    let text: String = dumps.bind(py).call1((object,))?.extract()?;
-    let value: Value = value_from_json(&text).to_python(py)?;
-    let Value::Heatmap(frame) = value else { return Ok(value) };
-    let memory = ArrayMemory::of(&object.getattr("data")?)?;
+    let schema = py.import(SCHEMA)?;
+    let (text, is_item): (String, bool) = schema.call_method1("dumps", (object,))?.extract()?;
+    let value = value_from_json(&text).to_python(py)?;
+    let Value::Heatmap(frame) = value else { return Ok((value, is_item)) };
+    let memory = ArrayMemory::of(&schema.call_method1("heatmap_numbers", (object,))?)?;
     let values = if memory.is::<u32>() {
         HeatmapValues::Labels(memory.to_vec::<u32>()?.into())
     } else {
@@ -64,7 +70,7 @@ pub fn target_from_python(object: &Bound<'_, PyAny>) -> PyResult<Value> {
     };
     let mut map = Heatmap::new(values, memory.shape()).to_python(py)?;
     (map.header, map.classes, map.action) = (frame.header, frame.classes, frame.action);
-    Ok(Value::Heatmap(map))
+    Ok((Value::Heatmap(map), false))
 }
 
 /// Reads the JSON of a target.

@@ -13,7 +13,7 @@ mod threads;
 pub mod timing;
 
 pub use builtin::Builtin;
-pub use onnx_runtime::OnnxRuntime;
+pub use onnx_runtime::{OnnxRuntime, prefer_python};
 pub use runtime::{Engine, Runtime, SessionOptions, Sink};
 pub use selection::{default_runtime, describe, device, runtimes};
 pub use session::Session;

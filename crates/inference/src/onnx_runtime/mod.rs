@@ -5,6 +5,8 @@ mod library;
 mod provider;
 mod python;
 
+pub use python::prefer_python;
+
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 

@@ -3,6 +3,16 @@
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// The environment of the Python that this process runs in, when it does.
+static OWN: Mutex<Option<PathBuf>> = Mutex::new(None);
+
+/// Looks first into the environment `prefix` (`sys.prefix`), for a process that Python runs in. Only what is asked
+/// before the first session is opened counts.
+pub fn prefer_python(prefix: PathBuf) {
+    *OWN.lock().unwrap_or_else(PoisonError::into_inner) = Some(prefix);
+}
 
 /// The `capi` folders of every `onnxruntime` package that the user's Python would import, likeliest first.
 pub(super) fn onnxruntime_folders() -> Vec<PathBuf> {
@@ -20,8 +30,9 @@ pub(super) fn onnxruntime_folders() -> Vec<PathBuf> {
 
 /// Installation prefixes: the active environment, then that of the Python on the search path, then the user's.
 fn prefixes() -> Vec<PathBuf> {
-    let mut prefixes: Vec<_> =
-        ["VIRTUAL_ENV", "CONDA_PREFIX"].iter().filter_map(env::var_os).map(PathBuf::from).collect();
+    let own = OWN.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    let named = ["VIRTUAL_ENV", "CONDA_PREFIX"].iter().filter_map(env::var_os).map(PathBuf::from);
+    let mut prefixes: Vec<_> = own.into_iter().chain(named).collect();
     let path = env::var_os("PATH").unwrap_or_default();
     for name in ["python3", "python"] {
         let file = format!("{name}{}", env::consts::EXE_SUFFIX);

@@ -24,7 +24,7 @@ import inspect
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any, Callable, ClassVar, NoReturn, Optional
 
-from opendr import _opendr
+from opendr._errors import Unsupported
 from opendr.engine._parameters import Live, Parameter, Range, Unit, declare, parameters, signature
 from opendr.engine._ports import Init
 from opendr.engine.datasets import Dataset
@@ -154,7 +154,7 @@ class BaseLearner(ABC):
         return None
 
     def _cannot(self, what: str) -> NoReturn:
-        raise _opendr.Unsupported(f"{type(self).__name__} cannot {what}; use a learner that can")
+        raise Unsupported(f"{type(self).__name__} cannot {what}; use a learner that can")
 
 
 def _declare(cls: Any) -> None:

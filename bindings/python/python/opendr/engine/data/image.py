@@ -43,6 +43,9 @@ class Image(ArrayData):
         ValueError: They are None, have other axes, no pixel or other than 1, 3 or 4 channels, or do not fit the type.
     """
 
+    #: The picture in native memory, for as long as nobody has set other data.
+    _pixels: Any = None
+
     def __init__(
         self,
         data: Union[ArrayLike, Image, None] = None,
@@ -55,7 +58,7 @@ class Image(ArrayData):
         if given is not None:
             data, guess_format = given.data, False
             self.timestamp, self.frame_id = given.timestamp, given.frame_id
-        self._dtype = _dtype(given.dtype if given is not None and dtype is None else dtype)
+        self._wanted = _dtype(given.dtype if given is not None and dtype is None else dtype)
         super().__init__()
         self.data = _chw_from_guess(data) if guess_format else data
 
@@ -82,9 +85,28 @@ class Image(ArrayData):
         return cls(np.atleast_3d(array).transpose(2, 0, 1), guess_format=False)
 
     @property
+    def data(self) -> NDArray[Any]:
+        """The array itself, ``[channels, height, width]``.
+
+        That of a picture which OpenDR itself opened, took or drew lies in native memory and is read-only.
+        """
+        if self._data is None and self._pixels is not None:
+            import numpy as np
+
+            self._data = np.asarray(self._pixels)
+        return super().data
+
+    @data.setter
+    def data(self, data: ArrayLike) -> None:
+        self._data, self._pixels = self._checked(data), None
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_data": self.data, "_pixels": None}
+
+    @property
     def dtype(self) -> Any:
         """The type of the samples."""
-        return self._data.dtype if self._data is not None else None
+        return self.data.dtype
 
     @property
     def channels(self) -> int:
@@ -165,7 +187,7 @@ class Image(ArrayData):
                 f"an image of shape {array.shape} should be [channels, height, width] with 1, 3 or 4 channels and at "
                 "least one pixel; transpose it, or let guess_format do so"
             )
-        return _converted(array, self._dtype)
+        return _converted(array, self._wanted)
 
 
 def _dtype(dtype: Optional[DTypeLike]) -> str:

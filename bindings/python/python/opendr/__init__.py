@@ -1,0 +1,74 @@
+"""OpenDR: the open deep-learning toolkit for robotics.
+
+    import opendr
+
+    detector = opendr.learner("centernet")      # downloads once, checked by sha256
+    for box in detector.infer("street.jpg"):
+        print(box.class_name, box.left, box.top, box.width, box.height, box.confidence)
+
+Modules and classes are those of OpenDR: ``opendr.engine.data``, ``opendr.engine.target``, ``opendr.engine.learners``,
+``opendr.engine.datasets``, ``opendr.perception.<task>``. NumPy is imported when the first array is asked for.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from opendr._errors import (
+        DeviceError,
+        FormatError,
+        IntegrityError,
+        InternalError,
+        InvalidInput,
+        InvalidParam,
+        IoError,
+        NetworkError,
+        NotFound,
+        OpenDRError,
+        Unsupported,
+    )
+    from opendr._opendr import __version__
+    from opendr._registered import check_learner, learner, learners, register
+    from opendr._source import Source
+
+__all__ = [
+    "DeviceError",
+    "FormatError",
+    "IntegrityError",
+    "InternalError",
+    "InvalidInput",
+    "InvalidParam",
+    "IoError",
+    "NetworkError",
+    "NotFound",
+    "OpenDRError",
+    "Source",
+    "Unsupported",
+    "__version__",
+    "check_learner",
+    "learner",
+    "learners",
+    "register",
+]
+
+#: Where the names come from, imported when they are first asked for: `import opendr` alone costs nothing.
+_HOMES = {
+    "Source": "opendr._source",
+    "__version__": "opendr._opendr",
+    **dict.fromkeys(("check_learner", "learner", "learners", "register"), "opendr._registered"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    if name not in __all__:
+        raise AttributeError(f"module 'opendr' has no attribute {name!r}")
+    home = import_module(_HOMES.get(name, "opendr._errors"))
+    value = globals()[name] = getattr(home, name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,22 @@
+"""The command: ``python -m opendr``, or ``opendr`` as the wheel installs it."""
+
+from __future__ import annotations
+
+import sys
+
+from opendr import _opendr
+
+
+def main() -> int:
+    """Runs the command with the arguments of the process; its exit code.
+
+    Learners of installed packages (entry points of the group ``opendr.learners``) are there too.
+    """
+    from opendr._registered import register_installed
+
+    register_installed()
+    return _opendr.main(["opendr", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,304 @@
+"""The class that all compiled learners come from: one for all, since the registry tells what each takes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Iterator
+from typing import Any, ClassVar, NoReturn, Optional, Union
+
+from opendr import _opendr
+from opendr._errors import Unsupported
+from opendr.engine import data, target
+from opendr.engine.learners import BaseLearner, Learner
+
+PathLike = Union[str, "os.PathLike[str]"]
+Table = dict[str, Any]
+
+
+class NativeLearner(Learner):
+    """A learner of the registry; its class, parameters, inputs and outputs come from there.
+
+    It is empty after construction. ``download()`` and ``load()`` get it a pretrained model, ``load(path)`` one of your
+    own. One learner serves many threads: calls wait for each other, ``stream()`` gives each its own memory.
+    """
+
+    _entry: ClassVar[Table]
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        known = self._known(kwargs)
+        super().__init__(*args, **{name: value for name, value in known.items() if value is not None})
+        params = {field["name"]: getattr(self, field["name"]) for field in self._entry["params"]}
+        self._handle = _opendr.Handle(self._entry["name"], params, self.device)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        super().__setattr__(name, value)
+        handle = self.__dict__.get("_handle")
+        if handle is not None and any(field["name"] == name for field in self._entry["params"]):
+            try:
+                handle.set({name: getattr(self, name)})
+            finally:
+                self.__dict__[name] = handle.params()[name]
+
+    def infer(self, *inputs: Any, **arguments: Any) -> Any:
+        """Answers one input, or each of several.
+
+        Args:
+            inputs: The inputs, in the order of the learner's ports; also by name. A picture may be an ``Image``, an
+                array (layout guessed by the rule of ``Image``), or the path of a file. A list of inputs gives the list
+                of their answers, an iterator such as a ``Source`` an iterator of them.
+            arguments: Inputs by name, and live parameters for this call only.
+
+        Returns:
+            The target; a named tuple of targets where the learner has several outputs. They carry the time stamp and
+            frame of the input.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded yet, or a file is not there.
+            TypeError: Something is of another type than the learner takes.
+            ValueError: A value is out of range.
+        """
+        ports, overrides = self._arguments(inputs, arguments)
+        first = ports.get(self._entry["ports"][0]["name"])
+        if isinstance(first, Iterator):
+            return self._each(ports, overrides)
+        if isinstance(first, (list, tuple)):
+            return list(self._each(ports, overrides))
+        return self._one(self._handle, ports, overrides)
+
+    def load(self, path: Optional[PathLike] = None, verbose: bool = False, *, variant: Optional[str] = None) -> bool:
+        """Loads a model.
+
+        Args:
+            path: A model container: a folder, its ``model.json``, or a zip. None loads the pretrained model, which is
+                downloaded when it is not in the cache.
+            verbose: Whether to show the progress of a download.
+            variant: Which of the pretrained models; the default one when left out.
+
+        Raises:
+            FileNotFoundError: It is not there.
+            ValueError: It is of another learner, or damaged.
+        """
+        if path is None:
+            self._handle.load_pretrained(variant, verbose)
+        else:
+            self._handle.load(os.fspath(path))
+        self.__dict__.update(self._handle.params())
+        return True
+
+    def save(self, path: PathLike, verbose: bool = False) -> bool:
+        """Writes model and parameters as a container to the folder ``path``.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded.
+            OSError: The folder cannot be written.
+        """
+        self._handle.save(os.fspath(path))
+        return True
+
+    def download(
+        self,
+        path: Optional[PathLike] = None,
+        mode: str = "pretrained",
+        verbose: bool = True,
+        url: Optional[str] = None,
+        *,
+        variant: Optional[str] = None,
+    ) -> str:
+        """Gets a pretrained model, or pictures to try it on.
+
+        Args:
+            path: Folder for a copy; None leaves it in the cache, where ``load()`` finds it.
+            mode: ``"pretrained"`` for the model, ``"images"`` for a sample picture.
+            verbose: Whether to show progress.
+            url: Not taken: models are named by cards; ``OPENDR_MODEL_REPOSITORY`` names a server of your own.
+            variant: Which of the pretrained models; the default one when left out.
+
+        Returns:
+            What ``load`` takes: the model's folder (``path/<learner>/<variant>``); for images the picture's file.
+
+        Raises:
+            ValueError: There is no such mode, or a file is not the one of the card.
+            ConnectionError: A server could not be reached.
+        """
+        if url is not None:
+            raise Unsupported("download takes no url; set OPENDR_MODEL_REPOSITORY to a server or folder of your own")
+        folder = None if path is None else os.fspath(path)
+        if mode == "pretrained":
+            return os.fspath(_opendr.download(self._entry["name"], variant, folder, verbose))
+        if mode == "images":
+            return os.fspath(_sample(folder, verbose))
+        raise ValueError(f"download has no mode {mode!r}; there are 'pretrained' and 'images'")
+
+    def reset(self) -> None:
+        """Forgets what was seen: the next input begins anew."""
+        self._handle.reset()
+
+    def stream(self) -> Stream:
+        """A memory of its own over the same model, for another camera or thread.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded.
+        """
+        return Stream(self)
+
+    def push(self, *piece: Any, **named: Any) -> list[Any]:
+        """Takes the next piece of the input; what it answers so far.
+
+        Raises:
+            opendr.Unsupported: This learner takes no pieces.
+        """
+        ports, _ = self._arguments(piece, named)
+        return [self._answer(outputs) for outputs in self._handle.push(self._values(ports))]
+
+    def flush(self) -> list[Any]:
+        """Ends the input that was taken in pieces; what is left to answer.
+
+        Raises:
+            opendr.Unsupported: This learner takes no pieces.
+        """
+        return [self._answer(outputs) for outputs in self._handle.push(None)]
+
+    @property
+    def classes(self) -> list[str]:
+        """What class numbers mean: ``classes[0]`` is class 0; empty before ``load``."""
+        return self._handle.classes
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether a model is loaded."""
+        return self._handle.is_ready
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; save() it, and load() it there")
+
+    def _known(self, arguments: dict[str, Any]) -> dict[str, Any]:
+        """Arguments under the names they have here; those without effect are left out, with a warning."""
+        renamed = {alias: field["name"] for field in self._entry["params"] for alias in field["aliases"]}
+        idle = dict(self._entry["without_effect"])
+        known = {}
+        for name, value in arguments.items():
+            if name in idle:
+                place = f"{type(self).__name__}: {name} has no effect: {idle[name]}"
+                warnings.warn(place, UserWarning, stacklevel=3)
+            else:
+                known[renamed.get(name, name)] = value
+        return known
+
+    def _arguments(self, inputs: tuple[Any, ...], named: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+        """The inputs by port, and the parameters of this call."""
+        names = [port["name"] for port in self._entry["ports"]]
+        if len(inputs) > len(names):
+            raise TypeError(f"infer takes {len(names)} inputs ({', '.join(names)}), not {len(inputs)}")
+        ports, overrides = dict(zip(names, inputs)), {}
+        live = {field["name"] for field in self._entry["params"] if field["live"]}
+        for name, value in self._known(named).items():
+            if name in ports:
+                raise TypeError(f"infer got {name} twice; give it once")
+            if name not in names and name not in live:
+                known = ", ".join([*names, *sorted(live)])
+                raise TypeError(f"infer has no argument {name!r}; there are {known}")
+            (ports if name in names else overrides)[name] = value
+        # None stands for what is left out, where that may be.
+        may_lack = {port["name"] for port in self._entry["ports"] if port["optional"] or port["init"]}
+        return {name: value for name, value in ports.items() if value is not None or name not in may_lack}, overrides
+
+    def _each(self, ports: dict[str, Any], overrides: dict[str, Any]) -> Iterator[Any]:
+        """The answers to the first port's inputs one after the other; other ports go along item by item where they are
+        lists or iterators, init ports go with the first."""
+        table = self._entry["ports"]
+        several = {
+            port["name"]: iter(ports[port["name"]])
+            for port in table
+            if isinstance(ports.get(port["name"]), (list, tuple, Iterator)) and not port["init"]
+        }
+        same = {name: value for name, value in ports.items() if name not in several}
+        for items in zip(*several.values()):
+            yield self._one(self._handle, {**same, **dict(zip(several, items))}, overrides)
+            same = {port["name"]: same[port["name"]] for port in table if port["name"] in same and not port["init"]}
+
+    def _one(self, handle: Any, ports: dict[str, Any], overrides: dict[str, Any]) -> Any:
+        outputs = handle.infer(self._values(ports), overrides) if overrides else handle.infer(self._values(ports))
+        return self._answer(outputs)
+
+    def _values(self, ports: dict[str, Any]) -> dict[str, Any]:
+        types = {port["name"]: port["type"] for port in self._entry["ports"]}
+        return {name: _value(value, name, types[name]) for name, value in ports.items()}
+
+    def _answer(self, outputs: list[Any]) -> Any:
+        from opendr._schema import target_from_json
+
+        answers = [target_from_json(json, array) for _, json, array in outputs]
+        return answers[0] if len(answers) == 1 else self._outputs(*answers)
+
+    #: The named tuple of several outputs.
+    _outputs: ClassVar[Any] = None
+
+
+class Stream:
+    """A memory of its own over the model of a learner."""
+
+    def __init__(self, learner: NativeLearner) -> None:
+        self._learner = learner
+        self._stream = learner._handle.stream()
+
+    def infer(self, *inputs: Any, **named: Any) -> Any:
+        """Answers one input, as ``infer`` of the learner does."""
+        ports, overrides = self._learner._arguments(inputs, named)
+        if overrides:
+            raise TypeError(f"a stream takes no parameters ({', '.join(overrides)}); set them on the learner")
+        return self._learner._one(self._stream, ports, {})
+
+    def reset(self) -> None:
+        """Forgets what was seen."""
+        self._stream.reset()
+
+
+def _value(value: Any, name: str, kind: str) -> Any:
+    """``value`` as the data or target class ``kind``."""
+    wanted: Any = getattr(target, kind, None)
+    if wanted is not None:
+        if isinstance(value, wanted):
+            return value
+        given = type(value).__name__
+        raise TypeError(f"{name} should be a {kind}, not {given}")
+    wanted = getattr(data, kind)
+    if isinstance(value, wanted):
+        return value
+    if kind == "Image" and isinstance(value, (str, os.PathLike)):
+        return _opendr.open_image(os.fspath(value))
+    if value is None or isinstance(value, (str, bytes)):
+        raise TypeError(f"{name} should be a {kind} or an array of numbers, not {value!r:.100}")
+    return wanted(value)
+
+
+def _sample(folder: Optional[str], verbose: bool) -> PathLike:
+    import shutil
+
+    picture: PathLike = _opendr.sample("astronaut", verbose)
+    if folder is None:
+        return picture
+    os.makedirs(folder, exist_ok=True)
+    copy: PathLike = shutil.copy(picture, folder)
+    return copy
+
+
+def native_class(entry: Table, module: str) -> type[NativeLearner]:
+    """The class of a learner of the registry."""
+    from collections import namedtuple
+
+    from opendr._reference import annotations, document
+    from opendr.engine._parameters import signature
+
+    names = [output["name"] for output in entry["outputs"]]
+    namespace: dict[str, Any] = {
+        "__doc__": document(entry),
+        "__module__": module,
+        "__annotations__": annotations(entry),
+        "_entry": entry,
+        "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
+        **{field["name"]: field["default"] for field in entry["params"]},
+    }
+    made: Any = type(entry["class_name"], (NativeLearner,), namespace)
+    made.__signature__ = signature(made, by_place=BaseLearner.__signature__.parameters)
+    return made  # type: ignore[no-any-return]

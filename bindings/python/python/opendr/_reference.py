@@ -1,0 +1,72 @@
+"""What the registry's tables say, as Python's own: annotations, docstrings."""
+
+from __future__ import annotations
+
+import inspect
+import textwrap
+from typing import Annotated, Any, Literal, Optional
+
+from opendr.engine.learners import Live, Range, Unit
+
+Table = dict[str, Any]
+_TYPES: dict[str, Any] = {"float": float, "int": int, "bool": bool, "text": str, "list": list}
+
+
+def annotations(entry: Table) -> dict[str, Any]:
+    """The parameters of a learner as annotations of its class."""
+    return {field["name"]: _annotation(field) for field in entry["params"]}
+
+
+def _annotation(field: Table) -> Any:
+    hint: Any = Literal[tuple(field["choices"])] if field["choices"] else _TYPES[field["kind"]]
+    if field["optional"]:
+        hint = Optional[hint]
+    extras: list[Any] = [field["doc"]]
+    if field["range"] is not None:
+        extras.append(Range(*field["range"]))
+    if field["unit"]:
+        extras.append(Unit(field["unit"]))
+    if field["live"]:
+        extras.append(Live())
+    return Annotated[(hint, *extras)]
+
+
+def document(entry: Table) -> str:
+    """The docstring of a learner's class."""
+    inputs = "\n".join(_line(port["name"], _port(port)) for port in entry["ports"])
+    outputs = ", ".join(output["type"] for output in entry["outputs"])
+    params = "\n".join(_line(field["name"], _param(field)) for field in entry["params"])
+    idle = "\n".join(_line(name, f"no effect: {reason}.") for name, reason in entry["without_effect"])
+    parts = [
+        entry["about"],
+        f"Task: {entry['task']}. ``infer`` takes:\n\n{inputs}\n\nand gives: {outputs}.",
+        f"Args:\n{params}\n    others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.",
+    ]
+    if idle:
+        parts.append(f"Arguments of OpenDR that are taken and have no effect:\n{idle}")
+    return "\n\n".join(parts)
+
+
+def _port(port: Table) -> str:
+    notes = ["with the first input of a stream"] if port["init"] else []
+    notes += ["may be left out"] if port["optional"] and not port["init"] else []
+    kind = f"{port['type']}{' (' + ', '.join(notes) + ')' if notes else ''}."
+    return f"{kind} {inspect.cleandoc(port['doc'])}".rstrip()
+
+
+def _param(field: Table) -> str:
+    notes = [f"default {field['default']!r}"]
+    if field["range"] is not None:
+        low, high = field["range"]
+        notes.append(f"{low:g} to {high:g}{' ' + field['unit'] if field['unit'] else ''}")
+    if field["choices"]:
+        notes.append("one of " + ", ".join(map(repr, field["choices"])))
+    if field["live"]:
+        notes.append("may change while running, also for one call of infer")
+    if field["aliases"]:
+        notes.append("in OpenDR " + ", ".join(field["aliases"]))
+    return f"{inspect.cleandoc(field['doc'])} ({'; '.join(notes)})"
+
+
+def _line(name: str, text: str) -> str:
+    return textwrap.fill(f"{name}: {text}", 110, initial_indent=" " * 4, subsequent_indent=" " * 8)

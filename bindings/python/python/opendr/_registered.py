@@ -1,0 +1,123 @@
+"""The learners of the registry as classes, and learners of one's own beside them."""
+
+from __future__ import annotations
+
+import sys
+import types
+from typing import Any, TypeVar
+
+from opendr import _opendr
+from opendr._errors import NotFound
+from opendr.engine.learners import BaseLearner, Learner
+
+T = TypeVar("T", bound=type[BaseLearner])
+
+#: OpenDR's functions that draw a type of target.
+_DRAWING = {"BoundingBoxList": ("draw_bounding_boxes",), "PoseList": ("draw", "get_bbox")}
+#: The classes of learners written in Python, by name.
+_OWN: dict[str, type[BaseLearner]] = {}
+
+
+def task_modules(package: types.ModuleType) -> None:
+    """Makes the modules of a package of learners, one a task, with the task's learners and drawing functions."""
+    from opendr import _drawing
+    from opendr._native_learner import native_class
+
+    for entry in _opendr.entries():
+        if entry["name"] in _OWN:
+            continue
+        name = f"{package.__name__}.{entry['task']}"
+        module = sys.modules.get(name)
+        if module is None:
+            module = types.ModuleType(name, f"Learners of the task {entry['task']}.")
+            module.__dict__["__all__"] = []
+            sys.modules[name] = module
+            setattr(package, entry["task"], module)
+        found = {entry["class_name"]: native_class(entry, name)}
+        for output in entry["outputs"]:
+            found.update({name: getattr(_drawing, name) for name in _DRAWING.get(output["type"], ())})
+        module.__dict__.update(found)
+        module.__dict__["__all__"] = sorted({*module.__dict__["__all__"], *found})
+
+
+def learners() -> dict[str, type[BaseLearner]]:
+    """The classes of all learners, by their names in the registry; those registered from Python are there too."""
+    import opendr.perception as package
+
+    classes: dict[str, type[BaseLearner]] = {}
+    for entry in _opendr.entries():
+        task = getattr(package, entry["task"], None)
+        found = _OWN.get(entry["name"]) or getattr(task, entry["class_name"], None)
+        if found is not None:
+            classes[entry["name"]] = found
+    return classes
+
+
+def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:
+    """A learner by name, with its pretrained model, which is downloaded the first time.
+
+    Args:
+        spec: A name such as ``"nanodet"``, with a variant where there are several: ``"yunet/320"``.
+        verbose: Whether to show the progress of a download.
+        arguments: Those of the class.
+
+    Raises:
+        FileNotFoundError: There is no such learner.
+    """
+    name, _, variant = spec.partition("/")
+    classes = learners()
+    if name not in classes:
+        raise NotFound(f"no learner {name!r}; there are {', '.join(classes)}")
+    made: Any = classes[name](**arguments)
+    if variant or name not in _OWN:
+        made.load(verbose=verbose, variant=variant or None)
+    return made
+
+
+def register(cls: T) -> T:
+    """Puts a learner written in Python into the registry, beside the compiled ones; also as a decorator.
+
+    It then has a place in ``opendr.learners()`` and in ``python -m opendr``.
+
+    Args:
+        cls: A subclass of ``opendr.engine.learners.Learner``, see there.
+
+    Raises:
+        TypeError: Something is missing in the class; the text says what.
+        ValueError: The name is taken.
+    """
+    from opendr.engine._declaration import tables_from_class
+
+    tables = tables_from_class(cls)
+    _opendr.register(cls, tables)
+    _OWN[tables["name"]] = cls
+    return cls
+
+
+def register_installed() -> None:
+    """Registers the learners of installed packages; one that cannot be is warned of and left out."""
+    from opendr import _entry_points
+
+    for point in _entry_points.learner_entry_points():
+        try:
+            register(point.load())
+        except Exception as error:
+            _entry_points.warn(point, error)
+
+
+def check_learner(name: str, model: str, scratch: str, calls: list[dict[str, Any]]) -> None:
+    """Runs the test that every learner passes: parameters, errors, repeatability, streams, saving.
+
+    Args:
+        name: The learner's name in the registry.
+        model: A model of it.
+        scratch: A folder to write to.
+        calls: Inputs of one stream in order, by port; at least two, and different.
+
+    Raises:
+        opendr.InternalError: A promise is broken; the text says which.
+    """
+    _opendr.check_learner(name, model, scratch, calls)
+
+
+__all__ = ["Learner", "check_learner", "learner", "learners", "register", "register_installed", "task_modules"]

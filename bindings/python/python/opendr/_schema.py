@@ -1,0 +1,326 @@
+"""Targets as the JSON objects of ``docs/json.md``, which is how they cross to the native half and back.
+
+One function a type each way; the native half checks and completes what is written here.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any, Callable, Optional
+
+from opendr.engine import data, target
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+Fields = dict[str, Any]
+
+
+def dumps(value: target.BaseTarget) -> tuple[str, bool]:
+    """The JSON of a target, and whether it is one item, written as a list of only itself.
+
+    Raises:
+        TypeError: It is no target.
+        ValueError: A number is NaN or infinite.
+    """
+    if not isinstance(value, target.BaseTarget):
+        raise TypeError(f"a target is wanted, e.g. a BoundingBoxList, not {value!r:.200}")
+    whole = value._as_value()
+    writer = next((_WRITERS[kind] for kind in type(whole).__mro__ if kind in _WRITERS), None)
+    if writer is None:
+        raise TypeError(f"{type(value).__name__} has no JSON form")
+    return json.dumps({**_header(whole), **writer(whole)}, allow_nan=False), whole is not value
+
+
+def target_from_json(text: str, array: Optional[Any] = None) -> Any:
+    """The target that the native half wrote; ``array`` holds the numbers of a heat map."""
+    fields = json.loads(text)
+    value = _READERS[fields["type"]](fields if array is None else {**fields, "array": array})
+    _set_header(value, fields.get("stamp_ns"), fields.get("frame_id"))
+    if "action" in fields:
+        value.action = target.Action(fields["action"])
+    return value
+
+
+def image_from_pixels(pixels: Any) -> data.Image:
+    """A picture in native memory as an :class:`Image`; NumPy sees it, read-only, when its ``data`` are asked for."""
+    image = data.Image.__new__(data.Image)
+    image._data, image._pixels = None, pixels
+    _set_header(image, pixels.timestamp, pixels.frame_id)
+    return image
+
+
+def datum_from_array(kind: str, array: Any, stamp_ns: Optional[int], frame_id: Optional[str]) -> Any:
+    """A datum that is one array, in native memory."""
+    import numpy as np
+
+    value = getattr(data, kind)(np.asarray(array))
+    _set_header(value, stamp_ns, frame_id)
+    return value
+
+
+def heatmap_numbers(heatmap: target.Heatmap) -> NDArray[Any]:
+    """The numbers of a heat map as the native half takes them: uint32 classes, or float32 scores."""
+    import numpy as np
+
+    numbers = heatmap.data
+    return np.asarray(numbers, dtype=np.float32 if numbers.dtype.kind == "f" else np.uint32)
+
+
+def _set_header(value: Any, stamp_ns: Optional[int], frame_id: Optional[str]) -> None:
+    if stamp_ns is not None:
+        value.timestamp = stamp_ns
+    if frame_id:
+        value.frame_id = frame_id
+
+
+def _header(value: target.BaseTarget) -> Fields:
+    fields: Fields = {}
+    if value.timestamp is not None:
+        fields["stamp_ns"] = value.timestamp
+    if value.frame_id:
+        fields["frame_id"] = value.frame_id
+    action = getattr(value, "action", None)
+    if action is not None:
+        fields["action"] = list(action.axes)
+    return fields
+
+
+def _with_classes(fields: Fields, value: Any) -> Fields:
+    return {**fields, "classes": value.classes} if value.classes else fields
+
+
+def _box(box: Any) -> Fields:
+    fields = {
+        **{"name": box.name, "left": box.left, "top": box.top, "width": box.width, "height": box.height},
+        "confidence": box.confidence,
+    }
+    if box.landmarks:
+        fields["landmarks"] = box.landmarks
+    if getattr(box, "segmentation", None):
+        outline = {"segmentation": box.segmentation, "area": box.area, "iscrowd": bool(box.iscrowd)}
+        fields["segment"] = outline
+    return fields
+
+
+def _track(track: target.TrackingAnnotation) -> Fields:
+    fields = {**_box(track), "id": track.id}
+    return {**fields, "frame": track.frame} if track.frame >= 0 else fields
+
+
+def _box_3d(box: target.BoundingBox3D) -> Fields:
+    rows = {name: box.data[name].tolist() for name in ("bbox2d", "dimensions", "location")}
+    names = ("name", "truncated", "occluded", "alpha", "rotation_y")
+    return {**{name: box.data[name] for name in names}, **rows, "confidence": box.confidence}
+
+
+def _track_3d(track: target.TrackingAnnotation3D) -> Fields:
+    fields = {**_box_3d(track), "id": track.id}
+    return {**fields, "frame": track.frame} if track.frame >= 0 else fields
+
+
+def _pose(pose: target.Pose) -> Fields:
+    points = zip(pose.data.tolist(), pose.keypoint_confidences.tolist())
+    fields = {
+        "keypoints": [{"x": x, "y": y, "confidence": confidence} for (x, y), confidence in points],
+        "confidence": pose.confidence,
+        "skeleton": pose.skeleton,
+    }
+    return fields if pose.id is None else {**fields, "id": pose.id}
+
+
+def _write_boxes(boxes: target.BoundingBoxList) -> Fields:
+    fields = {"type": "BoundingBoxList", "boxes": [_box(box) for box in boxes.data]}
+    return _with_classes(fields if boxes.image_id < 0 else {**fields, "image_id": boxes.image_id}, boxes)
+
+
+def _write_tracks(tracks: target.TrackingAnnotationList) -> Fields:
+    fields = {"type": "TrackingAnnotationList", "annotations": [_track(track) for track in tracks.data]}
+    return _with_classes(fields, tracks)
+
+
+def _write_boxes_3d(boxes: target.BoundingBox3DList) -> Fields:
+    return _with_classes({"type": "BoundingBox3DList", "boxes": [_box_3d(box) for box in boxes.data]}, boxes)
+
+
+def _write_tracks_3d(tracks: target.TrackingAnnotation3DList) -> Fields:
+    fields = {"type": "TrackingAnnotation3DList", "annotations": [_track_3d(track) for track in tracks.data]}
+    return _with_classes(fields, tracks)
+
+
+def _write_poses(poses: target.PoseList) -> Fields:
+    return {"type": "PoseList", "poses": [_pose(pose) for pose in poses.data]}
+
+
+def _write_category(category: target.Category) -> Fields:
+    fields: Fields = {"type": "Category", "class": category.data}
+    if category.description is not None:
+        fields["description"] = category.description
+    if category._confidence is not None:
+        fields["confidence"] = category._confidence
+    if category.probabilities is not None:
+        fields["probabilities"] = category.probabilities.tolist()
+    return fields
+
+
+def _write_heatmap(heatmap: target.Heatmap) -> Fields:
+    fields: Fields = {"type": "Heatmap", "shape": [0], "scores": []}
+    names = heatmap.class_names or {}
+    count = max((index for index in names if isinstance(index, int)), default=-1) + 1
+    return {**fields, "classes": [names.get(index, "") for index in range(count)]} if count else fields
+
+
+def _write_command(command: target.SpeechCommand) -> Fields:
+    fields = {"type": "SpeechCommand", "command": command.data, "confidence": command.confidence}
+    return fields if command.span_s is None else {**fields, "span_s": command.span_s}
+
+
+def _write_transcription(words: target.BaseTranscription) -> Fields:
+    return {"type": "BaseTranscription", "text": words.text}
+
+
+def _write_vosk(words: target.VoskTranscription) -> Fields:
+    return {"type": "VoskTranscription", "text": words.text, "accept_waveform": words.accept_waveform}
+
+
+def _write_whisper(words: target.WhisperTranscription) -> Fields:
+    return {"type": "WhisperTranscription", "text": words.text, "segments": words.segments}
+
+
+_WRITERS: dict[type[Any], Callable[[Any], Fields]] = {
+    target.BoundingBoxList: _write_boxes,
+    target.TrackingAnnotationList: _write_tracks,
+    target.BoundingBox3DList: _write_boxes_3d,
+    target.TrackingAnnotation3DList: _write_tracks_3d,
+    target.PoseList: _write_poses,
+    target.Category: _write_category,
+    target.Heatmap: _write_heatmap,
+    target.SpeechCommand: _write_command,
+    target.WhisperTranscription: _write_whisper,
+    target.VoskTranscription: _write_vosk,
+    target.BaseTranscription: _write_transcription,
+}
+
+
+def _class_name(fields: Fields, classes: list[str]) -> str:
+    name = fields["name"]
+    return classes[name] if isinstance(name, int) and 0 <= name < len(classes) else ""
+
+
+def _place(fields: Fields) -> tuple[Any, ...]:
+    return (fields["name"], fields["left"], fields["top"], fields["width"], fields["height"])
+
+
+def _read_box(fields: Fields, classes: list[str]) -> target.BoundingBox:
+    score, points = fields.get("confidence", 0.0), fields.get("landmarks", ())
+    name = _class_name(fields, classes)
+    outline = fields.get("segment")
+    if outline is None:
+        return target.BoundingBox(*_place(fields), score, class_name=name, landmarks=points)
+    parts = (outline["segmentation"], outline["area"], int(outline["iscrowd"]))
+    return target.CocoBoundingBox(*_place(fields), *parts, score, class_name=name, landmarks=points)
+
+
+def _read_boxes(fields: Fields) -> target.BoundingBoxList:
+    classes = fields.get("classes", [])
+    boxes = [_read_box(box, classes) for box in fields["boxes"]]
+    return target.BoundingBoxList(boxes, fields.get("image_id", -1), classes=classes)
+
+
+def _read_tracks(fields: Fields) -> target.TrackingAnnotationList:
+    classes = fields.get("classes", [])
+    tracks = []
+    for track in fields["annotations"]:
+        outline = track.get("segment") or {"segmentation": None, "area": 0.0, "iscrowd": False}
+        tracks.append(
+            target.TrackingAnnotation(
+                *(*_place(track), track["id"], track.get("confidence", 0.0), track.get("frame", -1)),
+                class_name=_class_name(track, classes),
+                landmarks=track.get("landmarks", ()),
+                segmentation=outline["segmentation"],
+                area=outline["area"],
+                iscrowd=int(outline["iscrowd"]),
+            )
+        )
+    return target.TrackingAnnotationList(tracks, classes=classes)
+
+
+def _place_3d(fields: Fields) -> tuple[Any, ...]:
+    names = ("name", "truncated", "occluded", "alpha", "bbox2d", "dimensions", "location", "rotation_y")
+    return tuple(fields[name] for name in names)
+
+
+def _read_boxes_3d(fields: Fields) -> target.BoundingBox3DList:
+    classes = fields.get("classes", [])
+    boxes = [
+        target.BoundingBox3D(*_place_3d(box), box["confidence"], class_name=_class_name(box, classes))
+        for box in fields["boxes"]
+    ]
+    return target.BoundingBox3DList(boxes, classes=classes)
+
+
+def _read_tracks_3d(fields: Fields) -> target.TrackingAnnotation3DList:
+    classes = fields.get("classes", [])
+    tracks = [
+        target.TrackingAnnotation3D(
+            *(*_place_3d(track), track["id"], track["confidence"], track.get("frame", -1)),
+            class_name=_class_name(track, classes),
+        )
+        for track in fields["annotations"]
+    ]
+    return target.TrackingAnnotation3DList(tracks, classes=classes)
+
+
+def _read_poses(fields: Fields) -> target.PoseList:
+    poses = []
+    for pose in fields["poses"]:
+        points = pose["keypoints"]
+        poses.append(
+            target.Pose(
+                [[float(point["x"]), float(point["y"])] for point in points],
+                pose["confidence"],
+                id=pose.get("id"),
+                skeleton=pose["skeleton"],
+                keypoint_confidences=[point["confidence"] for point in points],
+            )
+        )
+    return target.PoseList(poses)
+
+
+def _read_category(fields: Fields) -> target.Category:
+    return target.Category(
+        *(fields["class"], fields.get("description"), fields.get("confidence")),
+        probabilities=fields.get("probabilities"),
+    )
+
+
+def _read_heatmap(fields: Fields) -> target.Heatmap:
+    import numpy as np
+
+    if "array" in fields:
+        numbers = np.asarray(fields["array"])
+    elif "labels" in fields:
+        numbers = np.array(fields["labels"], dtype=np.uint32).reshape(fields["shape"])
+    else:
+        numbers = np.array(fields["scores"], dtype=np.float32).reshape(fields["shape"])
+    names = dict(enumerate(fields.get("classes", [])))
+    return target.Heatmap(numbers, names or None)
+
+
+def _read_command(fields: Fields) -> target.SpeechCommand:
+    return target.SpeechCommand(fields["command"], fields["confidence"], fields.get("span_s"))
+
+
+_READERS: dict[str, Callable[[Fields], Any]] = {
+    "BoundingBoxList": _read_boxes,
+    "TrackingAnnotationList": _read_tracks,
+    "BoundingBox3DList": _read_boxes_3d,
+    "TrackingAnnotation3DList": _read_tracks_3d,
+    "PoseList": _read_poses,
+    "Category": _read_category,
+    "Heatmap": _read_heatmap,
+    "SpeechCommand": _read_command,
+    "BaseTranscription": lambda fields: target.BaseTranscription(fields["text"]),
+    "VoskTranscription": lambda fields: target.VoskTranscription(fields["text"], fields["accept_waveform"]),
+    "WhisperTranscription": lambda fields: target.WhisperTranscription(fields["text"], fields["segments"]),
+}
