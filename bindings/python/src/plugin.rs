@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use opendr::dataset::DatasetRef;
 use opendr::learner::{
     AnyLearner, AnyStream, Capabilities, CheckOptions, Entry, FitJob, Output, Outputs, Port, Ports, Spec,
+    empty_learner,
 };
 use opendr::params::{Field, FieldDefault, ParamKind, ParamMap, ParamRange, ParamValue};
 use opendr::target::Classes;
@@ -177,7 +178,7 @@ impl PythonLearner {
     fn check_loaded(&self) -> Result<()> {
         match self.loaded {
             true => Ok(()),
-            false => Err(Error::not_found(format!("{} has no model yet: call load()", self.spec.class))),
+            false => Err(empty_learner(self.spec.class)),
         }
     }
 

@@ -112,7 +112,7 @@ def check_learner(name: str, model: str, scratch: str, calls: list[dict[str, Any
         name: The learner's name in the registry.
         model: A model of it.
         scratch: A folder to write to.
-        calls: Inputs of one stream in order, by port; at least two, and different.
+        calls: Inputs of one stream in order, by port; at least two, different, and each with a time stamp and frame.
 
     Raises:
         opendr.InternalError: A promise is broken; the text says which.

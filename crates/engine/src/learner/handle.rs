@@ -172,18 +172,18 @@ impl<L: Learner> Handle<L> {
     pub(crate) fn own_stream(&mut self) -> Result<&mut Stream<L>> {
         match &mut self.ready {
             Some(ready) => Ok(&mut ready.stream),
-            None => Err(empty(L::SPEC.class)),
+            None => Err(empty_learner(L::SPEC.class)),
         }
     }
 
     fn ready(&self) -> Result<&Ready<L>> {
-        self.ready.as_ref().ok_or_else(|| empty(L::SPEC.class))
+        self.ready.as_ref().ok_or_else(|| empty_learner(L::SPEC.class))
     }
 }
 
 /// The error of a handle without a model: it names the three ways out.
 #[cold]
-fn empty(class: &str) -> Error {
+pub fn empty_learner(class: &str) -> Error {
     Error::not_found(format!(
         "{class} has no model yet: call download() and load() for a pretrained one, load() for your own, or fit() to train one"
     ))

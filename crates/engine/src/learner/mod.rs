@@ -24,7 +24,7 @@ pub use capability::Capabilities;
 pub use capability::{Probe, ProbeFallback, ProbeFit, ProbeStreaming};
 pub use check::{CheckOptions, check_learner};
 pub use fit::{Fit, FitJob};
-pub use handle::Handle;
+pub use handle::{Handle, empty_learner};
 pub use opendr_derive::{Inputs, Targets};
 pub use outputs::{Output, Outputs, Targets};
 pub use ports::{Inputs, Port, Ports};

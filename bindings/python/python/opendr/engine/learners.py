@@ -20,6 +20,7 @@ appears beside OpenDR's own learners.
 
 from __future__ import annotations
 
+import copy
 import inspect
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, Any, Callable, ClassVar, NoReturn, Optional
@@ -142,6 +143,15 @@ class BaseLearner(ABC):
 
     def reset(self) -> None:
         """Forgets what was seen; a learner without a memory has nothing to forget."""
+
+    def stream(self) -> Any:
+        """A memory of its own over the same model, for another camera or thread: a shallow copy, reset.
+
+        A learner whose memory is not replaced but changed in place (a list that grows) writes its own.
+        """
+        other = copy.copy(self)
+        other.reset()
+        return other
 
     @staticmethod
     def get_hyperparameters() -> Optional[list[dict[str, Any]]]:

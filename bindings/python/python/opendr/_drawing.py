@@ -1,0 +1,135 @@
+"""Drawing what was found onto pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
+
+from opendr import _opendr
+from opendr._show import show_picture
+from opendr.engine._equality import is_array
+from opendr.engine.data import Image
+from opendr.engine.target import BaseTarget, BoundingBoxList, Pose, PoseList, TrackingAnnotationList
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: OpenCV's picture, ``[height, width, 3]`` BGR uint8, which is drawn on in place, or an :class:`Image`, which stays as
+#: it is.
+Picture = TypeVar("Picture", "NDArray[Any]", Image)
+ClassNames = Union[Sequence[str], Mapping[int, str]]
+
+
+def draw_bounding_boxes(
+    img: Picture,
+    boxes: Union[BoundingBoxList, TrackingAnnotationList],
+    class_names: Optional[ClassNames] = None,
+    show: bool = False,
+) -> Picture:
+    """Draws boxes with their class, score, landmarks and outline.
+
+    Args:
+        img: OpenCV's picture, drawn on in place, or an :class:`Image`.
+        boxes: The boxes.
+        class_names: What class indices mean, by index; the boxes' own names when left out.
+        show: Opens a window and waits for a key; without OpenCV or a display, writes a file and prints its path.
+
+    Returns:
+        ``img`` itself for OpenCV's picture, else a new :class:`Image`.
+
+    Raises:
+        TypeError: Something is of another type.
+        ValueError: The picture cannot be drawn on.
+    """
+    if not isinstance(boxes, (BoundingBoxList, TrackingAnnotationList)):
+        raise TypeError(f"boxes should be a BoundingBoxList, not {boxes!r:.200}")
+    drawn = _drawn(img, boxes, class_names)
+    if show:
+        show_picture(drawn if isinstance(drawn, Image) else _image_from_opencv(drawn))
+    return drawn
+
+
+def draw(img: Picture, pose: Union[Pose, PoseList]) -> Picture:
+    """Draws the joints and bones of a person, or of several.
+
+    Args:
+        img: OpenCV's picture, drawn on in place, or an :class:`Image`.
+        pose: The person.
+
+    Returns:
+        ``img`` itself for OpenCV's picture, else a new :class:`Image`.
+
+    Raises:
+        TypeError: Something is of another type.
+        ValueError: The picture cannot be drawn on.
+    """
+    if not isinstance(pose, (Pose, PoseList)):
+        raise TypeError(f"pose should be a Pose, not {pose!r:.200}")
+    return _drawn(img, pose, None)
+
+
+def draw_target(image: Picture, target: BaseTarget, class_names: Optional[ClassNames] = None) -> Picture:
+    """Draws a target of any type; one that has no place in a picture leaves it as it is.
+
+    Args:
+        image: OpenCV's picture, drawn on in place, or an :class:`Image`.
+        target: What was found.
+        class_names: What class indices mean, by index; the target's own names when left out.
+
+    Returns:
+        ``image`` itself for OpenCV's picture, else a new :class:`Image`.
+
+    Raises:
+        TypeError: Something is of another type.
+        ValueError: The picture cannot be drawn on.
+    """
+    if not isinstance(target, BaseTarget):
+        raise TypeError(f"target should be a target, e.g. a BoundingBoxList, not {target!r:.200}")
+    return _drawn(image, target, class_names)
+
+
+def get_bbox(pose: Pose) -> tuple[int, int, int, int]:
+    """The smallest box of whole pixels around the joints that were found, as OpenCV's ``boundingRect`` gives it.
+
+    Returns:
+        ``(left, top, width, height)`` in pixels; all 0 when no joint was found.
+    """
+    import numpy as np
+
+    found = np.floor(pose.data[(pose.data >= 0).all(axis=1)]).astype(int)
+    if len(found) == 0:
+        return (0, 0, 0, 0)
+    left, top = found.min(axis=0).tolist()
+    right, bottom = found.max(axis=0).tolist()
+    return (left, top, right - left + 1, bottom - top + 1)
+
+
+def _drawn(picture: Picture, target: BaseTarget, class_names: Optional[ClassNames]) -> Picture:
+    names = None if class_names is None else _list_of_names(class_names)
+    if isinstance(picture, Image):
+        return _opendr.draw(picture, target, names)
+    drawn = _opendr.draw(_image_from_opencv(picture), target, names)
+    picture[:, :, :3] = drawn.data[::-1].transpose(1, 2, 0)
+    return picture
+
+
+def _image_from_opencv(picture: NDArray[Any]) -> Image:
+    if not is_array(picture):
+        raise TypeError(f"a picture is OpenCV's array [height, width, 3] or an Image, not {picture!r:.200}")
+    if picture.ndim != 3 or picture.shape[2] not in (3, 4) or picture.dtype != "uint8":
+        raise ValueError(
+            f"an array of {picture.dtype} and shape {picture.shape} cannot be drawn on; give OpenCV's uint8 "
+            "[height, width, 3], or an Image"
+        )
+    if not picture.flags.writeable:
+        raise ValueError("the array is read-only; give a copy of it, or an Image")
+    return Image(picture[:, :, 2::-1].transpose(2, 0, 1), guess_format=False)
+
+
+def _list_of_names(class_names: ClassNames) -> list[str]:
+    if isinstance(class_names, Mapping):
+        count = max(class_names, default=-1) + 1
+        return [str(class_names.get(index, "")) for index in range(count)]
+    if isinstance(class_names, str):
+        raise TypeError(f"class_names should be a list of names, not {class_names!r}")
+    return [str(name) for name in class_names]

@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""Writes the type stubs of the learners' modules from the registry of the installed package.
+
+    bindings/python/stubs.py [--check]
+
+With --check nothing is written: the exit code tells whether the stubs are those of the registry.
+"""
+
+import difflib
+import inspect
+import sys
+import textwrap
+from pathlib import Path
+
+from opendr import _opendr
+from opendr._reference import document
+from opendr._registered import _DRAWING
+from opendr.engine.learners import BaseLearner
+
+FOLDER = Path(__file__).parent / "python/opendr/perception"
+TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": "list[Any]"}
+#: What stands for a datum in `infer`, besides an object of its class.
+ALSO = {"Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
+HEADER = '''"""Learners of the task {task}. Made by bindings/python/stubs.py; do not edit."""
+
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, NamedTuple, Optional, Union, overload
+
+from numpy.typing import ArrayLike, NDArray
+'''
+
+
+def param_type(field):
+    kind = TYPES[field["kind"]]
+    if field["choices"]:
+        kind = f"Literal[{', '.join(map(repr, field['choices']))}]"
+    return f"Optional[{kind}]" if field["optional"] else kind
+
+
+def input_type(port):
+    kinds = [port["type"], *ALSO.get(port["type"], [] if is_target(port["type"]) else ["ArrayLike"])]
+    return f"Union[{', '.join(kinds)}]" if len(kinds) > 1 else kinds[0]
+
+
+def is_target(kind):
+    from opendr.engine import target
+
+    return hasattr(target, kind)
+
+
+def arguments(entry):
+    """The constructor's arguments: OpenDR's own by place, the learner's by name."""
+    own = {field["name"] for field in entry["params"]}
+    base = [
+        f"{name}: {getattr(parameter.annotation, '__name__', parameter.annotation)} = ..."
+        for name, parameter in BaseLearner.__signature__.parameters.items()
+        if name not in own
+    ]
+    fields = []
+    for field in entry["params"]:
+        fields += [f"{name}: {param_type(field)} = ..." for name in (field["name"], *field["aliases"])]
+    idle = [f"{name}: Any = ..." for name, _ in entry["without_effect"] if name not in {*own, *names(base)}]
+    return ["self", *base, "*", *fields, *idle]
+
+
+def names(shown):
+    return {argument.split(":")[0] for argument in shown}
+
+
+def call(name, parameters, result, overloaded=False):
+    mark = "    @overload\n" if overloaded else ""
+    return f"{mark}    def {name}({', '.join(parameters)}) -> {result}: ...\n"
+
+
+def infer(entry):
+    ports, outputs = entry["ports"], entry["outputs"]
+    result = outputs[0]["type"] if len(outputs) == 1 else f"{entry['class_name']}Outputs"
+    live = [f"{name}: {param_type(field)} = ..." for field in entry["params"] if field["live"]
+            for name in (field["name"], *field["aliases"])]
+    live += [f"{name}: Any = ..." for name, _ in entry["without_effect"]]
+    keywords = ["*", *live] if live else []
+    rest = [
+        f"{port['name']}: Optional[{input_type(port)}] = ..." if port["optional"] or port["init"]
+        else f"{port['name']}: {input_type(port)}"
+        for port in ports[1:]
+    ]
+    first, one = ports[0]["name"], input_type(ports[0])
+    if rest:
+        return call("infer", ["self", f"{first}: {one}", *rest, *keywords], result)
+    # A str is a sequence of str, so it is left out of sequences.
+    several = one.replace(", str", "")
+    many = f"Union[Sequence[{several}], list[str], tuple[str, ...]]" if several != one else f"Sequence[{one}]"
+    return "".join((
+        call("infer", ["self", f"{first}: {one}", *keywords], result, overloaded=True),
+        call("infer", ["self", f"{first}: {many}", *keywords], f"list[{result}]", overloaded=True),
+        call("infer", ["self", f"{first}: Iterator[{several}]", *keywords], f"Iterator[{result}]", overloaded=True),
+    ))
+
+
+def learner(entry):
+    text = ""
+    if len(entry["outputs"]) > 1:
+        fields = "".join(f"    {output['name']}: {output['type']}\n" for output in entry["outputs"])
+        text += f"class {entry['class_name']}Outputs(NamedTuple):\n{fields}\n"
+    doc = textwrap.indent(document(entry).rstrip(), "    ")
+    text += f'class {entry["class_name"]}(NativeLearner):\n    """{doc.lstrip()}\n    """\n\n'
+    text += "".join(f"    {field['name']}: {param_type(field)}\n" for field in entry["params"])
+    return text + call("__init__", arguments(entry), "None") + infer(entry)
+
+
+def module(task, entries):
+    kinds = {row["type"] for entry in entries for row in (*entry["ports"], *entry["outputs"])}
+    functions = sorted({name for kind in kinds for name in _DRAWING.get(kind, ())})
+    imports = "".join(f"from opendr._drawing import {name} as {name}\n" for name in functions)
+    imports += "from opendr._native_learner import NativeLearner\n"
+    for home, wanted in (("data", False), ("target", True)):
+        found = ", ".join(sorted(kind for kind in kinds if is_target(kind) == wanted))
+        imports += f"from opendr.engine.{home} import {found}\n" if found else ""
+    return HEADER.format(task=task) + imports + "\n" + "\n".join(learner(entry) for entry in entries)
+
+
+def stubs():
+    tasks = {}
+    for entry in _opendr.entries():
+        # The test learner is of no release.
+        if entry["name"] != "counter":
+            tasks.setdefault(entry["task"], []).append(entry)
+    listed = "".join(f"from opendr.perception import {task} as {task}\n" for task in sorted(tasks))
+    files = {f"{task}.pyi": module(task, entries) for task, entries in tasks.items()}
+    return {"__init__.pyi": f'"""Perception: a module a task."""\n\n{listed}', **files}
+
+
+def main():
+    stale = False
+    for name, text in stubs().items():
+        path = FOLDER / name
+        there = path.read_text() if path.is_file() else ""
+        if "--check" not in sys.argv[1:]:
+            path.write_text(text)
+        elif there != text:
+            stale = True
+            sys.stdout.writelines(difflib.unified_diff(there.splitlines(True), text.splitlines(True), str(path), "registry"))
+    extra = {path.name for path in FOLDER.glob("*.pyi")} - stubs().keys()
+    for name in extra:
+        print(f"{name}: no such task")
+    return int(stale or bool(extra))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
