@@ -20,6 +20,7 @@ pub fn registry() -> &'static Registry {
             Yunet,
             Movenet,
             Posenet,
+            #[cfg(feature = "test-learner")] opendr_engine::learner::counter::Counter,
         ]
     })
 }

@@ -7,6 +7,8 @@ mod active;
 mod any;
 mod capability;
 mod check;
+#[cfg(any(test, feature = "test-learner"))]
+pub mod counter;
 mod fit;
 mod handle;
 mod outputs;

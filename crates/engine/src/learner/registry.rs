@@ -128,12 +128,15 @@ impl Registry {
 /// What each can do besides `infer` follows from the traits that it implements.
 #[macro_export]
 macro_rules! learners {
-    ($($learner:ty),* $(,)?) => {{
+    ($($(#[$attribute:meta])* $learner:ty),* $(,)?) => {{
         #[allow(unused_imports)]
         use $crate::learner::{Probe, ProbeFallback as _, ProbeFit as _, ProbeStreaming as _};
-        $crate::learner::Registry::new(vec![$($crate::learner::Entry::of::<$learner>(Probe::<$learner>::abilities(
-            (&Probe::<$learner>::new()).push(),
-            (&Probe::<$learner>::new()).fit(),
-        ))),*])
+        $crate::learner::Registry::new(Vec::from([$(
+            $(#[$attribute])*
+            $crate::learner::Entry::of::<$learner>(Probe::<$learner>::abilities(
+                (&Probe::<$learner>::new()).push(),
+                (&Probe::<$learner>::new()).fit(),
+            ))
+        ),*]))
     }};
 }

@@ -1,145 +1,13 @@
-//! A learner with everything at once keeps the machinery honest: two ports, an init port, state, two outputs, pieces,
-//! training. It finds nothing; it counts.
+//! The learner that counts keeps the machinery honest.
 
 use crate::data::{Image, Layout, PixelFormat};
-use crate::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
-use crate::learner::{
-    CheckOptions, Fit, FitJob, Handle, Inputs, Learner, Ports, Registry, Spec, Streaming, Targets,
-    check_learner,
-};
-use crate::model::{Manifest, Model, ModelWriter};
-use crate::params::{ParamMap, ParamValue, Params};
-use crate::target::{BoundingBox, BoundingBoxList, PoseList};
-use crate::{Device, ErrorKind, Header, Result, Statistics, Task, Value};
-
-#[derive(Debug, Clone, Params)]
-struct CounterParams {
-    /// Boxes below this score are dropped.
-    #[param(default = 0.5, range = 0.0..=1.0, live)]
-    threshold: f32,
-    /// What the count is multiplied with.
-    #[param(default = 2, range = 1..=9)]
-    factor: i64,
-}
-
-#[derive(Debug, Clone, Params)]
-struct CounterFitParams {
-    /// How often the data set is read.
-    #[param(default = 1, range = 1..=100)]
-    epochs: usize,
-}
-
-#[derive(Inputs)]
-struct CounterInputs<'a> {
-    /// A picture.
-    image: &'a Image,
-    /// What was found in it.
-    detections: &'a BoundingBoxList,
-    /// Where to begin.
-    #[port(init)]
-    first: Option<&'a BoundingBoxList>,
-}
-
-#[derive(Default, Targets)]
-struct CounterTargets {
-    /// One box whose left edge is the count.
-    count: BoundingBoxList,
-    /// Nothing.
-    poses: PoseList,
-}
-
-#[derive(Default)]
-struct CounterState {
-    begin: f32,
-    seen: usize,
-}
-
-struct Counter {
-    params: CounterParams,
-    bias: f32,
-}
-
-impl Learner for Counter {
-    const SPEC: Spec =
-        Spec::new("counter", Task::ObjectDetection2d).class("CounterLearner").about("Counts boxes.");
-    type Params = CounterParams;
-    type Input<'a> = CounterInputs<'a>;
-    type Target = CounterTargets;
-    type State = CounterState;
-
-    fn load(model: &Model, params: CounterParams, _device: Device) -> Result<Self> {
-        Ok(Self { params, bias: f32::from(model.file("bias.bin")?[0]) })
-    }
-
-    fn params(&self) -> &CounterParams {
-        &self.params
-    }
-
-    fn params_mut(&mut self) -> &mut CounterParams {
-        &mut self.params
-    }
-
-    fn infer_into(
-        &self,
-        state: &mut CounterState,
-        input: CounterInputs<'_>,
-        target: &mut CounterTargets,
-    ) -> Result<()> {
-        if let Some(first) = input.first {
-            state.begin = first.boxes.len() as f32;
-        }
-        let boxes = input.detections.boxes.iter();
-        state.seen += boxes.filter(|found| found.confidence >= self.params.threshold).count();
-        let count = state.begin + self.bias + state.seen as f32 * self.params.factor as f32;
-        target.count.boxes.clear();
-        target.count.boxes.push(BoundingBox::new(0, count, input.image.width() as f32, 1.0, 1.0, 1.0));
-        Ok(())
-    }
-}
-
-impl Streaming for Counter {
-    fn push(
-        &self,
-        state: &mut CounterState,
-        piece: CounterInputs<'_>,
-        emit: &mut dyn FnMut(CounterTargets),
-    ) -> Result<()> {
-        let mut target = CounterTargets::default();
-        self.infer_into(state, piece, &mut target)?;
-        if state.seen.is_multiple_of(2) {
-            emit(target);
-        }
-        Ok(())
-    }
-
-    fn flush(&self, state: &mut CounterState, emit: &mut dyn FnMut(CounterTargets)) -> Result<()> {
-        let mut target = CounterTargets::default();
-        target.count.boxes.push(BoundingBox::new(0, state.seen as f32, 0.0, 0.0, 0.0, 0.0));
-        emit(target);
-        Ok(())
-    }
-}
-
-impl Fit for Counter {
-    type FitParams = CounterFitParams;
-
-    fn fit(
-        _base: Option<&Model>,
-        params: &CounterParams,
-        fit_params: &CounterFitParams,
-        dataset: DatasetRef<'_>,
-        _val_dataset: Option<DatasetRef<'_>>,
-        job: &FitJob<'_>,
-    ) -> Result<Statistics> {
-        let DatasetRef::Iterator(dataset) = dataset else {
-            return Err(crate::Error::invalid_input("a counter trains on samples only"));
-        };
-        let mut statistics = Statistics::default();
-        (0..fit_params.epochs).for_each(|_| statistics.push("loss", 0.0));
-        write_model(job.output, dataset.len() as u8, &params.to_map())?;
-        Ok(statistics)
-    }
-}
+use crate::dataset::{Dataset, DatasetIterator, Sample};
+use crate::learner::counter::{Counter, CounterInputs, CounterParams, CounterTargets, write_model};
+use crate::learner::{CheckOptions, FitJob, Handle, Learner, Ports, Registry, check_learner};
+use crate::model::{Manifest, ModelWriter};
+use crate::params::{ParamMap, ParamValue};
+use crate::target::{BoundingBox, BoundingBoxList};
+use crate::{Device, ErrorKind, Header, Result, Value};
 
 struct Samples(usize);
 
@@ -153,13 +21,6 @@ impl DatasetIterator for Samples {
     fn get(&self, index: usize) -> Result<Sample> {
         Ok(Sample { data: vec![picture(index as i64).into()], target: None })
     }
-}
-
-fn write_model(folder: &std::path::Path, bias: u8, params: &ParamMap) -> Result<()> {
-    let manifest = Manifest { params: params.clone(), ..Manifest::new("counter", "") };
-    let mut writer = ModelWriter::new(folder, manifest)?;
-    writer.add("bias.bin", &[bias])?;
-    writer.finish().map(drop)
 }
 
 fn picture(stamp: i64) -> Image {
