@@ -208,7 +208,7 @@ def test_tables():
             {"name": "image", "type": "Image", "init": False, "optional": False},
             {"name": "start", "type": "PoseList", "init": True, "optional": True},
         ],
-        "outputs": [{"name": None, "type": "BoundingBoxList"}],
+        "outputs": [{"name": "boxes", "type": "BoundingBoxList"}],
     }
     assert list(params) == ["threshold", "radius", "mode", "limit", "sizes", "invert"]
     assert params["threshold"] == {

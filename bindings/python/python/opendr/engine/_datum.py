@@ -26,14 +26,18 @@ class Datum:
         if type(other) is not type(self):
             return NotImplemented
         fields = self._fields + self._header
-        return all(equal(getattr(self, field, None), getattr(other, field, None)) for field in fields)
+        return all(equal(self._field(field), other._field(field)) for field in fields)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __repr__(self) -> str:
-        header = [field for field in self._header if getattr(self, field, None) not in (None, "")]
-        shown = (f"{field.lstrip('_')}={_shown(getattr(self, field))}" for field in (*self._fields, *header))
+        header = [field for field in self._header if self._field(field) not in (None, "")]
+        shown = (f"{field}={_shown(self._field(field))}" for field in (*self._fields, *header))
         return f"{type(self).__name__}({', '.join(shown)})"
+
+    def _field(self, name: str) -> Any:
+        """A field as it is compared and shown."""
+        return getattr(self, name, None)
 
 
 def _shown(value: Any) -> str:

@@ -18,7 +18,7 @@ def tables_from_class(cls: type) -> dict[str, Any]:
         ``name``, ``doc``, ``kind`` (``"float"``, ``"int"``, ``"bool"``, ``"text"``, ``"list"``), ``optional``, ``choices``,
         ``range`` (``(low, high)`` or None), ``unit``, ``live``, ``default``; OpenDR's own arguments are only among them
         when the class declares them again), ``ports`` (``name``, ``type``, ``init``, ``optional``) and ``outputs``
-        (``name``, or None for the usual one; ``type``).
+        (``name``, ``type``).
 
     Raises:
         TypeError: ``cls`` is no subclass of ``Learner``, ``LearnerRL`` or ``LearnerActive``, or something is missing;

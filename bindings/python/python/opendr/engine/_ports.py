@@ -10,30 +10,30 @@ from typing import Annotated, Any, get_args, get_origin
 from opendr.engine import data, target
 from opendr.engine._parameters import without_none
 
-_DATA = (
-    *("Image", "ImageWithDetections", "Video", "PointCloud", "PointCloudWithCalibration", "Calibration"),
-    *("Timeseries", "Vector", "Audio", "SkeletonSequence", "Observation"),
-)
-_TARGETS = (
-    *(
-        "BoundingBoxList",
-        "TrackingAnnotationList",
-        "BoundingBox3DList",
-        "TrackingAnnotation3DList",
-        "PoseList",
-    ),
-    *(
-        "Category",
-        "Heatmap",
-        "SpeechCommand",
-        "BaseTranscription",
-        "WhisperTranscription",
-        "VoskTranscription",
-    ),
-)
-_CLASSES: dict[type, str] = {
-    **{getattr(data, name): name for name in _DATA},
-    **{getattr(target, name): name for name in _TARGETS},
+#: The usual name of an input or output of each type.
+_NAMES: dict[type, str] = {
+    data.Image: "image",
+    data.ImageWithDetections: "image_with_detections",
+    data.Video: "video",
+    data.PointCloud: "point_cloud",
+    data.PointCloudWithCalibration: "point_cloud_with_calibration",
+    data.Calibration: "calibration",
+    data.Timeseries: "timeseries",
+    data.Vector: "vector",
+    data.Audio: "audio",
+    data.SkeletonSequence: "skeleton_sequence",
+    data.Observation: "observation",
+    target.BoundingBoxList: "boxes",
+    target.TrackingAnnotationList: "tracks",
+    target.BoundingBox3DList: "boxes_3d",
+    target.TrackingAnnotation3DList: "tracks_3d",
+    target.PoseList: "poses",
+    target.Category: "category",
+    target.Heatmap: "heatmap",
+    target.SpeechCommand: "command",
+    target.BaseTranscription: "transcription",
+    target.WhisperTranscription: "transcription",
+    target.VoskTranscription: "transcription",
 }
 
 
@@ -55,29 +55,29 @@ def ports_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
         hint, optional = without_none(hint)
         if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             problems.append(f"infer takes *{name}; name each input")
-        elif hint not in _CLASSES:
+        elif hint not in _NAMES:
             problems.append(
                 f"the parameter {name!r} of infer has no data or target type, e.g. `{name}: Image`"
             )
         else:
             given = optional or implicit or parameter.default is not parameter.empty
-            ports.append({"name": name, "type": _CLASSES[hint], "init": init, "optional": given})
+            ports.append({"name": name, "type": hint.__name__, "init": init, "optional": given})
     return ports
 
 
 def outputs_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
-    """The outputs of ``infer``: ``name`` and ``type``; the name of a single output is None, which means the usual one
-    of its type. Several are a ``NamedTuple``, or another class with annotations, of targets."""
+    """The outputs of ``infer``: ``name`` and ``type``. Several are a ``NamedTuple`` of targets, which names them; a
+    single one has the usual name of its type. What is wrong is added to ``problems``."""
     answer = _hints(infer, []).get("return")
-    if answer in _CLASSES:
-        return [{"name": None, "type": _CLASSES[answer]}]
-    fields = _hints(answer, []) if isinstance(answer, type) else {}
-    if not fields or not all(hint in _CLASSES for hint in fields.values()):
+    if answer in _NAMES:
+        return [{"name": _NAMES[answer], "type": answer.__name__}]
+    fields = _hints(answer, []) if isinstance(answer, type) and issubclass(answer, tuple) else {}
+    if not fields or not all(hint in _NAMES for hint in fields.values()):
         problems.append(
             "infer does not say what it answers: write `-> BoundingBoxList`, or a NamedTuple of targets"
         )
         return []
-    return [{"name": name, "type": _CLASSES[hint]} for name, hint in fields.items()]
+    return [{"name": name, "type": hint.__name__} for name, hint in fields.items()]
 
 
 def _hints(annotated: Any, problems: list[str]) -> dict[str, Any]:

@@ -23,12 +23,15 @@ from __future__ import annotations
 import copy
 import inspect
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Annotated, Any, Callable, ClassVar, NoReturn, Optional
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any, Callable, ClassVar, NoReturn, Optional, TypeVar
 
 from opendr._errors import Unsupported
 from opendr.engine._parameters import Live, Parameter, Range, Unit, declare, parameters, signature
 from opendr.engine._ports import Init
 from opendr.engine.datasets import Dataset
+
+Self = TypeVar("Self", bound="BaseLearner")
 
 __all__ = ["BaseLearner", "Init", "Learner", "LearnerActive", "LearnerRL", "Live", "Range", "Unit"]
 
@@ -57,6 +60,8 @@ class BaseLearner(ABC):
     threshold: Annotated[float, "Answers below this score are dropped; 0: the learner's own threshold."] = 0.0
     scale: Annotated[float, "Factor on the size of the input: below 1 is faster, above 1 finer."] = 1.0
 
+    #: What class numbers of the answers mean: ``classes[0]`` is class 0.
+    classes: Sequence[str] = ()
     __signature__: ClassVar[inspect.Signature]
 
     if TYPE_CHECKING:
@@ -142,7 +147,19 @@ class BaseLearner(ABC):
         self._cannot("optimize")
 
     def reset(self) -> None:
-        """Forgets what was seen; a learner without a memory has nothing to forget."""
+        """Forgets what was seen; a learner without a memory has nothing to forget.
+
+        It must bind new objects (``self.tracks = []``), since streams begin as shallow copies.
+        """
+
+    def stream(self: Self) -> Self:
+        """The same learner with a memory of its own: for another camera, topic or thread.
+
+        It shares the model; its own memory is that of :meth:`reset`.
+        """
+        stream = copy.copy(self)
+        stream.reset()
+        return stream
 
     def stream(self) -> Any:
         """A memory of its own over the same model, for another camera or thread: a shallow copy, reset.

@@ -28,7 +28,7 @@ class ArrayData(Data):
     _axes: ClassVar[tuple[str, ...]] = ()
     #: OpenDR's name of the class in messages, where it is another.
     _title: ClassVar[str] = ""
-    _fields: ClassVar[tuple[str, ...]] = ("_data",)
+    _fields: ClassVar[tuple[str, ...]] = ("data",)
 
     def __init__(self, data: Optional[ArrayLike] = None) -> None:
         super().__init__()
@@ -57,6 +57,13 @@ class ArrayData(Data):
 
     def __str__(self) -> str:
         return str(self.data)
+
+    def _field(self, name: str) -> Any:
+        try:
+            return super()._field(name)
+        except ValueError:
+            # An empty one is compared and shown, although it cannot be read.
+            return None
 
     def __array__(self, dtype: Any = None, copy: Optional[bool] = None) -> NDArray[Any]:
         return as_array(self.data, dtype, copy)

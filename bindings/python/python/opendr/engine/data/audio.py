@@ -26,7 +26,7 @@ class Audio(ArrayData):
     """
 
     _axes: ClassVar[tuple[str, ...]] = ("time", "channels")
-    _fields: ClassVar[tuple[str, ...]] = ("_data", "sample_rate")
+    _fields: ClassVar[tuple[str, ...]] = ("data", "sample_rate")
 
     def __init__(self, data: ArrayLike, sample_rate: SupportsIndex) -> None:
         self.sample_rate: int = whole(sample_rate, "sample_rate")

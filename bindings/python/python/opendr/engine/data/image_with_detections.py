@@ -25,7 +25,7 @@ class ImageWithDetections(Image):
         TypeError: The boxes are no :class:`BoundingBoxList`.
     """
 
-    _fields: ClassVar[tuple[str, ...]] = ("_data", "boundingBoxList")
+    _fields: ClassVar[tuple[str, ...]] = ("data", "boundingBoxList")
 
     def __init__(
         self, image: Union[Image, ArrayLike], boundingBoxList: BoundingBoxList, *args: Any, **kwargs: Any

@@ -25,7 +25,7 @@ class Observation(Data):
         ValueError: There is no number.
     """
 
-    _fields: ClassVar[tuple[str, ...]] = ("_data",)
+    _fields: ClassVar[tuple[str, ...]] = ("data",)
 
     def __init__(self, data: Union[ArrayLike, Mapping[str, ArrayLike]]) -> None:
         super().__init__()

@@ -29,7 +29,7 @@ class PointCloudWithCalibration(PointCloud):
         ValueError: A shape does not fit.
     """
 
-    _fields: ClassVar[tuple[str, ...]] = ("_data", "calib", "image_shape")
+    _fields: ClassVar[tuple[str, ...]] = ("data", "calib", "image_shape")
 
     def __init__(
         self,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 
 from opendr import _opendr
 from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
+from opendr.engine.target._coco import boxes_from_entries, entries_from_boxes
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.target_list import NamedTargetList
 
@@ -70,7 +71,7 @@ class BoundingBox(Target):
     def coco(self, with_confidence: bool = True) -> dict[str, Any]:
         """The box as an entry of a COCO file: ``bbox``, ``category_id``, ``area`` in square pixels, and ``confidence``
         when asked for."""
-        return _opendr.coco(self, with_confidence)[0]
+        return entries_from_boxes(self, with_confidence)[0]
 
     def _as_value(self) -> BoundingBoxList:
         return BoundingBoxList([self])
@@ -122,7 +123,7 @@ class BoundingBoxList(NamedTargetList[BoundingBox]):
 
     def coco(self, with_confidence: bool = True) -> list[dict[str, Any]]:
         """An entry of a COCO file per box, each with ``image_id`` where the list has one."""
-        return _opendr.coco(self, with_confidence)
+        return entries_from_boxes(self, with_confidence)
 
     @staticmethod
     def from_coco(boxes_coco: Iterable[dict[str, Any]], image_id: SupportsIndex = 0) -> BoundingBoxList:
@@ -136,7 +137,7 @@ class BoundingBoxList(NamedTargetList[BoundingBox]):
         Raises:
             ValueError: A dictionary is no such entry.
         """
-        return _opendr.from_coco(list(boxes_coco), whole(image_id, "image_id"))
+        return boxes_from_entries(boxes_coco, whole(image_id, "image_id"))
 
     def to_supervision(self) -> supervision.Detections:
         """The boxes as ``supervision.Detections``.

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 
 from opendr import _opendr
 from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
+from opendr.engine.target._segmentation import Segmentation, segmentation_of
 from opendr.engine.target.base_target import Target
 from opendr.engine.target.bounding_box import BoundingBox, BoundingBoxList
-from opendr.engine.target.coco_bounding_box import CocoBoundingBox, Segmentation, segmentation_of
+from opendr.engine.target.coco_bounding_box import CocoBoundingBox
 from opendr.engine.target.target_list import NamedTargetList
 
 if TYPE_CHECKING:
