@@ -14,8 +14,8 @@ A learner of one's own is a subclass of :class:`Learner` whose annotated attribu
 
 Parameters are keyword arguments of the constructor and attributes that check what is assigned. Their types are
 ``float``, ``int``, ``bool``, ``str``, ``Literal["a", "b"]``, ``list[...]`` or ``Optional`` of these; ``Range``, ``Unit``,
-``Live`` and a text that explains them follow the type. Named in the entry-point group ``opendr.learners``, the class
-appears beside OpenDR's own learners.
+``Live`` and a text that explains them follow the type. A learner whose answers have class numbers names them in
+``classes``. Named in the entry-point group ``opendr.learners``, the class appears beside OpenDR's own learners.
 """
 
 from __future__ import annotations
@@ -23,15 +23,12 @@ from __future__ import annotations
 import copy
 import inspect
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Any, Callable, ClassVar, NoReturn, Optional, TypeVar
+from typing import TYPE_CHECKING, Annotated, Any, Callable, ClassVar, NoReturn, Optional
 
 from opendr._errors import Unsupported
 from opendr.engine._parameters import Live, Parameter, Range, Unit, declare, parameters, signature
 from opendr.engine._ports import Init
 from opendr.engine.datasets import Dataset
-
-Self = TypeVar("Self", bound="BaseLearner")
 
 __all__ = ["BaseLearner", "Init", "Learner", "LearnerActive", "LearnerRL", "Live", "Range", "Unit"]
 
@@ -60,8 +57,6 @@ class BaseLearner(ABC):
     threshold: Annotated[float, "Answers below this score are dropped; 0: the learner's own threshold."] = 0.0
     scale: Annotated[float, "Factor on the size of the input: below 1 is faster, above 1 finer."] = 1.0
 
-    #: What class numbers of the answers mean: ``classes[0]`` is class 0.
-    classes: Sequence[str] = ()
     __signature__: ClassVar[inspect.Signature]
 
     if TYPE_CHECKING:
@@ -152,7 +147,7 @@ class BaseLearner(ABC):
         It must bind new objects (``self.tracks = []``), since streams begin as shallow copies.
         """
 
-    def stream(self: Self) -> Self:
+    def stream(self) -> Any:
         """The same learner with a memory of its own: for another camera, topic or thread.
 
         It shares the model; its own memory is that of :meth:`reset`.

@@ -10,6 +10,7 @@ from opendr.engine._datum import Datum
 from opendr.engine.target.action import Action, ActionBase
 
 Self = TypeVar("Self", bound="BaseTarget")
+T = TypeVar("T", bound="BaseTarget")
 
 
 class BaseTarget(Datum):
@@ -44,14 +45,24 @@ class BaseTarget(Datum):
             )
         return value
 
+    #: The list in which a single item is written.
+    _list: ClassVar[Optional[type[Any]]] = None
+
     def _as_value(self) -> BaseTarget:
-        """The target that has a JSON form and holds this one: itself, or a list of it."""
-        return self
+        """The target that has a JSON form: this one, or a list of only it."""
+        return self if self._list is None else self._with_header_in(self._list([self]))
 
     @classmethod
     def _from_value(cls, value: Any) -> Any:
         """The inverse of :meth:`_as_value`."""
-        return value
+        is_item = cls._list is not None and type(value) is cls._list and len(value) == 1
+        return value._with_header_in(value[0]) if is_item else value
+
+    def _with_header_in(self, other: T) -> T:
+        """``other`` with this one's time stamp, frame and action."""
+        for name in self._header:
+            setattr(other, name, getattr(self, name, None))
+        return other
 
 
 class Target(BaseTarget):

@@ -73,13 +73,6 @@ class BoundingBox(Target):
         when asked for."""
         return entries_from_boxes(self, with_confidence)[0]
 
-    def _as_value(self) -> BoundingBoxList:
-        return BoundingBoxList([self])
-
-    @classmethod
-    def _from_value(cls, value: Any) -> Any:
-        return value[0] if isinstance(value, BoundingBoxList) and len(value) == 1 else value
-
 
 class BoundingBoxList(NamedTargetList[BoundingBox]):
     """The boxes found in one picture, best first.

@@ -117,13 +117,6 @@ class BoundingBox3D(Target):
         ``dimensions`` ``[1, 3]``, ``location`` ``[1, 3]``, ``rotation_y``, ``score``, ``index``, ``group_ids``."""
         return arrays_from_columns(_opendr.kitti(self, False))
 
-    def _as_value(self) -> Target:
-        return BoundingBox3DList([self])
-
-    @classmethod
-    def _from_value(cls, value: Any) -> Any:
-        return value[0] if isinstance(value, BoundingBox3DList) and len(value) == 1 else value
-
 
 class BoundingBox3DList(NamedTargetList[BoundingBox3D]):
     """The boxes found in one cloud or picture.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, Optional, Union
 
@@ -61,6 +62,27 @@ class Keypoint(Target):
         import numpy as np
 
         return np.array([self.x, self.y], dtype=dtype or np.float32)
+
+    def __str__(self) -> str:
+        return str(self.data)
+
+    def to_json(self) -> str:
+        """The point as it stands in the JSON of a pose (``docs/json.md``); without a confidence it is 0."""
+        return json.dumps(
+            {"x": self.x, "y": self.y, "confidence": self.confidence or 0.0}, separators=(",", ":")
+        )
+
+    @classmethod
+    def from_json(cls, text: Union[str, bytes]) -> Keypoint:
+        """Reads what :meth:`to_json` writes.
+
+        Raises:
+            ValueError: The text is no JSON of a point.
+        """
+        fields = json.loads(text)
+        if not isinstance(fields, dict) or not {"x", "y"} <= fields.keys():
+            raise ValueError(f'a keypoint is {{"x": ..., "y": ...}}, not {text!r:.200}')
+        return cls([fields["x"], fields["y"]], fields.get("confidence"))
 
     def numpy(self) -> NDArray[np.float32]:
         """``[x, y]`` as a float32 array."""

@@ -64,7 +64,7 @@ class Pose(Target):
 
     @property
     def data(self) -> NDArray[Any]:
-        """``[joints, 2]``, pixels: int32 when given as whole numbers, else float32."""
+        """``[joints, 2]``, pixels, float32."""
         data: NDArray[Any] = self._data
         return data
 
@@ -72,12 +72,12 @@ class Pose(Target):
     def data(self, data: Any) -> None:
         import numpy as np
 
-        points = array_of(data, None, "keypoints")
+        points = array_of(data, "float32", "keypoints")
         if points.ndim != 2 or points.shape[0] < 1 or points.shape[1] != 2 or not np.isfinite(points).all():
             raise ValueError(
                 f"keypoints of shape {points.shape} should be finite numbers [joints, 2]; give x and y of each joint"
             )
-        self._data = points.astype(np.float32 if points.dtype.kind == "f" else np.int32, copy=False)
+        self._data = points
 
     @property
     def keypoint_confidences(self) -> NDArray[Any]:
@@ -126,13 +126,6 @@ class Pose(Target):
         if not 0 <= index < len(self):
             raise ValueError(f"no keypoint {index}; there are 0 to {len(self) - 1}")
         return Keypoint(self.data[index].tolist(), self._keypoint_confidences[index])
-
-    def _as_value(self) -> PoseList:
-        return PoseList([self])
-
-    @classmethod
-    def _from_value(cls, value: Any) -> Any:
-        return value[0] if isinstance(value, PoseList) and len(value) == 1 else value
 
 
 class PoseList(TargetList[Pose]):

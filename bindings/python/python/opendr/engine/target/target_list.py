@@ -21,6 +21,11 @@ class TargetList(Target, Generic[T]):
     _item: ClassVar[type[Any]] = Target
     _fields: ClassVar[tuple[str, ...]] = ("data",)
 
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        if "_item" in vars(cls):
+            cls._item._list = cls
+
     def __init__(self, items: Optional[Iterable[T]] = None) -> None:
         self.data = [] if items is None else items
 

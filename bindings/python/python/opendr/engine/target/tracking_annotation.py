@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
+from typing import TYPE_CHECKING, ClassVar, Optional, SupportsIndex, Union
 
 from opendr import _opendr
 from opendr.engine._checks import Real, class_name_or_index, real, reals, text, whole
@@ -106,15 +106,7 @@ class TrackingAnnotation(Target):
         else:
             outline = (self.segmentation, self.area, self.iscrowd, self.confidence)
             box = CocoBoundingBox(*place, *outline, class_name=self.class_name, landmarks=self.landmarks)
-        box.timestamp, box.frame_id, box.action = self.timestamp, self.frame_id, self.action
-        return box
-
-    def _as_value(self) -> TrackingAnnotationList:
-        return TrackingAnnotationList([self])
-
-    @classmethod
-    def _from_value(cls, value: Any) -> Any:
-        return value[0] if isinstance(value, TrackingAnnotationList) and len(value) == 1 else value
+        return self._with_header_in(box)
 
 
 class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
@@ -163,8 +155,7 @@ class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
     def bounding_box_list(self) -> BoundingBoxList:
         """The boxes without their identities."""
         boxes = BoundingBoxList([track.bounding_box() for track in self.data], classes=self.classes)
-        boxes.timestamp, boxes.frame_id, boxes.action = self.timestamp, self.frame_id, self.action
-        return boxes
+        return self._with_header_in(boxes)
 
     def to_supervision(self) -> supervision.Detections:
         """The objects as ``supervision.Detections`` with ``tracker_id``.

@@ -82,16 +82,9 @@ class TrackingAnnotation3D(BoundingBox3D):
     def bounding_box_3d(self) -> BoundingBox3D:
         """The box without its identity."""
         fields = {name: value for name, value in self._data.items() if name not in ("id", "frame")}
-        box = BoundingBox3D(**fields, score=self.confidence, class_name=self.class_name)
-        box.timestamp, box.frame_id, box.action = self.timestamp, self.frame_id, self.action
-        return box
-
-    def _as_value(self) -> TrackingAnnotation3DList:
-        return TrackingAnnotation3DList([self])
-
-    @classmethod
-    def _from_value(cls, value: Any) -> Any:
-        return value[0] if isinstance(value, TrackingAnnotation3DList) and len(value) == 1 else value
+        return self._with_header_in(
+            BoundingBox3D(**fields, score=self.confidence, class_name=self.class_name)
+        )
 
 
 class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
@@ -150,5 +143,4 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
     def bounding_box_3d_list(self) -> BoundingBox3DList:
         """The boxes without their identities."""
         boxes = BoundingBox3DList([track.bounding_box_3d() for track in self.data], classes=self.classes)
-        boxes.timestamp, boxes.frame_id, boxes.action = self.timestamp, self.frame_id, self.action
-        return boxes
+        return self._with_header_in(boxes)
