@@ -93,9 +93,7 @@ def test_arrays(kind, shape):
 
 @pytest.mark.parametrize(("kind", "shape"), ARRAY_CLASSES.items())
 def test_wrong_arrays(kind, shape):
-    with pytest.raises(
-        ValueError, match=f"{'Point Cloud' if kind is PointCloud else kind.__name__} is empty"
-    ):
+    with pytest.raises(ValueError, match=f"{'Point Cloud' if kind is PointCloud else kind.__name__} is empty"):
         kind().numpy()
     for wrong in (np.ones((1, *shape)), np.ones(()), np.ones((0,) * (len(shape) + 1)), [[1, 2], [3]]):
         with pytest.raises(ValueError):
@@ -204,6 +202,8 @@ def test_image_files(tmp_path):
     changed = opened.numpy()
     changed[:] = 0
     assert opened == image
+    opened.data = changed
+    assert (opened != image, opened.numpy().any()) == (True, False)
     with pytest.raises(FileNotFoundError, match="The image file does not exist."):
         Image.open(tmp_path / "missing.png")
     with pytest.raises(FileNotFoundError, match="The image file does not exist."):

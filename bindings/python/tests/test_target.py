@@ -62,9 +62,7 @@ def pose(**more):
 
 
 def every_target():
-    coco = CocoBoundingBox(
-        1, 1, 2, 3, 4, [[1, 2, 4, 2, 4, 6]], 6, 1, 0.5, class_name="cat", landmarks=[[1, 2]]
-    )
+    coco = CocoBoundingBox(1, 1, 2, 3, 4, [[1, 2, 4, 2, 4, 6]], 6, 1, 0.5, class_name="cat", landmarks=[[1, 2]])
     return [
         Category(3, "cat", 0.9),
         Keypoint([120, 64.5], 0.5),
@@ -123,9 +121,7 @@ def test_json_round_trip(target):
     assert (read.timestamp, read.frame_id) == (5, "camera")
     names = {field for field in target._fields if field != "class_name"}
     if not isinstance(target, (BoundingBoxList, TrackingAnnotationList)):
-        assert {name: repr(read._field(name)) for name in names} == {
-            name: repr(target._field(name)) for name in names
-        }
+        assert {name: repr(read._field(name)) for name in names} == {name: repr(target._field(name)) for name in names}
     with pytest.raises(TypeError, match="the JSON is of a"):
         (Heatmap if not isinstance(target, Heatmap) else Category).from_json(target.to_json())
 
@@ -396,9 +392,7 @@ def test_tracks():
 
 
 def test_tracks_without_identity():
-    tracks = TrackingAnnotationList(
-        [track(class_name="dog"), track(segmentation=RUNS, area=3)], classes=["dog"]
-    )
+    tracks = TrackingAnnotationList([track(class_name="dog"), track(segmentation=RUNS, area=3)], classes=["dog"])
     tracks.timestamp, tracks.frame_id = 5, "camera"
     boxes = tracks.bounding_box_list()
     assert (boxes.timestamp, boxes.frame_id, boxes.classes) == (5, "camera", ["dog"])

@@ -34,9 +34,7 @@ def tables_from_class(cls: type) -> dict[str, Any]:
     if not about:
         problems.append("there is no docstring; say in a sentence what it does")
     known = parameters(cls)
-    params = [
-        parameter.table() for name, parameter in known.items() if parameter is not vars(BaseLearner).get(name)
-    ]
+    params = [parameter.table() for name, parameter in known.items() if parameter is not vars(BaseLearner).get(name)]
     undocumented = [param["name"] for param in params if not param["doc"]]
     if undocumented:
         problems.append(f"{', '.join(undocumented)} has no text; write it behind the type in Annotated[...]")

@@ -57,9 +57,7 @@ class Parameter:
         self.__doc__ = self.doc
         where = f"{owner.__name__}.{name}"
         if not self.kind:
-            raise TypeError(
-                f"{where} has the type {value_type}; give float, int, bool, str, list or Literal['...']"
-            )
+            raise TypeError(f"{where} has the type {value_type}; give float, int, bool, str, list or Literal['...']")
         if default is inspect.Parameter.empty:
             raise TypeError(f"{where} has no default; write `{name}: Annotated[...] = value`")
         self.default = self.checked(default)
@@ -68,9 +66,7 @@ class Parameter:
         if instance is None:
             return self.default
         default = self.default
-        return instance.__dict__.setdefault(
-            self.name, list(default) if isinstance(default, list) else default
-        )
+        return instance.__dict__.setdefault(self.name, list(default) if isinstance(default, list) else default)
 
     def __set__(self, instance: Any, value: Any) -> None:
         instance.__dict__[self.name] = self.checked(value)
@@ -97,15 +93,9 @@ class Parameter:
             except TypeError:
                 raise self._wrong_type(value) from None
             # NaN is in no range.
-            low, high = (
-                (self.range.low, self.range.high) if self.range else (-sys.float_info.max, sys.float_info.max)
-            )
+            low, high = (self.range.low, self.range.high) if self.range else (-sys.float_info.max, sys.float_info.max)
             if not low <= value <= high:
-                wanted = (
-                    f"is out of range {low} to {high}"
-                    if self.range
-                    else "is not finite; give a finite number"
-                )
+                wanted = f"is out of range {low} to {high}" if self.range else "is not finite; give a finite number"
                 raise ValueError(f"{self.name} = {value} {wanted}")
         elif kind and not isinstance(value, {"bool": bool, "text": str}.get(kind, ())):
             raise self._wrong_type(value)
@@ -156,9 +146,7 @@ def declare(cls: type) -> None:
     """
     inherited = parameters(cls)
     hints = {
-        name: known.hint
-        for name, known in inherited.items()
-        if not hasattr(vars(cls).get(name, known), "__get__")
+        name: known.hint for name, known in inherited.items() if not hasattr(vars(cls).get(name, known), "__get__")
     }
     for name, hint in {**hints, **own_annotations(cls)}.items():
         if get_origin(hint) is Annotated:

@@ -56,9 +56,7 @@ def ports_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
         if parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD):
             problems.append(f"infer takes *{name}; name each input")
         elif hint not in _NAMES:
-            problems.append(
-                f"the parameter {name!r} of infer has no data or target type, e.g. `{name}: Image`"
-            )
+            problems.append(f"the parameter {name!r} of infer has no data or target type, e.g. `{name}: Image`")
         else:
             given = optional or implicit or parameter.default is not parameter.empty
             ports.append({"name": name, "type": hint.__name__, "init": init, "optional": given})
@@ -73,9 +71,7 @@ def outputs_of(infer: Any, problems: list[str]) -> list[dict[str, Any]]:
         return [{"name": _NAMES[answer], "type": answer.__name__}]
     fields = _hints(answer, []) if isinstance(answer, type) and issubclass(answer, tuple) else {}
     if not fields or not all(hint in _NAMES for hint in fields.values()):
-        problems.append(
-            "infer does not say what it answers: write `-> BoundingBoxList`, or a NamedTuple of targets"
-        )
+        problems.append("infer does not say what it answers: write `-> BoundingBoxList`, or a NamedTuple of targets")
         return []
     return [{"name": name, "type": hint.__name__} for name, hint in fields.items()]
 
@@ -84,7 +80,5 @@ def _hints(annotated: Any, problems: list[str]) -> dict[str, Any]:
     try:
         return typing.get_type_hints(annotated, include_extras=True)
     except (NameError, TypeError) as error:
-        problems.append(
-            f"the annotations of infer cannot be read ({error}); import their names in the module"
-        )
+        problems.append(f"the annotations of infer cannot be read ({error}); import their names in the module")
         return {}

@@ -46,9 +46,7 @@ class MappedDatasetIterator(DatasetIterator):
         TypeError: ``map_function`` cannot be called.
     """
 
-    def __init__(
-        self, original: DatasetIterator, map_function: Callable[[Any], tuple[Data, BaseTarget]]
-    ) -> None:
+    def __init__(self, original: DatasetIterator, map_function: Callable[[Any], tuple[Data, BaseTarget]]) -> None:
         if not callable(map_function):
             raise TypeError(f"map_function should be a function of a sample, not {map_function!r}")
         self.original = original

@@ -85,18 +85,14 @@ class BaseLearner(ABC):
             known = parameters(type(self))
             names = [name for name in known if isinstance(vars(BaseLearner).get(name), Parameter)]
             if len(args) > len(names):
-                raise TypeError(
-                    f"{type(self).__name__} takes {len(names)} arguments by place, not {len(args)}"
-                )
+                raise TypeError(f"{type(self).__name__} takes {len(names)} arguments by place, not {len(args)}")
             for name, value in zip(names, args):
                 if name in kwargs:
                     raise TypeError(f"{type(self).__name__} got {name} twice; give it once")
                 kwargs[name] = value
             for name, value in kwargs.items():
                 if name not in known:
-                    raise TypeError(
-                        f"{type(self).__name__} has no argument {name!r}; there are {', '.join(known)}"
-                    )
+                    raise TypeError(f"{type(self).__name__} has no argument {name!r}; there are {', '.join(known)}")
                 setattr(self, name, value)
             self._model: Any = None
 

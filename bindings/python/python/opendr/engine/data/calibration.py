@@ -45,9 +45,7 @@ class Calibration(Data):
         """
         missing = [name for name in ("P2", "R0_rect", "Tr_velo_to_cam") if name not in matrices]
         if missing:
-            raise ValueError(
-                f"no {', '.join(missing)} among {', '.join(matrices)}; give KITTI's three matrices"
-            )
+            raise ValueError(f"no {', '.join(missing)} among {', '.join(matrices)}; give KITTI's three matrices")
         return cls(matrices["P2"], matrices["R0_rect"], matrices["Tr_velo_to_cam"])
 
     @property
@@ -83,6 +81,4 @@ def _matrix(values: ArrayLike, columns: int, name: str) -> NDArray[np.float64]:
         fits = np.array_equal(extra_rows, unit[3 : matrix.shape[0], : matrix.shape[1]])
         if fits and not extra_columns.any() and np.isfinite(matrix).all():
             return matrix[:3, :columns]
-    raise ValueError(
-        f"{name} of shape {matrix.shape} should be 3 rows of {columns} finite numbers; mend the matrix"
-    )
+    raise ValueError(f"{name} of shape {matrix.shape} should be 3 rows of {columns} finite numbers; mend the matrix")

@@ -45,6 +45,8 @@ class Image(ArrayData):
 
     #: The picture in native memory, for as long as nobody has set other data.
     _pixels: Any = None
+    #: The type that new data are converted to; empty: that of the present data.
+    _wanted: str = ""
 
     def __init__(
         self,
@@ -64,7 +66,8 @@ class Image(ArrayData):
 
     @classmethod
     def open(cls, filename: Union[str, os.PathLike[str]]) -> Image:
-        """Reads a picture file (JPEG, PNG, BMP, WebP), turned upright as its EXIF data say.
+        """Reads a picture file (JPEG, PNG, BMP, WebP), turned upright as its EXIF data say. It is read-only; change a
+        copy: ``Image(image.numpy(), guess_format=False)``.
 
         Raises:
             FileNotFoundError: There is none.
@@ -153,7 +156,7 @@ class Image(ArrayData):
         """Writes the picture; the ending of the name says how (``.jpg``, ``.png``, ...).
 
         Raises:
-            ValueError: Nothing writes this ending, or these samples.
+            opendr.Unsupported: Nothing writes this ending, or these samples.
             OSError: The file cannot be written.
         """
         _opendr.save_image(self, os.fspath(path))
@@ -170,9 +173,7 @@ class Image(ArrayData):
         except ImportError as error:
             raise ImportError(f"to_pil() needs the package Pillow ({error}): pip install pillow") from error
         if self.dtype != "uint8":
-            raise ValueError(
-                f"Pillow takes pictures of uint8, not of {self.dtype}; scale the samples to [0, 255]"
-            )
+            raise ValueError(f"Pillow takes pictures of uint8, not of {self.dtype}; scale the samples to [0, 255]")
         pixels = self.convert("channels_last")
         return PIL.Image.fromarray(pixels[:, :, 0] if self.channels == 1 else pixels)
 
@@ -187,7 +188,7 @@ class Image(ArrayData):
                 f"an image of shape {array.shape} should be [channels, height, width] with 1, 3 or 4 channels and at "
                 "least one pixel; transpose it, or let guess_format do so"
             )
-        return _converted(array, self._wanted)
+        return _converted(array, self._wanted or self.dtype.name)
 
 
 def _dtype(dtype: Optional[DTypeLike]) -> str:

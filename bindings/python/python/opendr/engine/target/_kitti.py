@@ -41,9 +41,7 @@ def columns_from_arrays(arrays: Mapping[str, ArrayLike]) -> dict[str, list[Any]]
 
     missing = [name for name in _COLUMNS if name not in arrays]
     if missing:
-        raise ValueError(
-            f"no {', '.join(missing)} among {', '.join(arrays)}; give an array per field of the boxes"
-        )
+        raise ValueError(f"no {', '.join(missing)} among {', '.join(arrays)}; give an array per field of the boxes")
     columns: dict[str, list[Any]] = {name: np.asarray(arrays[name]).tolist() for name in _COLUMNS}
     columns["occluded"] = [int(level) for level in columns["occluded"]]
     return columns

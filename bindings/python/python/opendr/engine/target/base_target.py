@@ -40,9 +40,7 @@ class BaseTarget(Datum):
         """
         value = cls._from_value(_opendr.value_from_json(text.decode() if isinstance(text, bytes) else text))
         if not isinstance(value, cls):
-            raise TypeError(
-                f"the JSON is of a {type(value).__name__}, not of a {cls.__name__}; read it as that"
-            )
+            raise TypeError(f"the JSON is of a {type(value).__name__}, not of a {cls.__name__}; read it as that")
         return value
 
     #: The list in which a single item is written.

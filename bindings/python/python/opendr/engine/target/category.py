@@ -39,9 +39,7 @@ class Category(Target):
     ) -> None:
         self.data = prediction
         self.description: Optional[str] = None if description is None else text(description, "description")
-        self.probabilities: Optional[NDArray[np.float32]] = (
-            None if probabilities is None else _scores(probabilities)
-        )
+        self.probabilities: Optional[NDArray[np.float32]] = None if probabilities is None else _scores(probabilities)
         self.confidence = confidence
 
     @property

@@ -45,9 +45,7 @@ class Heatmap(Target):
         if not 1 <= data.ndim <= 8:
             raise ValueError(f"a Heatmap of {data.ndim} axes; give 1 to 8")
         if data.dtype.kind == "i" and data.size and int(data.min()) < 0:
-            raise ValueError(
-                f"a Heatmap of class numbers down to {data.min()}; give none below 0, or scores as floats"
-            )
+            raise ValueError(f"a Heatmap of class numbers down to {data.min()}; give none below 0, or scores as floats")
         self._data = data
 
     @property
@@ -59,9 +57,7 @@ class Heatmap(Target):
     def class_names(self, class_names: Optional[dict[Hashable, str]]) -> None:
         if class_names is not None:
             if not isinstance(class_names, dict):
-                raise TypeError(
-                    f"class_names should be a dictionary, e.g. {{0: 'road'}}, not {class_names!r:.200}"
-                )
+                raise TypeError(f"class_names should be a dictionary, e.g. {{0: 'road'}}, not {class_names!r:.200}")
             for name in class_names.values():
                 text(name, "a name in class_names")
         self._class_names = class_names

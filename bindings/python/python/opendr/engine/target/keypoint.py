@@ -68,9 +68,7 @@ class Keypoint(Target):
 
     def to_json(self) -> str:
         """The point as it stands in the JSON of a pose (``docs/json.md``); without a confidence it is 0."""
-        return json.dumps(
-            {"x": self.x, "y": self.y, "confidence": self.confidence or 0.0}, separators=(",", ":")
-        )
+        return json.dumps({"x": self.x, "y": self.y, "confidence": self.confidence or 0.0}, separators=(",", ":"))
 
     @classmethod
     def from_json(cls, text: Union[str, bytes]) -> Keypoint:

@@ -58,9 +58,7 @@ class Pose(Target):
         self.confidence = real(confidence, "confidence")
         self.id: Optional[int] = None if id is None else whole(id, "id")
         self.skeleton: str = skeleton_of(skeleton, len(self.data))
-        self.keypoint_confidences = (
-            [0.0] * len(self.data) if keypoint_confidences is None else keypoint_confidences
-        )
+        self.keypoint_confidences = [0.0] * len(self.data) if keypoint_confidences is None else keypoint_confidences
 
     @property
     def data(self) -> NDArray[Any]:

@@ -81,9 +81,7 @@ class TargetList(Target, Generic[T]):
 
     def _iterable(self, items: Iterable[T]) -> Iterable[T]:
         if isinstance(items, (str, bytes)) or not isinstance(items, Iterable):
-            raise TypeError(
-                f"a {type(self).__name__} is made of a list of {self._item.__name__}, not {items!r}"
-            )
+            raise TypeError(f"a {type(self).__name__} is made of a list of {self._item.__name__}, not {items!r}")
         return items
 
 

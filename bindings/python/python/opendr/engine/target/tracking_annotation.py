@@ -74,9 +74,7 @@ class TrackingAnnotation(Target):
         self.frame: int = whole(frame, "frame")
         self.class_name: str = text(class_name, "class_name")
         self.landmarks: list[tuple[float, ...]] = [reals(point, 2, "a landmark") for point in landmarks]
-        self.segmentation: Optional[Segmentation] = (
-            None if segmentation is None else segmentation_of(segmentation)
-        )
+        self.segmentation: Optional[Segmentation] = None if segmentation is None else segmentation_of(segmentation)
         self.area: float = real(area, "area")
         self.iscrowd: int = whole(iscrowd, "iscrowd")
 

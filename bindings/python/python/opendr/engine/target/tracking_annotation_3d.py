@@ -82,9 +82,7 @@ class TrackingAnnotation3D(BoundingBox3D):
     def bounding_box_3d(self) -> BoundingBox3D:
         """The box without its identity."""
         fields = {name: value for name, value in self._data.items() if name not in ("id", "frame")}
-        return self._with_header_in(
-            BoundingBox3D(**fields, score=self.confidence, class_name=self.class_name)
-        )
+        return self._with_header_in(BoundingBox3D(**fields, score=self.confidence, class_name=self.class_name))
 
 
 class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
@@ -135,9 +133,7 @@ class TrackingAnnotation3DList(NamedTargetList[TrackingAnnotation3D]):
         """
         id_list = [whole(id, "an id") for id in ids]
         frame_list = None if frames is None else [whole(frame, "a frame") for frame in frames]
-        tracks: TrackingAnnotation3DList = _opendr.from_kitti(
-            columns_from_arrays(boxes_kitti), id_list, frame_list
-        )
+        tracks: TrackingAnnotation3DList = _opendr.from_kitti(columns_from_arrays(boxes_kitti), id_list, frame_list)
         return tracks
 
     def bounding_box_3d_list(self) -> BoundingBox3DList:

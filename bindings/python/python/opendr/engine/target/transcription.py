@@ -59,9 +59,7 @@ class WhisperTranscription(BaseTranscription):
         self.segments: list[dict[str, Any]] = list(segments)
         for segment in self.segments:
             if not isinstance(segment, dict):
-                raise TypeError(
-                    f"a segment should be a dictionary, e.g. {{'start': 0.5, ...}}, not {segment!r:.200}"
-                )
+                raise TypeError(f"a segment should be a dictionary, e.g. {{'start': 0.5, ...}}, not {segment!r:.200}")
 
 
 class VoskTranscription(BaseTranscription):
