@@ -138,19 +138,7 @@ class BaseLearner(ABC):
         self._cannot("optimize")
 
     def reset(self) -> None:
-        """Forgets what was seen; a learner without a memory has nothing to forget.
-
-        It must bind new objects (``self.tracks = []``), since streams begin as shallow copies.
-        """
-
-    def stream(self) -> Any:
-        """The same learner with a memory of its own: for another camera, topic or thread.
-
-        It shares the model; its own memory is that of :meth:`reset`.
-        """
-        stream = copy.copy(self)
-        stream.reset()
-        return stream
+        """Forgets what was seen; a learner without a memory has nothing to forget."""
 
     def stream(self) -> Any:
         """A memory of its own over the same model, for another camera or thread: a shallow copy, reset.

@@ -45,7 +45,8 @@ def boxes_from_entries(entries: Iterable[Mapping[str, Any]], image_id: int) -> B
         if "confidence" in known:
             known.pop("score", None)
         plain.append(known)
-    return _opendr.from_coco(plain, image_id)
+    boxes: BoundingBoxList = _opendr.from_coco(plain, image_id)
+    return boxes
 
 
 def _opendr_name(key: str) -> str:

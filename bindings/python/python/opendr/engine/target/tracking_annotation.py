@@ -148,7 +148,9 @@ class TrackingAnnotationList(NamedTargetList[TrackingAnnotation]):
             TypeError: A row has something else than numbers.
             ValueError: A row is none.
         """
-        return _opendr.from_mot([[real(number, "a number of a MOT row") for number in row] for row in data])
+        rows = [[real(number, "a number of a MOT row") for number in row] for row in data]
+        tracks: TrackingAnnotationList = _opendr.from_mot(rows)
+        return tracks
 
     def bounding_box_list(self) -> BoundingBoxList:
         """The boxes without their identities."""
