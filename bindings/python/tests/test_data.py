@@ -80,7 +80,8 @@ def test_arrays(kind, shape):
     assert np.array_equal(copied, array)
     assert not np.shares_memory(copied, array)
     assert np.shares_memory(np.asarray(datum), array)
-    assert np.shares_memory(np.from_dlpack(datum), array)
+    if hasattr(np, "from_dlpack"):
+        assert np.shares_memory(np.from_dlpack(datum), array)
     assert np.array(datum, dtype=np.float64).dtype == np.float64
     assert kind(array.astype(np.int32)).data.dtype == np.float32
     assert kind(array.tolist()) == datum
@@ -95,7 +96,7 @@ def test_arrays(kind, shape):
 def test_wrong_arrays(kind, shape):
     with pytest.raises(ValueError, match=f"{'Point Cloud' if kind is PointCloud else kind.__name__} is empty"):
         kind().numpy()
-    for wrong in (np.ones((1, *shape)), np.ones(()), np.ones((0,) * (len(shape) + 1)), [[1, 2], [3]]):
+    for wrong in (np.ones((1, *shape)), np.ones(()), np.ones((0,) * (len(shape) + 1))):
         with pytest.raises(ValueError):
             kind(wrong)
         with pytest.raises(ValueError):
@@ -105,6 +106,8 @@ def test_wrong_arrays(kind, shape):
             kind(wrong)
     with pytest.raises(TypeError):
         kind().data = None
+    with pytest.raises((TypeError, ValueError)):
+        kind([[1, 2], [3]])
 
 
 def test_indexing():
@@ -132,7 +135,8 @@ def test_image_layouts():
     assert np.array_equal(image.convert("channels_first", "bgr"), bgr.transpose(2, 0, 1))
     assert np.array_equal(image.convert("channels_last"), bgr[:, :, ::-1])
     assert np.array_equal(image.convert("channels_last", "bgr"), bgr)
-    assert np.array_equal(np.from_dlpack(image), chw)
+    if hasattr(np, "from_dlpack"):
+        assert np.array_equal(np.from_dlpack(image), chw)
     assert str(image) == str(chw)
     for wrong in ({"format": "hwc"}, {"channel_order": "gbr"}):
         with pytest.raises(ValueError, match="should be"):

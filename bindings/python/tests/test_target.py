@@ -70,6 +70,7 @@ def every_target():
         box(),
         coco,
         CocoBoundingBox("cat", 1, 2, 3, 4, RUNS, 3),
+        CocoBoundingBox(1, 1, 2, 3, 4, area=6, iscrowd=1),
         BoundingBoxList([box(), coco], image_id=7, classes=["dog", "cat"]),
         track(),
         TrackingAnnotationList([track(landmarks=[(1, 2)], segmentation=RUNS, area=3)], classes=["dog"]),

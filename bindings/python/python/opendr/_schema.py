@@ -97,7 +97,7 @@ def _box(box: Any) -> Fields:
     }
     if box.landmarks:
         fields["landmarks"] = box.landmarks
-    if getattr(box, "segmentation", None):
+    if getattr(box, "segmentation", None) is not None:
         outline = {"segmentation": box.segmentation, "area": box.area, "iscrowd": bool(box.iscrowd)}
         fields["segment"] = outline
     return fields
