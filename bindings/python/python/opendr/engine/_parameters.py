@@ -167,7 +167,7 @@ def own_annotations(cls: type) -> dict[str, Any]:
         annotations = inspect.get_annotations(cls)
     else:
         annotations = cls.__dict__.get("__annotations__", {})
-    scope = vars(sys.modules[cls.__module__])
+    scope = getattr(sys.modules.get(cls.__module__), "__dict__", {})
     return {
         name: eval(hint, scope, dict(vars(cls))) if isinstance(hint, str) and "Annotated" in hint else hint
         for name, hint in annotations.items()
