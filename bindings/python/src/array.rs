@@ -70,13 +70,6 @@ impl ArrayMemory {
         &self.shape
     }
 
-    /// Elements from one to the next along each axis, when these are whole numbers of `T`.
-    pub fn element_strides<T>(&self) -> Option<Vec<isize>> {
-        let size = size_of::<T>() as isize;
-        let whole = |stride: &isize| (stride % size == 0).then_some(stride / size);
-        self.strides.iter().map(whole).collect()
-    }
-
     /// Whether the elements are of `T`.
     pub fn is<T: Element>(&self) -> bool {
         self.type_text == T::TYPE_TEXT
@@ -106,30 +99,47 @@ impl ArrayMemory {
         copy(self.start, &self.shape, &self.strides, elements)
     }
 
-    /// A picture seen as `[channels, height, width]` whose pixels lie together in memory: its elements as
-    /// `[height, width, channels]`, and whether the channels lie in reverse. `None`, with nothing copied, when
-    /// its pixels do not lie together.
-    pub fn copy_pixels<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<Option<bool>> {
-        let (&[channels, ..], Some(strides)) = (&self.shape[..], self.element_strides::<T>()) else {
-            return Ok(None);
+    /// Puts a picture seen as `[channels, height, width]` into `elements` as it lies in memory where that is one of
+    /// the usual ways, else with its pixels together; which it was, and the shape.
+    pub fn copy_picture<T: Element>(&self, elements: &mut Vec<T>) -> PyResult<(Stored, [usize; 3])> {
+        let (&[channels, height, width], &[channel, row, column]) = (&self.shape[..], &self.strides[..])
+        else {
+            return Err(PyValueError::new_err(format!(
+                "a picture has 3 axes (channels, height, width), not the shape {:?}",
+                self.shape
+            )));
         };
-        let &[channel, _, column] = &strides[..] else { return Ok(None) };
-        if !self.is::<T>() || column != channels as isize || channels < 3 {
-            return Ok(None);
+        if !self.is::<T>() {
+            return Err(PyTypeError::new_err(format!("samples of {} are wanted", T::TYPE_TEXT)));
         }
-        let packed = |start: *const u8, elements: &mut Vec<T>| {
-            let shape = [self.shape[1], self.shape[2] * channels];
-            copy(start, &shape, &[self.strides[1], size_of::<T>() as isize], elements)
-        };
-        match channel {
-            1 => packed(self.start, elements).map(|()| Some(false)),
-            // Three channels only: reversed opacity would come first.
-            -1 if channels == 3 => {
-                packed(self.start.wrapping_sub(2 * size_of::<T>()), elements).map(|()| Some(true))
-            }
-            _ => Ok(None),
+        let shape = [channels, height, width];
+        let size = size_of::<T>() as isize;
+        let together = column == channels as isize * size;
+        // Opacity comes first when four channels are reversed: no usual way.
+        let reversed = channel == -size && channels == 3;
+        if together && (channel == size || reversed) {
+            let start = self.start.wrapping_sub(if reversed { 2 * size_of::<T>() } else { 0 });
+            copy(start, &[height, width * channels], &[row, size], elements)?;
+            return Ok((if reversed { Stored::TogetherReversed } else { Stored::Together }, shape));
         }
+        if column == size {
+            copy(self.start, &shape, &self.strides, elements)?;
+            return Ok((Stored::Planes, shape));
+        }
+        copy(self.start, &[height, width, channels], &[row, column, channel], elements)?;
+        Ok((Stored::Together, shape))
     }
+}
+
+/// How a picture lies in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stored {
+    /// `[channels, height, width]`.
+    Planes,
+    /// `[height, width, channels]`.
+    Together,
+    /// `[height, width, channels]`, blue first.
+    TogetherReversed,
 }
 
 fn copy<T: Element>(

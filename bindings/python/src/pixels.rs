@@ -10,7 +10,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::array::{ArrayMemory, Element, array_interface};
+use crate::array::{ArrayMemory, Element, Stored, array_interface};
 use crate::datum::header_from_python;
 use crate::error::ToPython;
 use crate::target::target_from_python;
@@ -108,26 +108,15 @@ fn image_of<T: Element>(py: Python<'_>, memory: &ArrayMemory, mut samples: Vec<T
 where
     Samples: From<Vec<T>>,
 {
-    let &[channels, height, width] = memory.shape() else {
-        return Err(PyValueError::new_err(format!(
-            "a picture has 3 axes (channels, height, width), not the shape {:?}",
-            memory.shape()
-        )));
-    };
-    let format = match channels {
-        1 => PixelFormat::Grey,
-        3 => PixelFormat::Rgb,
-        4 => PixelFormat::Rgba,
+    let (stored, [channels, height, width]) = memory.copy_picture(&mut samples)?;
+    let format = match (channels, stored) {
+        (1, _) => PixelFormat::Grey,
+        (3, Stored::TogetherReversed) => PixelFormat::Bgr,
+        (3, _) => PixelFormat::Rgb,
+        (4, _) => PixelFormat::Rgba,
         _ => return Err(PyValueError::new_err(format!("a picture has 1, 3 or 4 channels, not {channels}"))),
     };
-    let (format, layout) = match memory.copy_pixels(&mut samples)? {
-        Some(true) => (PixelFormat::Bgr, Layout::Hwc),
-        Some(false) => (format, Layout::Hwc),
-        None => {
-            memory.copy_into(&mut samples)?;
-            (format, Layout::Chw)
-        }
-    };
+    let layout = if stored == Stored::Planes { Layout::Chw } else { Layout::Hwc };
     Image::new(samples, width, height, format, layout).to_python(py)
 }
 

@@ -12,6 +12,7 @@ use ureq::http::{HeaderMap, Response, StatusCode, header};
 use crate::cache::Cache;
 use crate::card::CardFile;
 use crate::http::{Failure, Http, from_io, passing};
+use crate::stop::unless_stopped;
 use crate::stopped;
 
 /// Gets the file from `address` into the cache, unless it is there.
@@ -79,7 +80,7 @@ impl Part<'_> {
             position.at(have);
             return Ok(());
         }
-        let mut response = http.get(self.address, &self.resume_headers(have))?;
+        let response = http.get(self.address, &self.resume_headers(have), position.progress)?;
         if response.status() == StatusCode::RANGE_NOT_SATISFIABLE {
             self.forget();
             return Err(passing("the server has no such range of the file"));
@@ -94,7 +95,7 @@ impl Part<'_> {
         }
         let mut file = self.open(start, response.headers()).map_err(|error| Failure::Final(error.into()))?;
         let limit = self.size - start + 1;
-        let reader = response.body_mut().with_config().limit(u64::MAX).reader().take(limit);
+        let reader = response.into_body().into_with_config().limit(u64::MAX).reader().take(limit);
         let end = copy(reader, &mut file, start, position)?;
         if end == self.size {
             return file.sync_all().map_err(|error| Failure::Final(error.into()));
@@ -157,12 +158,23 @@ fn start_of(response: &Response<Body>, have: u64) -> Result<u64, Failure> {
     }
 }
 
-fn copy(mut reader: impl Read, file: &mut File, start: u64, position: &Position<'_>) -> Result<u64, Failure> {
+fn copy(
+    mut reader: impl Read + Send + 'static,
+    file: &mut File,
+    start: u64,
+    position: &Position<'_>,
+) -> Result<u64, Failure> {
     let mut buffer = vec![0; 1 << 16];
     let mut at = start;
     position.at(at);
     loop {
-        let count = match reader.read(&mut buffer) {
+        let read;
+        (reader, buffer, read) = unless_stopped(position.progress, move || {
+            let read = reader.read(&mut buffer);
+            (reader, buffer, read)
+        })
+        .map_err(Failure::Final)?;
+        let count = match read {
             Ok(0) => return Ok(at),
             Ok(count) => count,
             // What came counts, and the next try goes on from there.

@@ -8,6 +8,7 @@ use ureq::http::{Response, StatusCode};
 use ureq::tls::{RootCerts, TlsConfig};
 use ureq::{Agent, Body};
 
+use crate::stop::unless_stopped;
 use crate::stopped;
 
 /// So many tries in a row may bring nothing.
@@ -46,12 +47,18 @@ impl Http {
     }
 
     /// The answer to a GET with these headers, when its status is one of success.
-    pub(crate) fn get(&self, address: &str, headers: &[(&str, String)]) -> Result<Response<Body>, Failure> {
+    pub(crate) fn get(
+        &self,
+        address: &str,
+        headers: &[(&str, String)],
+        progress: &dyn Progress,
+    ) -> Result<Response<Body>, Failure> {
         let mut request = self.agent.get(address);
         for (name, value) in headers {
             request = request.header(*name, value);
         }
-        let response = request.call().map_err(from_ureq)?;
+        let response =
+            unless_stopped(progress, || request.call()).map_err(Failure::Final)?.map_err(from_ureq)?;
         let status = response.status();
         if status.is_success() || status == StatusCode::RANGE_NOT_SATISFIABLE {
             return Ok(response);
@@ -102,9 +109,9 @@ impl Http {
         progress: &dyn Progress,
     ) -> Result<Option<Vec<u8>>> {
         let read = || {
-            let mut response = self.get(address, &[])?;
-            let body = response.body_mut().with_config().limit(limit).read_to_vec();
-            body.map_err(from_ureq)
+            let mut response = self.get(address, &[], progress)?;
+            let read = move || response.body_mut().with_config().limit(limit).read_to_vec();
+            unless_stopped(progress, read).map_err(Failure::Final)?.map_err(from_ureq)
         };
         match self.retry(address, progress, read) {
             Ok(bytes) => Ok(Some(bytes)),

@@ -1,0 +1,76 @@
+"""Ctrl-C ends long calls within a second."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import textwrap
+import time
+
+import pytest
+
+
+def interrupt(program, ready, env, seconds=1.0):
+    """Runs a program, sends SIGINT after it printed `ready`, and says how long it took to end and what it printed."""
+    command = [sys.executable, "-c", textwrap.dedent(program)]
+    child = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert child.stdout.readline().strip() == ready, child.stderr.read()
+        time.sleep(0.5)
+        begin = time.monotonic()
+        child.send_signal(signal.SIGINT)
+        _, errors = child.communicate(timeout=30)
+    finally:
+        child.kill()
+    return time.monotonic() - begin, errors
+
+
+def test_infer_over_a_source(zoo, photo, tmp_path):
+    program = f"""
+        import opendr
+        learner = opendr.learner("nanodet", device="cpu", verbose=False)
+        frames = opendr.Source(*[{str(photo)!r}] * 2000)
+        print("begun", flush=True)
+        for answer in learner.infer(frames):
+            pass
+    """
+    took, errors = interrupt(program, "begun", dict(os.environ))
+    assert "KeyboardInterrupt" in errors
+    assert took < 3.0  # A second, and what a busy machine takes to end Python.
+
+
+def test_waiting_for_a_frame(tmp_path):
+    # A pipe that nobody writes to looks like a video that does not come.
+    pipe = tmp_path / "live.mp4"
+    os.mkfifo(pipe)
+    program = f"""
+        import os, threading, opendr
+        from opendr import _opendr
+        keep = os.open({str(pipe)!r}, os.O_RDWR)
+        print("begun", flush=True)
+        for frame in _opendr.Source(["{pipe}"]):
+            pass
+    """
+    took, errors = interrupt(program, "begun", dict(os.environ))
+    assert took < 10.0 and errors
+
+
+def test_download(tmp_path):
+    # A server that answers slowly.
+    server = socket.create_server(("127.0.0.1", 0))
+    address = f"http://127.0.0.1:{server.getsockname()[1]}"
+    program = """
+        import opendr
+        print("begun", flush=True)
+        opendr.learners()["nanodet"]().download(verbose=False)
+    """
+    env = {**os.environ, "OPENDR_MODEL_REPOSITORY": address, "OPENDR_CACHE": str(tmp_path / "cache")}
+    with server:
+        took, errors = interrupt(program, "begun", env)
+    assert "KeyboardInterrupt" in errors, errors
+    assert took < 3.0
+
+
+if sys.platform == "win32":
+    pytest.skip("POSIX signals", allow_module_level=True)

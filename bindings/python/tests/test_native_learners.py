@@ -1,0 +1,226 @@
+"""The learners of the registry as Python classes: OpenDR's life cycle, arguments, inputs, outputs."""
+
+import inspect
+import itertools
+import pickle
+import warnings
+
+import numpy as np
+import opendr
+import pytest
+from opendr import Source, _opendr
+from opendr.engine.data import Image
+from opendr.engine.learners import BaseLearner, Learner
+from opendr.engine.target import BoundingBoxList
+from opendr.perception.object_detection_2d import (
+    CenterNetDetectorLearner,
+    NanodetLearner,
+    draw_bounding_boxes,
+)
+from opendr.perception.pose_estimation import MovenetLearner, PosenetLearner, draw, get_bbox
+
+ENTRIES = [entry for entry in _opendr.entries() if entry["name"] in opendr.learners()]
+NATIVE = [entry for entry in ENTRIES if hasattr(opendr.learners()[entry["name"]], "_entry")]
+
+
+@pytest.mark.parametrize("entry", NATIVE, ids=lambda entry: entry["name"])
+def test_class(entry):
+    cls = opendr.learners()[entry["name"]]
+    assert issubclass(cls, Learner)
+    assert cls.__name__ == entry["class_name"]
+    assert cls.__module__ == f"opendr.perception.{entry['task']}"
+    assert getattr(__import__(cls.__module__, fromlist=[cls.__name__]), cls.__name__) is cls
+    parameters = inspect.signature(cls).parameters
+    assert list(parameters)[: len(BaseLearner.__signature__.parameters)] == list(BaseLearner.__signature__.parameters)
+    for field in entry["params"]:
+        assert parameters[field["name"]].default == pytest.approx(field["default"])
+        assert field["name"] in cls.__doc__
+        if field["range"]:
+            assert f"{field['range'][0]:g} to {field['range'][1]:g}" in " ".join(cls.__doc__.split())
+
+
+@pytest.mark.parametrize("entry", NATIVE, ids=lambda entry: entry["name"])
+def test_life_cycle(entry, zoo, photo, tmp_path):
+    cls = opendr.learners()[entry["name"]]
+    learner = cls(device="cpu")
+    assert not learner.is_ready and learner.classes == []
+    with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
+        learner.infer(photo)
+    folder = learner.download(str(tmp_path / "models"), verbose=False)
+    assert learner.load(folder) is True and learner.is_ready
+    answer = learner.infer(photo)
+    assert type(answer).__name__ == entry["outputs"][0]["type"] and len(answer) > 0
+    assert learner.save(str(tmp_path / "saved")) is True
+    again = cls(device="cpu")
+    again.load(tmp_path / "saved")
+    assert again.infer(photo).to_json() == answer.to_json()
+    learner.reset()
+    assert learner.stream().infer(photo).to_json() == answer.to_json()
+    for call in (lambda: learner.fit(None), lambda: learner.eval(None), lambda: learner.optimize("cpu")):
+        with pytest.raises(NotImplementedError, match=entry["class_name"]):
+            call()
+
+
+def test_every_kind_of_input_gives_the_same(nanodet, photo):
+    image = Image.open(photo)
+    wanted = nanodet.infer(image).to_json()
+    frame = image.opencv()
+    assert nanodet.infer(str(photo)).to_json() == wanted
+    assert nanodet.infer(photo).to_json() == wanted
+    assert nanodet.infer(frame).to_json() == wanted
+    assert nanodet.infer(np.asfortranarray(frame)).to_json() == wanted
+    # Planes go through another kernel: the same but for rounding.
+    for box, planes in zip(nanodet.infer(frame), nanodet.infer(image.numpy())):
+        assert (box.left, box.confidence) == pytest.approx((planes.left, planes.confidence), rel=1e-4)
+    assert nanodet.infer(image=image.convert("channels_last", "bgr")).to_json() == wanted
+    assert [found.to_json() for found in nanodet.infer([image, str(photo), frame])] == [wanted] * 3
+    assert [found.to_json() for found in nanodet.infer(Source(photo))] == [wanted]
+    assert [found.to_json() for found in nanodet.infer(iter([frame]))] == [wanted]
+    assert nanodet.infer([]) == []
+
+
+def test_views_of_any_layout_are_read_rightly(nanodet, photo):
+    frame = Image.open(photo).opencv()
+    wanted = nanodet.infer(np.ascontiguousarray(frame[10:-6, 20:-30][::2, ::2])).to_json()
+    assert nanodet.infer(frame[10:-6, 20:-30][::2, ::2]).to_json() == wanted
+    flipped = nanodet.infer(np.ascontiguousarray(frame[::-1, ::-1])).to_json()
+    assert nanodet.infer(frame[::-1, ::-1]).to_json() == flipped != wanted
+    floats = Image(frame.astype(np.float32) / 255, dtype=np.float32)
+    assert len(nanodet.infer(floats)) == len(nanodet.infer(frame))
+
+
+def test_time_and_frame_travel(nanodet, photo):
+    image = Image.open(photo)
+    image.timestamp, image.frame_id = 1_700_000_000_000_000_001, "camera_link"
+    found = nanodet.infer(image)
+    assert (found.timestamp, found.frame_id) == (image.timestamp, image.frame_id)
+
+
+def test_parameters(zoo, photo):
+    learner = NanodetLearner(threshold=0.6, device="cpu")
+    learner.load(verbose=False)
+    assert learner.threshold == pytest.approx(0.6)
+    few = len(learner.infer(photo))
+    assert len(learner.infer(photo, threshold=0.1)) > few
+    assert len(learner.infer(photo)) == few
+    learner.threshold = 0.1
+    assert len(learner.infer(photo)) > few
+    with pytest.raises(ValueError, match="threshold = 2.0 is out of range 0.0 to 1.0"):
+        learner.threshold = 2
+    assert learner.threshold == pytest.approx(0.1)
+    with pytest.raises(TypeError, match="threshold should be a float"):
+        NanodetLearner(threshold="high")
+    with pytest.raises(TypeError, match="no argument 'treshold'"):
+        NanodetLearner(treshold=0.5)
+    with pytest.raises(TypeError, match="infer has no argument 'treshold'; there are image"):
+        learner.infer(photo, treshold=0.5)
+    with pytest.raises(ValueError, match="suppression"):
+        NanodetLearner(suppression="none")
+
+
+def test_opendrs_arguments_are_taken(zoo, photo):
+    with pytest.warns(UserWarning) as warned:
+        nanodet = NanodetLearner(
+            model_to_use="m", iters=10, lr=1e-3, batch_size=8, checkpoint_after_iter=0, checkpoint_load_iter=0,
+            temp_path="", device="cpu", weight_decay=0.05, warmup_steps=500, warmup_ratio=0.1, lr_schedule_T_max=280,
+            lr_schedule_eta_min=5e-5, grad_clip=35,
+        )  # fmt: skip
+    told = {str(warning.message).split(" has no effect")[0].split(": ")[1] for warning in warned}
+    assert {"model_to_use", "weight_decay", "grad_clip"} <= told
+    nanodet.load(verbose=False)
+    with pytest.warns(UserWarning, match="hf has no effect"):
+        found = nanodet.infer(input := Image.open(photo), conf_threshold=0.5, iou_threshold=0.5, nms_max_num=1, hf=False)
+    assert len(found) == 1 and input.data.shape[0] == 3
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        centernet = CenterNetDetectorLearner(
+            lr=0.001, epochs=120, batch_size=8, device="cpu", backbone="resnet50_v1b", img_size=512,
+            lr_schedule="step", temp_path="", checkpoint_after_iter=0, checkpoint_load_iter=0, val_after=5,
+            log_after=100, num_workers=8, weight_decay=0.0005, momentum=0.9, scale=1.0, wh_weight=0.1,
+            center_reg_weight=1.0, lr_decay_epoch="80,100", lr_decay=0.1, warmup_epochs=0, flip_validation=False,
+        )  # fmt: skip
+        centernet.load(verbose=False)
+        assert isinstance(centernet.infer(photo, threshold=0.2, keep_size=True), BoundingBoxList)
+    assert centernet.classes[0] == "person"
+
+
+def test_download(zoo, tmp_path):
+    learner = NanodetLearner()
+    picture = learner.download(tmp_path, mode="images", verbose=False)
+    assert Image.open(picture).width > 0 and str(picture).startswith(str(tmp_path))
+    with pytest.raises(ValueError, match="'pretrained' and 'images'"):
+        learner.download(tmp_path, mode="weights")
+    with pytest.raises(FileNotFoundError, match="variant|no_such|nanodet"):
+        learner.download(tmp_path, variant="no_such")
+    with pytest.raises(opendr.Unsupported, match="OPENDR_MODEL_REPOSITORY"):
+        learner.download(tmp_path, url="http://localhost/")
+    with pytest.raises(FileNotFoundError):
+        learner.load(tmp_path / "nothing")
+
+
+def test_device(zoo, monkeypatch):
+    with pytest.raises((RuntimeError, ValueError), match="cpu"):
+        NanodetLearner(device="cuda").load(verbose=False)
+    with pytest.raises(ValueError, match="no device|device"):
+        NanodetLearner(device="toaster")
+    monkeypatch.setenv("OPENDR_DEVICE", "cpu")
+    learner = NanodetLearner(device="cuda")
+    assert learner.load(verbose=False)
+
+
+def test_poses_are_drawn(zoo, photo):
+    image = Image.open(photo)
+    for learner in (MovenetLearner(device="cpu"), PosenetLearner(device="cpu")):
+        learner.load(verbose=False)
+        poses = learner.infer(image)
+        frame = image.opencv()
+        for pose in poses:
+            draw(frame, pose)
+            left, top, width, height = get_bbox(pose)
+            assert width > 0 and height > 0
+        assert not np.array_equal(frame, image.opencv())
+
+
+def test_boxes_are_drawn_in_place(nanodet, photo):
+    frame = Image.open(photo).opencv()
+    before = frame.copy()
+    drawn = draw_bounding_boxes(frame, nanodet.infer(frame), class_names=nanodet.classes, show=False)
+    assert drawn is frame and not np.array_equal(frame, before)
+
+
+def test_source(test_data, tmp_path):
+    files = sorted((test_data / "data/photos").iterdir())[:3]
+    (tmp_path / "broken.jpg").write_bytes(b"no picture")
+    source = Source(files[0], tmp_path / "broken.jpg", *files[1:])
+    assert source.length == 4 and not source.live and source.path is None
+    assert next(source).width > 0 and source.path == str(files[0])
+    with pytest.raises(ValueError, match="broken.jpg"):
+        next(source)
+    assert len(list(source)) == 2
+    with pytest.raises(FileNotFoundError):
+        Source(tmp_path / "absent.jpg")
+
+
+def test_generators_are_lazy(faces, photo):
+    asked = itertools.count()
+
+    def endless():
+        while True:
+            next(asked)
+            yield photo
+
+    answers = faces.infer(endless())
+    assert next(asked) == 0
+    next(answers), next(answers)
+    assert next(asked) == 3
+
+
+def test_learners_are_not_pickled(nanodet):
+    with pytest.raises(TypeError, match="save"):
+        pickle.dumps(nanodet)
+
+
+def test_learner_by_name(zoo):
+    assert opendr.learner("yunet/320", device="cpu", verbose=False).is_ready
+    with pytest.raises(FileNotFoundError, match="there are .*nanodet"):
+        opendr.learner("nanodett")
