@@ -8,8 +8,12 @@ from typing import Annotated, Any, Literal, NamedTuple, Optional
 import numpy as np
 import opendr
 import pytest
-from opendr._entry_points import learner_classes
+from opendr import _opendr
+from opendr._entry_points import learner_entry_points
+from opendr._registered import register_installed
+from opendr.engine import target
 from opendr.engine._declaration import tables_from_class
+from opendr.engine._ports import _NAMES
 from opendr.engine.data import Image, Vector
 from opendr.engine.learners import BaseLearner, Init, Learner, LearnerActive, LearnerRL, Live, Range, Unit
 from opendr.engine.target import BoundingBoxList, Category, PoseList
@@ -236,6 +240,13 @@ class Found(NamedTuple):
     weather: Category
 
 
+def test_usual_names_are_the_registrys():
+    for entry in _opendr.entries():
+        if len(entry["outputs"]) == 1:
+            (output,) = entry["outputs"]
+            assert output["name"] == _NAMES[getattr(target, output["type"])]
+
+
 def test_several_outputs():
     class Both(Plain):
         """Answers two things."""
@@ -277,7 +288,7 @@ def test_tables_name_all_that_is_missing():
         tables_from_class(Learner)
 
 
-def test_entry_points(tmp_path, monkeypatch):
+def test_plugins_that_cannot_be_registered(tmp_path, monkeypatch):
     (tmp_path / "spots_plugin.py").write_text("class Spots: ...\n")
     info = tmp_path / "spots_plugin-1.0.dist-info"
     info.mkdir()
@@ -286,10 +297,10 @@ def test_entry_points(tmp_path, monkeypatch):
         "[opendr.learners]\nspots = spots_plugin:Spots\nbroken = spots_plugin:Missing\nabsent = no_such_module:X\n"
     )
     monkeypatch.syspath_prepend(str(tmp_path))
+    assert {point.name for point in learner_entry_points()} >= {"absent", "broken", "spots"}
     with pytest.warns(RuntimeWarning) as caught:
-        classes = dict(learner_classes())
-    assert classes["spots"].__name__ == "Spots"
-    assert not {"broken", "absent"} & set(classes)
-    messages = sorted(str(warning.message) for warning in caught)
-    assert messages[0].startswith("the learner 'absent' (no_such_module:X) is left out: ModuleNotFoundError")
-    assert messages[1].startswith("the learner 'broken' (spots_plugin:Missing) is left out: AttributeError")
+        register_installed()
+    absent, broken, spots = sorted(str(warning.message) for warning in caught)
+    assert absent.startswith("the learner 'absent' (no_such_module:X) is left out: ModuleNotFoundError")
+    assert broken.startswith("the learner 'broken' (spots_plugin:Missing) is left out: AttributeError")
+    assert spots.startswith("the learner 'spots' (spots_plugin:Spots) is left out: TypeError")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 import warnings
 from importlib import metadata
-from typing import Any
 
 GROUP = "opendr.learners"
 
@@ -17,18 +16,7 @@ def learner_entry_points() -> list[metadata.EntryPoint]:
     else:
         found = list(metadata.entry_points().get(GROUP, ()))
     # One installation may be seen through several folders of the path.
-    return sorted({point.name: point for point in reversed(found)}.values(), key=lambda point: point.name)
-
-
-def learner_classes() -> list[tuple[str, Any]]:
-    """Name and class of each entry point. One that cannot be imported is warned of and left out."""
-    classes = []
-    for point in learner_entry_points():
-        try:
-            classes.append((point.name, point.load()))
-        except Exception as error:
-            warn(point, error)
-    return classes
+    return sorted({(point.name, point.value): point for point in found}.values(), key=lambda point: point.name)
 
 
 def warn(point: metadata.EntryPoint, error: Exception) -> None:
