@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the type stubs of the learners' modules from the registry of the installed package.
+"""Writes what is made of the registry: the type stubs of the learners' modules, and the page docs/learners.md.
 
     bindings/python/stubs.py [--check]
 
-With --check nothing is written: the exit code tells whether the stubs are those of the registry.
+With --check nothing is written: the exit code tells whether the files are those of the registry.
 """
 
 import difflib
@@ -17,7 +17,16 @@ from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr.engine.learners import BaseLearner
 
-FOLDER = Path(__file__).parent / "python/opendr/perception"
+STUBS = Path(__file__).parent / "python/opendr/perception"
+PAGE = Path(__file__).parents[2] / "docs/learners.md"
+PAGE_HEADER = """# Learners
+
+Made by `bindings/python/stubs.py` from the registry; do not edit. Names and parameters are the same on every surface:
+`opendr infer NAME --PARAMETER VALUE`, keyword arguments in Python, JSON in C. `opendr models` lists the pretrained models.
+
+Every Python class takes OpenDR's 13 arguments besides (`lr`, `iters`, `batch_size`, ..., `device`); those that train are
+kept for `fit`. A parameter marked *live* may change while the learner runs, and can be given to one call of `infer`.
+"""
 TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": "list[Any]"}
 #: What stands for a datum in `infer`, besides an object of its class.
 ALSO = {"Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
@@ -120,12 +129,53 @@ def module(task, entries):
     return HEADER.format(task=task) + imports + "\n" + "\n".join(learner(entry) for entry in entries)
 
 
-def stubs():
+def by_task():
     tasks = {}
     for entry in _opendr.entries():
         # The test learner is of no release.
         if entry["name"] != "counter":
             tasks.setdefault(entry["task"], []).append(entry)
+    return tasks
+
+
+def cell(text):
+    return str(text).replace("|", "\\|").replace("\n", " ")
+
+
+def param_row(field):
+    kind = ", ".join(f"`{choice}`" for choice in field["choices"]) or TYPES[field["kind"]]
+    if field["range"]:
+        kind += f", {field['range'][0]:g} to {field['range'][1]:g} {field['unit']}".rstrip()
+    notes = ["*live*"] if field["live"] else []
+    notes += [f"in OpenDR `{alias}`" for alias in field["aliases"]]
+    name, doc = f"`{field['name']}`", " ".join([field["doc"], *([f"({', '.join(notes)})"] if notes else [])])
+    return f"| {name} | {cell(kind)} | `{field['default']!r}` | {cell(doc)} |\n"
+
+
+def port_text(port):
+    note = ", with the first input of a stream" if port["init"] else ", optional" if port["optional"] else ""
+    return f"`{port['name']}` ({port['type']}{note})"
+
+
+def page():
+    text = PAGE_HEADER
+    for task, entries in by_task().items():
+        text += f"\n## {task}\n"
+        for entry in entries:
+            inputs = ", ".join(map(port_text, entry["ports"]))
+            outputs = ", ".join(f"`{output['name']}` ({output['type']})" for output in entry["outputs"])
+            text += f"\n### {entry['class_name']}: `{entry['name']}`\n\n{entry['about']}\n\n"
+            text += f"Takes {inputs}; gives {outputs}.\n\n"
+            text += "| parameter | values | default | |\n|---|---|---|---|\n"
+            text += "".join(map(param_row, entry["params"]))
+            if entry["without_effect"]:
+                text += "\n| argument of OpenDR's class without effect here | why |\n|---|---|\n"
+                text += "".join(f"| `{name}` | {cell(reason)} |\n" for name, reason in entry["without_effect"])
+    return text
+
+
+def stubs():
+    tasks = by_task()
     listed = "".join(f"from opendr.perception import {task} as {task}\n" for task in sorted(tasks))
     files = {f"{task}.pyi": module(task, entries) for task, entries in tasks.items()}
     return {"__init__.pyi": f'"""Perception: a module a task."""\n\n{listed}', **files}
@@ -133,17 +183,17 @@ def stubs():
 
 def main():
     stale = False
-    for name, text in stubs().items():
-        path = FOLDER / name
+    files = {PAGE: page(), **{STUBS / name: text for name, text in stubs().items()}}
+    for path, text in files.items():
         there = path.read_text() if path.is_file() else ""
         if "--check" not in sys.argv[1:]:
             path.write_text(text)
         elif there != text:
             stale = True
             sys.stdout.writelines(difflib.unified_diff(there.splitlines(True), text.splitlines(True), str(path), "registry"))
-    extra = {path.name for path in FOLDER.glob("*.pyi")} - stubs().keys()
-    for name in extra:
-        print(f"{name}: no such task")
+    extra = set(STUBS.glob("*.pyi")) - files.keys()
+    for path in extra:
+        print(f"{path}: no such task")
     return int(stale or bool(extra))
 
 

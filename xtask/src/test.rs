@@ -9,7 +9,7 @@ use crate::tools::{Python, install_debian};
 /// Runs every check; the first that fails ends it.
 pub fn run() -> Result<()> {
     install_debian()?;
-    let python = Python::install()?;
+    let python = Python::install("test-venv", "tests/python/requirements.txt")?;
     let environment = Environment { library: python.onnxruntime()?, data: test_data(), cache: cache()? };
     if environment.data.is_none() {
         println!("skipped: no OPENDR_TEST_DATA (tests with real models and pictures)");
@@ -37,6 +37,12 @@ pub fn run() -> Result<()> {
     pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
     environment.apply(&mut pytest);
     step("tests from outside", &mut pytest)?;
+    let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
+    let wheel = python.install_wheel()?;
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", "bindings/python/tests"]).env("OPENDR_WHEEL", wheel);
+    environment.apply(&mut pytest);
+    step("tests of the Python package", &mut pytest)?;
     println!("\nall checks passed");
     Ok(())
 }

@@ -8,16 +8,17 @@ use crate::shell::{Result, command, is_installed, root, step, target};
 /// Debian packages by the program that they bring.
 const DEBIAN: [(&str, &str); 1] = [("ffmpeg", "ffmpeg")];
 
-/// A Python environment with the packages of `tests/python/requirements.txt`.
+/// A Python environment with the packages of a file of requirements.
 pub struct Python {
     folder: PathBuf,
 }
 
 impl Python {
-    /// Makes the environment, or brings it up to date when the requirements have changed.
-    pub fn install() -> Result<Self> {
-        let python = Self { folder: target().join("test-venv") };
-        let requirements = root().join("tests/python/requirements.txt");
+    /// Makes the environment `name` under the build folder, or brings it up to date when the requirements have
+    /// changed.
+    pub fn install(name: &str, requirements: &str) -> Result<Self> {
+        let python = Self { folder: target().join(name) };
+        let requirements = root().join(requirements);
         let wanted = fs::read_to_string(&requirements).map_err(|error| error.to_string())?;
         let stamp = python.folder.join("requirements.installed");
         if fs::read_to_string(&stamp).ok().as_deref() == Some(wanted.as_str()) {
@@ -28,6 +29,24 @@ impl Python {
         step("python packages", command(python.program()).args(pip).arg(&requirements))?;
         fs::write(&stamp, wanted).map_err(|error| error.to_string())?;
         Ok(python)
+    }
+
+    /// Builds the wheel of `bindings/python` and installs it, without what it depends on; the wheel.
+    pub fn install_wheel(&self) -> Result<PathBuf> {
+        let folder = target().join("wheels");
+        // Nothing there is what is wanted.
+        fs::remove_dir_all(&folder).ok();
+        let pip = |words: &[&str]| {
+            let mut pip = command(self.program());
+            pip.args(["-m", "pip", "--quiet", "--disable-pip-version-check"]).args(words);
+            pip
+        };
+        step("wheel", pip(&["wheel", "--no-deps", "--wheel-dir"]).arg(&folder).arg("./bindings/python"))?;
+        let wheels = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let wheels: Vec<_> = wheels.flatten().map(|entry| entry.path()).collect();
+        let [wheel] = &wheels[..] else { return Err(format!("one wheel is wanted, not {wheels:?}")) };
+        step("wheel's installation", pip(&["install", "--force-reinstall", "--no-deps"]).arg(wheel))?;
+        Ok(wheel.clone())
     }
 
     /// Its interpreter.
