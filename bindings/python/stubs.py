@@ -77,9 +77,9 @@ def names(shown):
     return {argument.split(":")[0] for argument in shown}
 
 
-def call(name, parameters, result, overloaded=False):
+def call(name, parameters, result, overloaded=False, note=""):
     mark = "    @overload\n" if overloaded else ""
-    return f"{mark}    def {name}({', '.join(parameters)}) -> {result}: ...\n"
+    return f"{mark}    def {name}({', '.join(parameters)}) -> {result}: ...{note}\n"
 
 
 def infer(entry):
@@ -97,13 +97,12 @@ def infer(entry):
     first, one = ports[0]["name"], input_type(ports[0])
     if rest:
         return call("infer", ["self", f"{first}: {one}", *rest, *keywords], result)
-    # A str is a sequence of str, so it is left out of sequences.
-    several = one.replace(", str", "")
-    many = f"Union[Sequence[{several}], list[str], tuple[str, ...]]" if several != one else f"Sequence[{one}]"
+    # A str is a sequence of str, an array one of arrays: the first that fits is meant.
+    overlap = "" if is_target(ports[0]["type"]) else "  # type: ignore[overload-overlap]"
     return "".join((
-        call("infer", ["self", f"{first}: {one}", *keywords], result, overloaded=True),
-        call("infer", ["self", f"{first}: {many}", *keywords], f"list[{result}]", overloaded=True),
-        call("infer", ["self", f"{first}: Iterator[{several}]", *keywords], f"Iterator[{result}]", overloaded=True),
+        call("infer", ["self", f"{first}: {one}", *keywords], result, True, overlap),
+        call("infer", ["self", f"{first}: Sequence[{one}]", *keywords], f"list[{result}]", True),
+        call("infer", ["self", f"{first}: Iterator[{one}]", *keywords], f"Iterator[{result}]", True),
     ))
 
 

@@ -12,7 +12,7 @@ Modules and classes are those of OpenDR: ``opendr.engine.data``, ``opendr.engine
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from opendr._errors import (
@@ -60,14 +60,17 @@ _HOMES = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
+# Type checkers see the imports above: to them, no other name is there.
+if not TYPE_CHECKING:
 
-    if name not in __all__:
-        raise AttributeError(f"module 'opendr' has no attribute {name!r}")
-    home = import_module(_HOMES.get(name, "opendr._errors"))
-    value = globals()[name] = getattr(home, name)
-    return value
+    def __getattr__(name):
+        from importlib import import_module
+
+        if name not in __all__:
+            raise AttributeError(f"module 'opendr' has no attribute {name!r}")
+        home = import_module(_HOMES.get(name, "opendr._errors"))
+        value = globals()[name] = getattr(home, name)
+        return value
 
 
 def __dir__() -> list[str]:

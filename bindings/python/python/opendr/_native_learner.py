@@ -33,12 +33,12 @@ class NativeLearner(Learner):
 
     def __setattr__(self, name: str, value: Any) -> None:
         super().__setattr__(name, value)
-        handle = self.__dict__.get("_handle")
+        handle = vars(self).get("_handle")
         if handle is not None and any(field["name"] == name for field in self._entry["params"]):
             try:
                 handle.set({name: getattr(self, name)})
             finally:
-                self.__dict__[name] = handle.params()[name]
+                vars(self)[name] = handle.params()[name]
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
         """Answers one input, or each of several.
@@ -83,7 +83,7 @@ class NativeLearner(Learner):
             self._handle.load_pretrained(variant, verbose)
         else:
             self._handle.load(os.fspath(path))
-        self.__dict__.update(self._handle.params())
+        vars(self).update(self._handle.params())
         return True
 
     def save(self, path: PathLike, verbose: bool = False) -> bool:
@@ -190,7 +190,7 @@ class NativeLearner(Learner):
         names = [port["name"] for port in self._entry["ports"]]
         if len(inputs) > len(names):
             raise TypeError(f"infer takes {len(names)} inputs ({', '.join(names)}), not {len(inputs)}")
-        ports, overrides = dict(zip(names, inputs)), {}
+        ports, overrides = dict(zip(names, inputs)), dict[str, Any]()
         live = {field["name"] for field in self._entry["params"] if field["live"]}
         for name, value in self._known(named).items():
             if name in ports:
@@ -287,14 +287,14 @@ def native_class(entry: Table, module: str) -> type[NativeLearner]:
     """The class of a learner of the registry."""
     from collections import namedtuple
 
-    from opendr._reference import annotations, document
+    from opendr._reference import document, params_annotations
     from opendr.engine._parameters import signature
 
     names = [output["name"] for output in entry["outputs"]]
     namespace: dict[str, Any] = {
         "__doc__": document(entry),
         "__module__": module,
-        "__annotations__": annotations(entry),
+        "__annotations__": params_annotations(entry),
         "_entry": entry,
         "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
         **{field["name"]: field["default"] for field in entry["params"]},

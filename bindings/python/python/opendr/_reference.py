@@ -12,7 +12,7 @@ Table = dict[str, Any]
 _TYPES: dict[str, Any] = {"float": float, "int": int, "bool": bool, "text": str, "list": list}
 
 
-def annotations(entry: Table) -> dict[str, Any]:
+def params_annotations(entry: Table) -> dict[str, Any]:
     """The parameters of a learner as annotations of its class."""
     return {field["name"]: _annotation(field) for field in entry["params"]}
 
@@ -28,7 +28,7 @@ def _annotation(field: Table) -> Any:
         extras.append(Unit(field["unit"]))
     if field["live"]:
         extras.append(Live())
-    return Annotated[(hint, *extras)]
+    return Annotated[tuple([hint, *extras])]
 
 
 def document(entry: Table) -> str:

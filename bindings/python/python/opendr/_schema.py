@@ -207,18 +207,19 @@ def _class_name(fields: Fields, classes: list[str]) -> str:
     return classes[name] if isinstance(name, int) and 0 <= name < len(classes) else ""
 
 
-def _place(fields: Fields) -> tuple[Any, ...]:
-    return (fields["name"], fields["left"], fields["top"], fields["width"], fields["height"])
+def _box_arguments(fields: Fields, classes: list[str]) -> Fields:
+    """What the constructors of boxes and tracks take alike."""
+    arguments = {name: fields[name] for name in ("name", "left", "top", "width", "height")}
+    arguments |= {"score": fields.get("confidence", 0.0), "landmarks": fields.get("landmarks", ())}
+    outline = fields.get("segment")
+    if outline is not None:
+        arguments |= {**outline, "iscrowd": int(outline["iscrowd"])}
+    return {**arguments, "class_name": _class_name(fields, classes)}
 
 
 def _read_box(fields: Fields, classes: list[str]) -> target.BoundingBox:
-    score, points = fields.get("confidence", 0.0), fields.get("landmarks", ())
-    name = _class_name(fields, classes)
-    outline = fields.get("segment")
-    if outline is None:
-        return target.BoundingBox(*_place(fields), score, class_name=name, landmarks=points)
-    parts = (outline["segmentation"], outline["area"], int(outline["iscrowd"]))
-    return target.CocoBoundingBox(*_place(fields), *parts, score, class_name=name, landmarks=points)
+    kind = target.BoundingBox if fields.get("segment") is None else target.CocoBoundingBox
+    return kind(**_box_arguments(fields, classes))
 
 
 def _read_boxes(fields: Fields) -> target.BoundingBoxList:
@@ -229,43 +230,33 @@ def _read_boxes(fields: Fields) -> target.BoundingBoxList:
 
 def _read_tracks(fields: Fields) -> target.TrackingAnnotationList:
     classes = fields.get("classes", [])
-    tracks = []
-    for track in fields["annotations"]:
-        outline = track.get("segment") or {"segmentation": None, "area": 0.0, "iscrowd": False}
-        tracks.append(
-            target.TrackingAnnotation(
-                *(*_place(track), track["id"], track.get("confidence", 0.0), track.get("frame", -1)),
-                class_name=_class_name(track, classes),
-                landmarks=track.get("landmarks", ()),
-                segmentation=outline["segmentation"],
-                area=outline["area"],
-                iscrowd=int(outline["iscrowd"]),
-            )
-        )
+    tracks = [
+        target.TrackingAnnotation(**_box_arguments(track, classes), **_identity(track))
+        for track in fields["annotations"]
+    ]
     return target.TrackingAnnotationList(tracks, classes=classes)
 
 
-def _place_3d(fields: Fields) -> tuple[Any, ...]:
+def _identity(fields: Fields) -> Fields:
+    return {"id": fields["id"], "frame": fields.get("frame", -1)}
+
+
+def _box_3d_arguments(fields: Fields, classes: list[str]) -> Fields:
     names = ("name", "truncated", "occluded", "alpha", "bbox2d", "dimensions", "location", "rotation_y")
-    return tuple(fields[name] for name in names)
+    arguments = {name: fields[name] for name in names}
+    return {**arguments, "score": fields["confidence"], "class_name": _class_name(fields, classes)}
 
 
 def _read_boxes_3d(fields: Fields) -> target.BoundingBox3DList:
     classes = fields.get("classes", [])
-    boxes = [
-        target.BoundingBox3D(*_place_3d(box), box["confidence"], class_name=_class_name(box, classes))
-        for box in fields["boxes"]
-    ]
+    boxes = [target.BoundingBox3D(**_box_3d_arguments(box, classes)) for box in fields["boxes"]]
     return target.BoundingBox3DList(boxes, classes=classes)
 
 
 def _read_tracks_3d(fields: Fields) -> target.TrackingAnnotation3DList:
     classes = fields.get("classes", [])
     tracks = [
-        target.TrackingAnnotation3D(
-            *(*_place_3d(track), track["id"], track["confidence"], track.get("frame", -1)),
-            class_name=_class_name(track, classes),
-        )
+        target.TrackingAnnotation3D(**_box_3d_arguments(track, classes), **_identity(track))
         for track in fields["annotations"]
     ]
     return target.TrackingAnnotation3DList(tracks, classes=classes)

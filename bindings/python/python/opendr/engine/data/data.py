@@ -17,6 +17,8 @@ class Data(Datum, ABC):
     ``timestamp`` (nanoseconds, or None) and ``frame_id`` travel to every target that is made of it.
     """
 
+    _data: Any
+
     def __init__(self, data: Any = None) -> None:
         self._data = data
 
