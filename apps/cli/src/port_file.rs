@@ -1,11 +1,12 @@
-//! The file behind a further port: one target for every frame, or what `opendr infer --json` wrote, a line a frame.
+//! The file behind a further port: one target for every frame, a target a line, or what `opendr infer --json` wrote, a
+//! line a frame.
 
 use std::fs;
 use std::path::Path;
 
 use opendr::learner::Port;
 use opendr::{Error, Result, ResultExt, Value, ValueType};
-use serde::Deserialize;
+use serde_json::{Map, Value as Json};
 
 /// Larger files are no list of targets.
 const MAX_BYTES: u64 = 1 << 30;
@@ -21,13 +22,6 @@ pub struct PortFile {
 enum Values {
     Same(Box<Value>),
     PerFrame(Vec<Option<Value>>),
-}
-
-/// A line of `opendr infer --json`, as far as it matters here.
-#[derive(Deserialize)]
-struct Line {
-    #[serde(default)]
-    outputs: serde_json::Map<String, serde_json::Value>,
 }
 
 impl PortFile {
@@ -56,8 +50,9 @@ impl PortFile {
         let values = match serde_json::from_slice::<Value>(&text) {
             Ok(value) => Values::Same(Box::new(of_type(port.value_type, value)?)),
             Err(no_target) => Values::PerFrame(values_of_lines(port, &text).map_err(|error| {
-                error
-                    .context(format!("neither one target ({no_target}) nor lines of \"opendr infer --json\""))
+                error.context(format!(
+                    "neither one target ({no_target}) nor lines of them or of \"opendr infer --json\""
+                ))
             })?),
         };
         Ok(Self { name: port.name, values })
@@ -90,17 +85,25 @@ impl PortFile {
 
 fn values_of_lines(port: &Port, text: &[u8]) -> Result<Vec<Option<Value>>> {
     let lines = text.split(|byte| *byte == b'\n').filter(|line| !line.trim_ascii().is_empty());
-    let value = |(number, line): (usize, &[u8])| {
-        let line: Line = serde_json::from_slice(line)
-            .map_err(|error| Error::format(format!("line {}: {error}", number + 1)))?;
-        let mut outputs = line.outputs.into_iter().map(|(_, json)| json);
-        let wanted = |json: &serde_json::Value| json["type"] == port.value_type.name();
-        // A frame that failed has no output.
-        let Some(json) = outputs.find(wanted) else { return Ok(None) };
-        let value = serde_json::from_value::<Value>(json);
-        value.map(Some).map_err(|error| Error::format(format!("line {}: {error}", number + 1)))
+    let value = |(number, line)| {
+        value_of_line(port, line).map_err(|error| error.context(format!("line {}", number + 1)))
     };
     lines.enumerate().map(value).collect()
+}
+
+/// The target that a line is, or that a line of `opendr infer --json` has among its outputs.
+fn value_of_line(port: &Port, line: &[u8]) -> Result<Option<Value>> {
+    let wrong = |error: serde_json::Error| Error::format(error.to_string());
+    let mut line: Map<String, Json> = serde_json::from_slice(line).map_err(wrong)?;
+    if line.contains_key("type") {
+        let value = serde_json::from_value(Json::Object(line)).map_err(wrong)?;
+        return of_type(port.value_type, value).map(Some);
+    }
+    // A frame that failed has no outputs.
+    let Some(Json::Object(outputs)) = line.remove("outputs") else { return Ok(None) };
+    let mut outputs = outputs.into_iter().map(|(_, json)| json);
+    let found = outputs.find(|json| json["type"] == port.value_type.name());
+    found.map(serde_json::from_value).transpose().map_err(wrong)
 }
 
 fn of_type(wanted: ValueType, value: Value) -> Result<Value> {
@@ -146,6 +149,14 @@ mod tests {
         let file = read("lines", &format!("{line}\n{{\"error\":{{}}}}\n\n{line}\n")).unwrap();
         assert!(file.value(0).is_ok() && file.value(2).is_ok());
         assert!(file.value(1).is_err() && file.value(3).is_err());
+    }
+
+    #[test]
+    fn each_line_may_be_a_target() {
+        let file = read("targets", &format!("{BOXES}\n\n{BOXES}\n")).unwrap();
+        assert!(file.value(0).is_ok() && file.value(1).is_ok() && file.value(2).is_err());
+        let wrong = read("wrong", &format!("{BOXES}\n{{\"type\":\"PoseList\",\"poses\":[]}}\n"));
+        assert!(wrong.unwrap_err().to_string().contains("line 2"));
     }
 
     #[test]

@@ -1,0 +1,144 @@
+"""Each case of tests/cases through Rust, the command, Python and C: the same JSON, byte for byte."""
+
+import json
+import os
+import shlex
+import subprocess
+from pathlib import Path
+
+import pytest
+
+try:
+    import tomllib
+except ImportError:
+    import tomli as tomllib
+
+import opendr
+from opendr.engine.target import BoundingBoxList
+
+CASES = sorted((Path(__file__).parents[1] / "cases").glob("*.toml"))
+
+
+def program(variable):
+    """A program that the test command has built, by the environment variable that names it."""
+    named = os.environ.get(variable)
+    if not named:
+        pytest.fail(f"{variable} is not set; run the tests by `cargo xtask test`")
+    return named
+
+
+@pytest.fixture(scope="module")
+def test_data():
+    folder = os.environ.get("OPENDR_TEST_DATA")
+    if not folder:
+        pytest.skip("no OPENDR_TEST_DATA")
+    os.environ["OPENDR_MODEL_REPOSITORY"] = str(Path(folder) / "models")
+    os.environ["OPENDR_CACHE"] = str(Path(os.environ["OPENDR_TEST_CACHE"]) / "opendr")
+    # Answers of more threads may differ in the last digit.
+    os.environ["OPENDR_THREADS"] = "1"
+    return Path(folder)
+
+
+class Case:
+    def __init__(self, path, test_data, folder):
+        self.table = tomllib.loads(path.read_text())
+        self.learner = self.table["learner"]
+        self.params = self.table.get("params", {})
+        self.inputs = [str(test_data / name) for name in self.table["inputs"]]
+        self.targets = self.table.get("ports", {})
+        self.folder = folder
+        #: A container of the case's own, for a learner that has none in the zoo.
+        self.model = self.container() if self.learner == "counter" else None
+
+    def container(self):
+        path = self.folder / "counter"
+        command = [program("OPENDR_INFER_JSON"), "--write-counter", str(path)]
+        subprocess.run(command, check=True)
+        return str(path)
+
+    def calls(self):
+        """The inputs of each call: the picture, and the other ports' targets as files."""
+        for number, picture in enumerate(self.inputs):
+            call = {"image": picture}
+            for port, targets in self.targets.items():
+                if number < len(targets):
+                    file = self.folder / f"{port}-{number}.json"
+                    file.write_text(json.dumps(targets[number]))
+                    call[port] = f"@{file}"
+            yield call
+
+    def words(self):
+        """The calls for the runners of Rust and C."""
+        words = []
+        for call in self.calls():
+            words += [","] * bool(words) + [f"{port}={file}" for port, file in call.items()]
+        spec = f"{self.learner}={self.model}" if self.model else self.learner
+        return [spec, json.dumps(self.params), *words]
+
+
+def printed(command, **options):
+    done = subprocess.run(command, capture_output=True, text=True, **options)
+    assert done.returncode == 0, f"{shlex.join(command)}\n{done.stderr}"
+    return done.stdout.splitlines()
+
+
+def by_rust(case):
+    return printed([program("OPENDR_INFER_JSON"), *case.words()])
+
+
+def by_c(case):
+    return printed([program("OPENDR_INFER_JSON_C"), *case.words()])
+
+
+def by_command(case):
+    command = [program("OPENDR_BIN"), "infer", case.learner, *case.inputs, "--json", "--quiet"]
+    command += [f"--{name.replace('_', '-')}={value}" for name, value in case.params.items()]
+    if case.model:
+        command += ["--model", case.model, "--sequence"]
+    for port, targets in case.targets.items():
+        file = case.folder / f"{port}.jsonl"
+        file.write_text("".join(json.dumps(target) + "\n" for target in targets))
+        command += [f"--{port}", str(file)]
+    return [outputs_of(line) for line in printed(command)]
+
+
+def outputs_of(line):
+    """The text of `outputs` in a line of the command, as it stands there."""
+    begin = line.index('"outputs":') + len('"outputs":')
+    _, end = json.JSONDecoder().raw_decode(line, begin)
+    return line[begin:end]
+
+
+def by_python(case):
+    name, _, variant = case.learner.partition("/")
+    learner = opendr.learners()[name](**case.params)
+    learner.load(case.model, variant=variant or None)
+    lines = []
+    for call in case.calls():
+        ports = {
+            port: BoundingBoxList.from_json(Path(file[1:]).read_text())
+            if file.startswith("@")
+            else file
+            for port, file in call.items()
+        }
+        answer = learner.infer(**ports)
+        names = [output["name"] for output in learner._entry["outputs"]]
+        answers = answer if len(names) > 1 else (answer,)
+        parts = sorted(zip(names, answers), key=lambda part: part[0])
+        lines.append("{" + ",".join(f'"{name}":{target.to_json()}' for name, target in parts) + "}")
+    return lines
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda path: path.stem)
+def test_every_surface_says_the_same(path, test_data, tmp_path):
+    case = Case(path, test_data, tmp_path)
+    wanted = by_rust(case)
+    assert len(wanted) == len(case.inputs) and any("confidence" in line for line in wanted)
+    assert by_command(case) == wanted
+    assert by_python(case) == wanted
+    assert by_c(case) == wanted
+
+
+def test_there_is_a_case_for_every_learner():
+    there = {tomllib.loads(path.read_text())["learner"].split("/")[0] for path in CASES}
+    assert there == set(opendr.learners())
