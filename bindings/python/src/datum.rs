@@ -33,7 +33,11 @@ pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResu
         ValueType::Observation => Value::Observation(observation(object)?),
         ValueType::PointCloudWithCalibration => {
             let cloud = numbers()?.datum(PointCloud::new)?;
-            let calibration = calibration(&object.getattr("calib")?)?;
+            let matrices = object.getattr("calibration")?;
+            if matrices.is_none() {
+                return Err(PyValueError::new_err("the cloud has no calibration; give calib"));
+            }
+            let calibration = calibration(&matrices)?;
             let image_shape = object.getattr("image_shape")?.extract()?;
             Value::PointCloudWithCalibration(PointCloudWithCalibration::new(cloud, calibration, image_shape))
         }
@@ -55,24 +59,46 @@ pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResu
 pub fn python_from_value<'py>(py: Python<'py>, value: ValueRef<'_>) -> PyResult<Bound<'py, PyAny>> {
     let name = value.value_type().name();
     let array = |numbers: &[f32], shape: &[usize]| NativeArray::from_scores(numbers.to_vec().into(), shape);
-    let (numbers, header) = match value {
-        ValueRef::Image(image) => {
-            return python_from_image(py, image.clone());
+    // The arguments of the constructor in Python.
+    let parts = match value {
+        ValueRef::Image(image) => return python_from_image(py, image.clone()),
+        ValueRef::Video(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
+        ValueRef::PointCloud(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
+        ValueRef::Timeseries(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
+        ValueRef::Vector(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
+        ValueRef::SkeletonSequence(data) => (array(data.as_slice(), &data.shape()),).into_pyobject(py)?,
+        ValueRef::Audio(sound) => {
+            (array(sound.as_slice(), &sound.array().shape()), sound.sample_rate()).into_pyobject(py)?
         }
-        ValueRef::Video(data) => (array(data.as_slice(), &data.shape()), &data.header),
-        ValueRef::PointCloud(data) => (array(data.as_slice(), &data.shape()), &data.header),
-        ValueRef::Timeseries(data) => (array(data.as_slice(), &data.shape()), &data.header),
-        ValueRef::Vector(data) => (array(data.as_slice(), &data.shape()), &data.header),
-        ValueRef::SkeletonSequence(data) => (array(data.as_slice(), &data.shape()), &data.header),
-        other if other.value_type().is_target() => {
-            return python_from_target(py, &other.to_value());
+        ValueRef::Calibration(matrices) => {
+            (matrices.p2, matrices.r0_rect, matrices.tr_velo_to_cam).into_pyobject(py)?
         }
-        _ => {
-            return Err(Error::unsupported(format!("{name} as the input of a Python learner"))).to_python(py);
+        ValueRef::Observation(seen) if seen.parts().len() == 0 => {
+            (array(seen.as_slice(), &[seen.as_slice().len()]),).into_pyobject(py)?
         }
+        ValueRef::Observation(seen) => {
+            let parts = PyDict::new(py);
+            for (part, shape, numbers) in seen.parts() {
+                parts.set_item(part, array(numbers, shape))?;
+            }
+            (parts,).into_pyobject(py)?
+        }
+        ValueRef::ImageWithDetections(seen) => {
+            let boxes = python_from_target(py, &Value::BoundingBoxList(seen.boxes.clone()))?;
+            (python_from_image(py, seen.image.clone())?, boxes).into_pyobject(py)?
+        }
+        ValueRef::PointCloudWithCalibration(seen) => {
+            let cloud = array(seen.cloud.as_slice(), &seen.cloud.shape());
+            let calibration = python_from_value(py, ValueRef::Calibration(&seen.calibration))?;
+            (cloud, calibration, seen.image_shape).into_pyobject(py)?
+        }
+        target if target.value_type().is_target() => return python_from_target(py, &target.to_value()),
+        _ => return Err(Error::unsupported(format!("{name} for Python"))).to_python(py),
     };
+    let value = value.to_value();
+    let header = value.header();
     let schema = py.import("opendr._schema")?;
-    schema.call_method1("datum_from_array", (name, numbers, header.stamp_ns, header.frame_id.as_deref()))
+    schema.call_method1("datum_from_parts", (name, parts, header.stamp_ns, header.frame_id.as_deref()))
 }
 
 /// Time stamp and frame id of a Python datum or target.
@@ -109,35 +135,22 @@ fn audio(object: &Bound<'_, PyAny>) -> PyResult<Audio> {
     samples.datum(|elements, [_, channels]: [usize; 2]| Audio::new(elements, channels, sample_rate))
 }
 
-/// From a dictionary of KITTI's matrices or an object with such attributes.
 fn calibration(object: &Bound<'_, PyAny>) -> PyResult<Calibration> {
-    let matrix = |name: &str| match object.cast::<PyDict>() {
-        Ok(dict) => dict.as_any().get_item(name),
-        Err(_) => object.getattr(name.to_lowercase().as_str()),
-    };
     Ok(Calibration {
-        header: Header::default(),
-        p2: rows(&matrix("P2")?)?,
-        r0_rect: rows(&matrix("R0_rect")?)?,
-        tr_velo_to_cam: rows(&matrix("Tr_velo_to_cam")?)?,
+        header: header_from_python(object)?,
+        p2: matrix(object, "p2")?,
+        r0_rect: matrix(object, "r0_rect")?,
+        tr_velo_to_cam: matrix(object, "tr_velo_to_cam")?,
     })
 }
 
-/// The rows of a matrix given flat or as rows; of a bottom row of homogeneous coordinates nothing is kept.
-fn rows<const COLUMNS: usize>(matrix: &Bound<'_, PyAny>) -> PyResult<[[f64; COLUMNS]; 3]> {
-    let flat: Vec<f64> =
-        matrix.py().import("numpy")?.call_method1("ravel", (matrix,))?.call_method0("tolist")?.extract()?;
-    let mut rows = [[0.0; COLUMNS]; 3];
-    if flat.len() < 3 * COLUMNS {
-        return Err(PyValueError::new_err(format!(
-            "a matrix of 3x{COLUMNS} is wanted, not of {} numbers",
-            flat.len()
-        )));
-    }
-    for (row, numbers) in rows.iter_mut().zip(flat.chunks_exact(COLUMNS)) {
-        row.copy_from_slice(numbers);
-    }
-    Ok(rows)
+/// A matrix that is an attribute; anyone may have set it to anything.
+fn matrix<const COLUMNS: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[[f64; COLUMNS]; 3]> {
+    let numpy = object.py().import("numpy")?;
+    let rows = numpy.call_method1("asarray", (object.getattr(name)?,))?.call_method0("tolist")?;
+    let rows = rows.extract::<[[f64; COLUMNS]; 3]>().ok();
+    rows.filter(|rows| rows.as_flattened().iter().all(|number| number.is_finite()))
+        .ok_or_else(|| PyValueError::new_err(format!("{name} should be 3 rows of {COLUMNS} finite numbers")))
 }
 
 /// From one array, or a dictionary of arrays by name.

@@ -29,7 +29,7 @@ pub fn register(py: Python<'_>, class: Py<PyAny>, tables: &Bound<'_, PyDict>) ->
     let ports: &'static [Port] = leak(tables.rows("ports", port)?);
     let outputs: &'static [Output] = leak(tables.rows("outputs", output)?);
     let make = move |given: &ParamMap, device: Device| {
-        for name in given.keys().filter(|name| params.iter().all(|field| field.name != name.as_str())) {
+        if let Some(name) = given.keys().find(|name| params.iter().all(|field| field.name != name.as_str())) {
             return Err(Error::invalid_param(format!("{} has no parameter {name:?}", spec.class)));
         }
         let mut values = ParamMap::new();

@@ -224,3 +224,27 @@ def test_learner_by_name(zoo):
     assert opendr.learner("yunet/320", device="cpu", verbose=False).is_ready
     with pytest.raises(FileNotFoundError, match="there are .*nanodet"):
         opendr.learner("nanodett")
+
+
+def test_numbers_that_are_none(monkeypatch):
+    # What a network gives whose weights are damaged.
+    found = '{"type": "BoundingBoxList", "boxes": [%s], "classes": ["null"]}'
+    box = '{"name": 0, "left": %s, "top": 1.0, "width": 2.0, "height": 3.0, "confidence": 0.5}'
+    right, wrong = found % (box % "4.0"), found % ", ".join((box % "4.0", box % "null"))
+
+    class DamagedHandle:
+        answer = right
+
+        def infer(self, ports):
+            return [("boxes", self.answer, None)]
+
+    learner = NanodetLearner(device="cpu")
+    monkeypatch.setitem(vars(learner), "_handle", DamagedHandle())
+    picture = np.zeros((4, 5, 3), np.uint8)
+    assert learner.infer(picture)[0].class_name == "null"
+    DamagedHandle.answer = wrong
+    with pytest.raises(opendr.InternalError, match=r"nanodet .*BoundingBoxList\.boxes\[1\]\.left is NaN"):
+        learner.infer(picture)
+    assert BoundingBoxList.from_json(right)[0].left == 4
+    with pytest.raises(opendr.InvalidInput, match=r"boxes\[1\]\.left is NaN"):
+        BoundingBoxList.from_json(wrong)

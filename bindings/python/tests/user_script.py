@@ -66,9 +66,9 @@ def poses(photo: Path) -> PoseList:
 def watch(folder: Path) -> Iterator[tuple[int, BoundingBoxList]]:
     learner = YunetLearner()
     learner.load(verbose=False)
-    source = opendr.Source(folder, "camera:0") if folder.is_absolute() and not folder.exists() else opendr.Source(folder)
-    for number, faces in enumerate(learner.infer(source)):
-        yield number, faces
+    source = opendr.Source(folder, str(folder))
+    for faces in learner.infer(source):
+        yield source.number, faces
 
 
 def data() -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any, ClassVar, NoReturn, Optional, Union
 
 from opendr import _opendr
-from opendr._errors import Unsupported
+from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr.engine import data, target
 from opendr.engine.learners import BaseLearner, Learner
 
@@ -57,6 +57,7 @@ class NativeLearner(Learner):
             FileNotFoundError: Nothing is loaded yet, or a file is not there.
             TypeError: Something is of another type than the learner takes.
             ValueError: A value is out of range.
+            opendr.InternalError: The network gave NaN or an infinite number; the text says where.
         """
         ports, overrides = self._arguments(inputs, arguments)
         first = ports.get(self._entry["ports"][0]["name"])
@@ -228,7 +229,12 @@ class NativeLearner(Learner):
     def _answer(self, outputs: list[Any]) -> Any:
         from opendr._schema import target_from_json
 
-        answers = [target_from_json(json, array) for _, json, array in outputs]
+        try:
+            answers = [target_from_json(json, array) for _, json, array in outputs]
+        except InvalidInput as error:
+            raise InternalError(
+                f"{self._entry['name']} gave what is no target: {error}; mend the model, or its input"
+            ) from error
         return answers[0] if len(answers) == 1 else self._outputs(*answers)
 
     #: The named tuple of several outputs.

@@ -6,8 +6,10 @@ One function a type each way; the native half checks and completes what is writt
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Callable, Optional
 
+from opendr._errors import InvalidInput
 from opendr.engine import data, target
 
 if TYPE_CHECKING:
@@ -33,13 +35,36 @@ def dumps(value: target.BaseTarget) -> tuple[str, bool]:
 
 
 def target_from_json(text: str, array: Optional[Any] = None) -> Any:
-    """The target that the native half wrote; ``array`` holds the numbers of a heat map."""
+    """The target that the native half wrote; ``array`` holds the numbers of a heat map.
+
+    Raises:
+        opendr.InvalidInput: A number is null, as JSON writes NaN and infinities.
+    """
     fields = json.loads(text)
+    place = _null_in(fields) if "null" in text else None
+    if place is not None:
+        raise InvalidInput(f"{fields['type']}{place} is NaN or infinite; a target in Python has finite numbers")
     value = _READERS[fields["type"]](fields if array is None else {**fields, "array": array})
     _set_header(value, fields.get("stamp_ns"), fields.get("frame_id"))
     if "action" in fields:
         value.action = target.Action(fields["action"])
     return value
+
+
+def _null_in(value: Any) -> Optional[str]:
+    """Where in a JSON value the first null is, e.g. ``.boxes[3].left``."""
+    if value is None:
+        return ""
+    items: Iterable[tuple[str, Any]] = ()
+    if isinstance(value, dict):
+        items = ((f".{name}", item) for name, item in value.items())
+    elif isinstance(value, list):
+        items = ((f"[{index}]", item) for index, item in enumerate(value))
+    for step, item in items:
+        rest = _null_in(item)
+        if rest is not None:
+            return step + rest
+    return None
 
 
 def image_from_pixels(pixels: Any) -> data.Image:
@@ -50,11 +75,9 @@ def image_from_pixels(pixels: Any) -> data.Image:
     return image
 
 
-def datum_from_array(kind: str, array: Any, stamp_ns: Optional[int], frame_id: Optional[str]) -> Any:
-    """A datum that is one array, in native memory."""
-    import numpy as np
-
-    value = getattr(data, kind)(np.asarray(array))
+def datum_from_parts(kind: str, parts: tuple[Any, ...], stamp_ns: Optional[int], frame_id: Optional[str]) -> Any:
+    """A datum of the class ``kind`` from the arguments of its constructor; arrays stay in native memory."""
+    value = getattr(data, kind)(*parts)
     _set_header(value, stamp_ns, frame_id)
     return value
 
