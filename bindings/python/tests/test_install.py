@@ -1,0 +1,122 @@
+"""The wheel in an environment of its own: small, quick, and whole with nothing but NumPy beside it."""
+
+import json
+import os
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+import pytest
+
+IMPORT = """
+import json, os, sys, time
+def resident():
+    with open("/proc/self/statm") as numbers:
+        return int(numbers.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
+before, start = resident(), time.perf_counter()
+import opendr
+taken = time.perf_counter() - start
+print(json.dumps({"ms": 1e3 * taken, "mb": resident() - before, "numpy": "numpy" in sys.modules}))
+"""
+DETECT = """
+import json, statistics, sys, time
+import opendr
+from opendr import _opendr
+from opendr.engine.data import Image
+
+learner = opendr.learner("nanodet", device="cpu", verbose=False)
+frame = Image.open(sys.argv[1]).opencv()
+boxes, taken = learner.infer(frame), []
+for _ in range(20):
+    start = time.perf_counter()
+    learner.infer(frame)
+    taken.append(1e3 * (time.perf_counter() - start))
+print(json.dumps({
+    "runtime": _opendr.runtime("cpu"),
+    "boxes": [[box.class_name, box.left, box.top, box.width, box.height] for box in boxes],
+    "ms": statistics.median(taken),
+}))
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel():
+    path = os.environ.get("OPENDR_WHEEL")
+    if not path:
+        pytest.skip("no OPENDR_WHEEL")
+    return Path(path).resolve()
+
+
+class Environment:
+    """A virtual environment with the wheel and NumPy; its programs see nothing of the one that the tests run in."""
+
+    def __init__(self, folder, wheel):
+        self.programs = folder / "venv/bin"
+        self.home = folder / "home"
+        self.home.mkdir()
+        venv.create(folder / "venv", with_pip=True)
+        self.install(str(wheel))
+
+    def install(self, package):
+        pip = [self.programs / "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", package]
+        subprocess.run(pip, check=True, env={**os.environ, "PYTHONPATH": ""})
+
+    def run(self, program, *arguments):
+        kept = {name: value for name, value in os.environ.items() if name in ("OPENDR_CACHE", "OPENDR_MODEL_REPOSITORY")}
+        done = subprocess.run(
+            [self.programs / program, *map(str, arguments)],
+            env={**kept, "PATH": str(self.programs), "HOME": str(self.home)},
+            cwd=self.home,
+            capture_output=True,
+            text=True,
+        )
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+
+@pytest.fixture(scope="module")
+def environment(wheel, tmp_path_factory):
+    return Environment(tmp_path_factory.mktemp("install"), wheel)
+
+
+def test_the_wheel_is_small(wheel):
+    assert wheel.name.startswith("opendr_rs-") and "-cp39-abi3-" in wheel.name
+    assert wheel.stat().st_size <= 15e6
+
+
+def test_nothing_comes_with_it_but_numpy(environment):
+    listed = json.loads(environment.run("python", "-m", "pip", "list", "--format", "json"))
+    assert {package["name"] for package in listed} - {"pip", "setuptools"} == {"numpy", "opendr-rs"}
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads memory where Linux tells it")
+def test_import_costs_little(environment):
+    runs = [json.loads(environment.run("python", "-c", IMPORT)) for _ in range(5)]
+    print(f"import opendr: {min(run['ms'] for run in runs):.1f} ms, {min(run['mb'] for run in runs):.1f} MB")
+    assert min(run["ms"] for run in runs) <= 50
+    assert min(run["mb"] for run in runs) <= 25
+    assert not any(run["numpy"] for run in runs)
+
+
+def test_the_command_is_installed(environment, zoo):
+    assert environment.run("opendr", "--version").split()[0] == "opendr"
+    assert "nanodet" in environment.run("opendr", "models")
+    assert "nanodet" in environment.run("python", "-m", "opendr", "models")
+
+
+def test_onnxruntime_is_found_once_it_is_installed(environment, zoo, photo):
+    builtin = json.loads(environment.run("python", "-c", DETECT, photo))
+    assert builtin["runtime"].startswith("built-in") and len(builtin["boxes"]) > 0
+    environment.install("onnxruntime")
+    onnxruntime = json.loads(environment.run("python", "-c", DETECT, photo))
+    assert onnxruntime["runtime"].startswith("ONNX Runtime")
+    print(
+        f"NanoDet: {builtin['ms']:.1f} ms on {builtin['runtime']}; {onnxruntime['ms']:.1f} ms on "
+        f"{onnxruntime['runtime']}; ratio {builtin['ms'] / onnxruntime['ms']:.2f}"
+    )
+    names, places = zip(*((box[0], box[1:]) for box in builtin["boxes"]))
+    again, found = zip(*((box[0], box[1:]) for box in onnxruntime["boxes"]))
+    assert names == again
+    for place, other in zip(places, found):
+        assert other == pytest.approx(place, abs=0.1)
