@@ -9,7 +9,7 @@ use std::fmt;
 /// `Result` with the toolkit's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// What went wrong, as far as a caller can act on it. The numbers are those of C's `opendr_status`.
+/// What went wrong, as far as a caller can act on it. C's `opendr_status` and the command's exit codes are 10 more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 #[repr(i32)]

@@ -9,6 +9,7 @@ use crate::target::json_number::null_as_nan;
 
 /// A point in a picture, in pixels; `(-1, -1)` means not found. Printed, it is `[x, y]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[repr(C)] // The C API points to keypoints where they lie.
 pub struct Keypoint {
     /// Pixels from the left edge.
     #[serde(deserialize_with = "null_as_nan")]

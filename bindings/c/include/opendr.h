@@ -1,0 +1,2273 @@
+#ifndef OPENDR_H
+#define OPENDR_H
+
+/*
+ * OpenDR in Rust: the C API. Made from the library; docs/c.md explains it.
+ *
+ * The rules:
+ *   - A function that answers opendr_status answers OPENDR_OK (0) or why it failed; opendr_last_error() tells it in words.
+ *   - What a function writes to an opendr_X ** is a new handle, NULL when the call fails. Free it with opendr_X_free(),
+ *     which takes the address of the variable and makes it NULL; freeing NULL is fine.
+ *   - What a function points to (texts, numbers, pixels) belongs to the handle it was asked of, and lives as long as it.
+ *   - What is handed in is copied, or only read during the call; it stays the caller's.
+ *   - Texts are UTF-8. Paths are bytes as the system has them.
+ *   - Learners and sources may be used by several threads at once; values as long as nobody changes or frees them.
+ *   - NULL, handles of another type, and lengths that cannot be are refused. That a pointer leads to as much memory as its
+ *     length says, and that a handle is not used after it was freed, is the caller's promise.
+ */
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Handles of data and targets, one type each. */
+typedef struct opendr_image opendr_image;
+typedef struct opendr_image_with_detections opendr_image_with_detections;
+typedef struct opendr_video opendr_video;
+typedef struct opendr_point_cloud opendr_point_cloud;
+typedef struct opendr_point_cloud_with_calibration opendr_point_cloud_with_calibration;
+typedef struct opendr_calibration opendr_calibration;
+typedef struct opendr_timeseries opendr_timeseries;
+typedef struct opendr_vector opendr_vector;
+typedef struct opendr_audio opendr_audio;
+typedef struct opendr_skeleton_sequence opendr_skeleton_sequence;
+typedef struct opendr_observation opendr_observation;
+typedef struct opendr_bounding_box_list opendr_bounding_box_list;
+typedef struct opendr_tracking_annotation_list opendr_tracking_annotation_list;
+typedef struct opendr_bounding_box_3d_list opendr_bounding_box_3d_list;
+typedef struct opendr_tracking_annotation_3d_list opendr_tracking_annotation_3d_list;
+typedef struct opendr_pose_list opendr_pose_list;
+typedef struct opendr_category opendr_category;
+typedef struct opendr_heatmap opendr_heatmap;
+typedef struct opendr_speech_command opendr_speech_command;
+typedef struct opendr_base_transcription opendr_base_transcription;
+typedef struct opendr_whisper_transcription opendr_whisper_transcription;
+typedef struct opendr_vosk_transcription opendr_vosk_transcription;
+
+/*
+ The time stamp of a value that has none.
+ */
+#define OPENDR_NO_STAMP INT64_MIN
+
+/*
+ How a call went; the numbers are the exit codes of the command `opendr`.
+ */
+typedef enum opendr_status {
+    /*
+     All went well.
+     */
+    OPENDR_OK = 0,
+    /*
+     A datum, target, pointer or file handed in does not fit: null, wrong shape, empty, NaN, undecodable picture.
+     */
+    OPENDR_INVALID_INPUT = 11,
+    /*
+     A parameter is unknown, of the wrong type or out of range.
+     */
+    OPENDR_INVALID_PARAM = 12,
+    /*
+     A file, model, learner, device node or class name does not exist.
+     */
+    OPENDR_NOT_FOUND = 13,
+    /*
+     The operating system refused to read or write.
+     */
+    OPENDR_IO = 14,
+    /*
+     A server or package client could not be reached or broke off.
+     */
+    OPENDR_NETWORK = 15,
+    /*
+     Bytes differ from their checksum or stated size, or an archive member leaves its folder.
+     */
+    OPENDR_INTEGRITY = 16,
+    /*
+     A file or message does not follow its format.
+     */
+    OPENDR_FORMAT = 17,
+    /*
+     This learner, runtime or build cannot do what was asked.
+     */
+    OPENDR_UNSUPPORTED = 18,
+    /*
+     The device asked for is not there or failed.
+     */
+    OPENDR_DEVICE = 19,
+    /*
+     A fault of OpenDR itself: please report it.
+     */
+    OPENDR_INTERNAL = 20,
+} opendr_status;
+
+/*
+ The type of a picture's samples.
+ */
+typedef enum opendr_samples {
+    /*
+     8 bits, 0 to 255.
+     */
+    OPENDR_U8 = 0,
+    /*
+     16 bits: depth in millimetres, thermal counts.
+     */
+    OPENDR_U16 = 1,
+    /*
+     Floats: depth in metres, or colours.
+     */
+    OPENDR_F32 = 2,
+} opendr_samples;
+
+/*
+ The channels of a picture in memory.
+ */
+typedef enum opendr_pixel_format {
+    /*
+     One channel: brightness, depth.
+     */
+    OPENDR_GREY = 0,
+    /*
+     Red, green, blue.
+     */
+    OPENDR_RGB = 1,
+    /*
+     Blue, green, red (OpenCV).
+     */
+    OPENDR_BGR = 2,
+    /*
+     Red, green, blue, opacity.
+     */
+    OPENDR_RGBA = 3,
+    /*
+     Blue, green, red, opacity.
+     */
+    OPENDR_BGRA = 4,
+} opendr_pixel_format;
+
+/*
+ The order of the axes of a picture in memory.
+ */
+typedef enum opendr_layout {
+    /*
+     [height, width, channels]: pixels lie together (cameras, OpenCV).
+     */
+    OPENDR_HWC = 0,
+    /*
+     [channels, height, width]: planes lie together (networks).
+     */
+    OPENDR_CHW = 1,
+} opendr_layout;
+
+/*
+ The joints of a kind of body, and their order (docs/json.md).
+ */
+typedef enum opendr_skeleton {
+    /*
+     OpenDR's 18 joints of a person.
+     */
+    OPENDR_OPENDR18 = 0,
+    /*
+     COCO's 17 joints of a person.
+     */
+    OPENDR_COCO17 = 1,
+} opendr_skeleton;
+
+/*
+ A learner with its model; threads may use it at once, one call is answered after the other.
+ */
+typedef struct opendr_learner opendr_learner;
+
+/*
+ Pictures one after the other; two threads may take from it at once.
+ */
+typedef struct opendr_source opendr_source;
+
+/*
+ A text that the library made; free it with opendr_string_free().
+ */
+typedef struct opendr_string opendr_string;
+
+/*
+ A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
+ */
+typedef struct opendr_value opendr_value;
+
+/*
+ A named input.
+ */
+typedef struct opendr_input {
+    /*
+     The input's name, e.g. "image".
+     */
+    const char *name;
+    /*
+     Any data or target; NULL leaves an optional input out.
+     */
+    const struct opendr_value *value;
+} opendr_input;
+
+/*
+ A named output.
+ */
+typedef struct opendr_output {
+    /*
+     The output's name, e.g. "boxes".
+     */
+    const char *name;
+    /*
+     What was found, to be freed; set by the call, NULL when it failed.
+     */
+    struct opendr_value *value;
+} opendr_output;
+
+/*
+ The matrices of a calibration, row by row, as KITTI names them.
+ */
+typedef struct opendr_calibration_matrices {
+    /*
+     Projection of the rectified camera frame into the left colour picture.
+     */
+    double p2[3][4];
+    /*
+     Rectifying rotation.
+     */
+    double r0_rect[3][3];
+    /*
+     From the lidar's frame to the camera's, metres.
+     */
+    double tr_velo_to_cam[3][4];
+} opendr_calibration_matrices;
+
+/*
+ Pixels in memory.
+ */
+typedef struct opendr_pixels {
+    /*
+     The first sample.
+     */
+    const void *data;
+    /*
+     Bytes from the first sample to the end of the memory.
+     */
+    size_t size;
+    /*
+     Pixels a row.
+     */
+    size_t width;
+    /*
+     Rows.
+     */
+    size_t height;
+    /*
+     Bytes from one row to the next; 0 when rows follow each other without a gap. Planes are height rows.
+     */
+    size_t row_stride;
+    /*
+     One of opendr_samples.
+     */
+    int32_t samples;
+    /*
+     One of opendr_pixel_format.
+     */
+    int32_t format;
+    /*
+     One of opendr_layout.
+     */
+    int32_t layout;
+} opendr_pixels;
+
+/*
+ A named part of an observation.
+ */
+typedef struct opendr_observation_part {
+    /*
+     Its name.
+     */
+    const char *name;
+    /*
+     Its numbers, last axis fastest.
+     */
+    const float *numbers;
+    /*
+     How many numbers there are.
+     */
+    size_t length;
+    /*
+     The sizes of its axes.
+     */
+    const size_t *shape;
+    /*
+     How many axes there are.
+     */
+    size_t axes;
+} opendr_observation_part;
+
+/*
+ A box in space, in the camera frame of KITTI: x right, y down, z ahead.
+ */
+typedef struct opendr_bounding_box_3d {
+    /*
+     Class number; -1 when there is only a label.
+     */
+    int64_t class_index;
+    /*
+     What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
+     */
+    const char *label;
+    /*
+     How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
+     */
+    float truncated;
+    /*
+     0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
+     */
+    int32_t occluded;
+    /*
+     Angle under which the object is seen, radians.
+     */
+    float alpha;
+    /*
+     The object in the picture, corners x0, y0, x1, y1, pixels.
+     */
+    float bbox2d[4];
+    /*
+     Length, height and width, metres.
+     */
+    float dimensions[3];
+    /*
+     x, y, z of the middle of its floor, metres.
+     */
+    float location[3];
+    /*
+     Turn about the vertical axis, radians; 0 looks along x.
+     */
+    float rotation_y;
+    /*
+     Score.
+     */
+    float confidence;
+} opendr_bounding_box_3d;
+
+/*
+ A point in a picture, pixels.
+ */
+typedef struct opendr_point {
+    /*
+     Pixels from the left edge.
+     */
+    float x;
+    /*
+     Pixels from the upper edge.
+     */
+    float y;
+} opendr_point;
+
+/*
+ A box in a picture. Outlines (segments) are in the JSON of the list.
+ */
+typedef struct opendr_bounding_box {
+    /*
+     Class number; -1 when there is only a label.
+     */
+    int64_t class_index;
+    /*
+     What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
+     */
+    const char *label;
+    /*
+     Left edge, pixels.
+     */
+    float left;
+    /*
+     Upper edge, pixels.
+     */
+    float top;
+    /*
+     Pixels to the right edge.
+     */
+    float width;
+    /*
+     Pixels to the lower edge.
+     */
+    float height;
+    /*
+     Score, 0 to 1.
+     */
+    float confidence;
+    /*
+     Points that belong to the box (eyes, nose, corners of the mouth of a face).
+     */
+    const struct opendr_point *landmarks;
+    /*
+     How many there are.
+     */
+    size_t landmark_count;
+} opendr_bounding_box;
+
+/*
+ What a category says.
+ */
+typedef struct opendr_category_fields {
+    /*
+     Class number.
+     */
+    int64_t class_index;
+    /*
+     What the class means, NULL when that is not known.
+     */
+    const char *description;
+    /*
+     Score of the class, 0 to 1; NaN when there is none.
+     */
+    float confidence;
+    /*
+     Score of every class.
+     */
+    const float *probabilities;
+    /*
+     How many there are; 0 when the learner does not tell them.
+     */
+    size_t probability_count;
+} opendr_category_fields;
+
+/*
+ The elements of a heat map, last axis fastest: either labels or scores, the other is NULL.
+ */
+typedef struct opendr_heatmap_fields {
+    /*
+     Class numbers.
+     */
+    const uint32_t *labels;
+    /*
+     Scores.
+     */
+    const float *scores;
+    /*
+     How many elements there are.
+     */
+    size_t length;
+    /*
+     The sizes of the axes, e.g. height and width.
+     */
+    const size_t *shape;
+    /*
+     How many axes there are, 1 to 8.
+     */
+    size_t axes;
+} opendr_heatmap_fields;
+
+/*
+ A point found in a picture, pixels; (-1, -1) means not found.
+ */
+typedef struct opendr_keypoint {
+    /*
+     Pixels from the left edge.
+     */
+    float x;
+    /*
+     Pixels from the upper edge.
+     */
+    float y;
+    /*
+     Score, 0 to 1.
+     */
+    float confidence;
+} opendr_keypoint;
+
+/*
+ One person.
+ */
+typedef struct opendr_pose {
+    /*
+     The joints in the order of the skeleton.
+     */
+    const struct opendr_keypoint *keypoints;
+    /*
+     How many there are.
+     */
+    size_t keypoint_count;
+    /*
+     Score of the whole, 0 to 1.
+     */
+    float confidence;
+    /*
+     One of opendr_skeleton.
+     */
+    int32_t skeleton;
+    /*
+     The person's track; -1 when none is kept.
+     */
+    int64_t id;
+} opendr_pose;
+
+/*
+ What a command says.
+ */
+typedef struct opendr_speech_command_fields {
+    /*
+     Class number; -1 when there is only a word.
+     */
+    int64_t class_index;
+    /*
+     The word, NULL when it is not known. Given to a command, it counts when class_index is -1.
+     */
+    const char *label;
+    /*
+     Score, 0 to 1.
+     */
+    float confidence;
+    /*
+     Begin within the sound, seconds; NaN when it is not known.
+     */
+    float begin_s;
+    /*
+     End within the sound, seconds; NaN when it is not known.
+     */
+    float end_s;
+} opendr_speech_command_fields;
+
+/*
+ A box of one object that is followed through space.
+ */
+typedef struct opendr_tracking_annotation_3d {
+    /*
+     Where it is.
+     */
+    struct opendr_bounding_box_3d bounding_box_3d;
+    /*
+     The object's number, the same at every time; -1 when it is not known.
+     */
+    int64_t id;
+    /*
+     Number of the cloud in its recording; -1 when it has none.
+     */
+    int64_t frame;
+} opendr_tracking_annotation_3d;
+
+/*
+ A box of one object that is followed through a video.
+ */
+typedef struct opendr_tracking_annotation {
+    /*
+     Where it is.
+     */
+    struct opendr_bounding_box bounding_box;
+    /*
+     The object's number, the same in every picture; -1 when it is not known.
+     */
+    int64_t id;
+    /*
+     Number of the picture in its video; -1 when it has none.
+     */
+    int64_t frame;
+} opendr_tracking_annotation;
+
+/*
+ A part of a transcription. Tokens and measures are in the JSON of the transcription.
+ */
+typedef struct opendr_whisper_segment {
+    /*
+     Number of the segment.
+     */
+    int64_t id;
+    /*
+     Begin within the sound, seconds.
+     */
+    float start_s;
+    /*
+     End within the sound, seconds.
+     */
+    float end_s;
+    /*
+     The words.
+     */
+    const char *text;
+} opendr_whisper_segment;
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+/*
+ The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
+ index. "" when there is none. Valid until the next call of this thread.
+ */
+const char *opendr_json_text(const char *json, const char *section, const char *key, int32_t index);
+
+/*
+ The number under a key, as opendr_json_text() finds it; 0 when there is none.
+ */
+double opendr_json_number(const char *json, const char *section, const char *key, int32_t index);
+
+/*
+ Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
+ as they are.
+ */
+enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
+
+/*
+ Loads a learner, e.g. "nanodet" or "yunet/n_320".
+
+ path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
+ "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
+ */
+enum opendr_status opendr_load(const char *name,
+                               const char *path,
+                               const char *device,
+                               const char *params_json,
+                               struct opendr_learner **learner);
+
+/*
+ Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
+ left out. Inputs stay the caller's.
+ */
+enum opendr_status opendr_infer(const struct opendr_learner *learner,
+                                const struct opendr_input *inputs,
+                                size_t input_count,
+                                struct opendr_output *outputs,
+                                size_t output_count);
+
+/*
+ The name of the learner's input number index, NULL after the last. It lives as long as the learner.
+ */
+const char *opendr_input_name(const struct opendr_learner *learner, size_t index);
+
+/*
+ The name of the learner's output number index, NULL after the last. It lives as long as the learner.
+ */
+const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
+
+/*
+ Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
+ */
+enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);
+
+/*
+ The parameters in force as a JSON object.
+ */
+enum opendr_status opendr_params(const struct opendr_learner *learner, struct opendr_string **json);
+
+/*
+ Forgets what the learner's own stream remembers.
+ */
+enum opendr_status opendr_reset(const struct opendr_learner *learner);
+
+/*
+ The names of the classes in order, as a JSON list; empty when class numbers have no names.
+ */
+enum opendr_status opendr_classes(const struct opendr_learner *learner, struct opendr_string **json);
+
+/*
+ How many classes have names.
+ */
+enum opendr_status opendr_class_count(const struct opendr_learner *learner, size_t *count);
+
+/*
+ The name of a class, NULL when it has none. It lives as long as the learner.
+ */
+const char *opendr_class_name(const struct opendr_learner *learner, int64_t class_index);
+
+/*
+ Writes the model with the parameters in force as a container to the folder path.
+ */
+enum opendr_status opendr_save(const struct opendr_learner *learner, const char *path);
+
+/*
+ Frees the learner and makes the variable NULL; a NULL in it is freed already.
+ */
+enum opendr_status opendr_learner_free(struct opendr_learner **learner);
+
+/*
+ The learners that there are, as a JSON list of their names.
+ */
+enum opendr_status opendr_learners(struct opendr_string **json);
+
+/*
+ The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
+ index. "" when there is none. Valid until the next call of this thread.
+ */
+const char *opendr_json_text(const char *json, const char *section, const char *key, int32_t index);
+
+/*
+ The number under a key, as opendr_json_text() finds it; 0 when there is none.
+ */
+double opendr_json_number(const char *json, const char *section, const char *key, int32_t index);
+
+/*
+ Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
+ */
+enum opendr_status opendr_array_create(const char *type_name,
+                                       const float *numbers,
+                                       size_t length,
+                                       const size_t *shape,
+                                       size_t axes,
+                                       struct opendr_value **value);
+
+/*
+ Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
+ The numbers live as long as the datum.
+ */
+enum opendr_status opendr_array_read(const struct opendr_value *value,
+                                     const float **numbers,
+                                     size_t *length,
+                                     size_t *shape,
+                                     size_t axes);
+
+/*
+ Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
+ */
+enum opendr_status opendr_audio_create(const float *samples,
+                                       size_t length,
+                                       size_t channels,
+                                       uint32_t sample_rate,
+                                       opendr_audio **audio);
+
+/*
+ Shows the samples of a sound, which live as long as it.
+ */
+enum opendr_status opendr_audio_read(const opendr_audio *audio,
+                                     const float **samples,
+                                     size_t *length,
+                                     size_t *channels,
+                                     uint32_t *sample_rate);
+
+/*
+ Makes a calibration of its matrices.
+ */
+enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
+                                             opendr_calibration **calibration);
+
+/*
+ Reads a calibration file of KITTI's detection or tracking benchmark.
+ */
+enum opendr_status opendr_calibration_open(const char *path, opendr_calibration **calibration);
+
+/*
+ Copies the matrices of a calibration.
+ */
+enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
+                                           struct opendr_calibration_matrices *matrices);
+
+/*
+ Reads a picture file: JPEG, PNG, BMP or WebP.
+ */
+enum opendr_status opendr_image_open(const char *path, opendr_image **image);
+
+/*
+ Reads a picture from the bytes of a file.
+ */
+enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
+
+/*
+ Makes a picture of pixels in memory, which are copied.
+ */
+enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
+
+/*
+ Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
+ */
+enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
+
+/*
+ Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
+ */
+enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
+
+/*
+ Makes a picture with boxes; picture and boxes stay the caller's.
+ */
+enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
+                                                       const opendr_bounding_box_list *boxes,
+                                                       opendr_image_with_detections **both);
+
+/*
+ Gives new handles of the picture and of the boxes, to be freed.
+ */
+enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
+                                                     opendr_image **image,
+                                                     opendr_bounding_box_list **boxes);
+
+/*
+ Makes an observation of length numbers without parts, which are copied.
+ */
+enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
+
+/*
+ Makes an observation of named parts, which are copied.
+ */
+enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
+                                                   size_t count,
+                                                   opendr_observation **observation);
+
+/*
+ Shows all numbers of an observation in a row, which live as long as it.
+ */
+enum opendr_status opendr_observation_read(const opendr_observation *observation,
+                                           const float **numbers,
+                                           size_t *length);
+
+/*
+ How many named parts an observation has; 0 for what is none.
+ */
+size_t opendr_observation_part_count(const opendr_observation *observation);
+
+/*
+ Shows a part of an observation; what it points to lives as long as the observation.
+ */
+enum opendr_status opendr_observation_get(const opendr_observation *observation,
+                                          size_t index,
+                                          struct opendr_observation_part *part);
+
+/*
+ Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
+ picture in pixels, or NULL.
+ */
+enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
+                                                              const opendr_calibration *calibration,
+                                                              const size_t *image_shape,
+                                                              opendr_point_cloud_with_calibration **both);
+
+/*
+ Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
+ are not known.
+ */
+enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
+                                                            opendr_point_cloud **cloud,
+                                                            opendr_calibration **calibration,
+                                                            size_t *height,
+                                                            size_t *width);
+
+/*
+ Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
+ as they are.
+ */
+enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
+
+/*
+ Loads a learner, e.g. "nanodet" or "yunet/n_320".
+
+ path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
+ "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
+ */
+enum opendr_status opendr_load(const char *name,
+                               const char *path,
+                               const char *device,
+                               const char *params_json,
+                               struct opendr_learner **learner);
+
+/*
+ Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
+ left out. Inputs stay the caller's.
+ */
+enum opendr_status opendr_infer(const struct opendr_learner *learner,
+                                const struct opendr_input *inputs,
+                                size_t input_count,
+                                struct opendr_output *outputs,
+                                size_t output_count);
+
+/*
+ The name of the learner's input number index, NULL after the last. It lives as long as the learner.
+ */
+const char *opendr_input_name(const struct opendr_learner *learner, size_t index);
+
+/*
+ The name of the learner's output number index, NULL after the last. It lives as long as the learner.
+ */
+const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
+
+/*
+ Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
+ */
+enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);
+
+/*
+ The parameters in force as a JSON object.
+ */
+enum opendr_status opendr_params(const struct opendr_learner *learner, struct opendr_string **json);
+
+/*
+ Forgets what the learner's own stream remembers.
+ */
+enum opendr_status opendr_reset(const struct opendr_learner *learner);
+
+/*
+ The names of the classes in order, as a JSON list; empty when class numbers have no names.
+ */
+enum opendr_status opendr_classes(const struct opendr_learner *learner, struct opendr_string **json);
+
+/*
+ How many classes have names.
+ */
+enum opendr_status opendr_class_count(const struct opendr_learner *learner, size_t *count);
+
+/*
+ The name of a class, NULL when it has none. It lives as long as the learner.
+ */
+const char *opendr_class_name(const struct opendr_learner *learner, int64_t class_index);
+
+/*
+ Writes the model with the parameters in force as a container to the folder path.
+ */
+enum opendr_status opendr_save(const struct opendr_learner *learner, const char *path);
+
+/*
+ Frees the learner and makes the variable NULL; a NULL in it is freed already.
+ */
+enum opendr_status opendr_learner_free(struct opendr_learner **learner);
+
+/*
+ The learners that there are, as a JSON list of their names.
+ */
+enum opendr_status opendr_learners(struct opendr_string **json);
+
+/*
+ Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
+ */
+enum opendr_status opendr_source_open(const char *input, struct opendr_source **source);
+
+/*
+ The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
+ the next file.
+ */
+enum opendr_status opendr_source_next(struct opendr_source *source, opendr_image **image);
+
+/*
+ The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
+ until the next call with this source.
+ */
+const char *opendr_source_path(const struct opendr_source *source);
+
+/*
+ Closes the source and makes the variable NULL; a NULL in it is closed already.
+ */
+enum opendr_status opendr_source_free(struct opendr_source **source);
+
+/*
+ Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
+ thread.
+ */
+const char *opendr_last_error(void);
+
+/*
+ The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
+ */
+const char *opendr_status_name(int32_t status);
+
+/*
+ The version of the library, e.g. "0.1.0".
+ */
+const char *opendr_version(void);
+
+/*
+ The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
+ */
+const char *opendr_string_text(const struct opendr_string *string);
+
+/*
+ How many bytes the text has, the zero at its end not counted.
+ */
+size_t opendr_string_length(const struct opendr_string *string);
+
+/*
+ Frees the string and makes the variable NULL; a NULL in it is freed already.
+ */
+enum opendr_status opendr_string_free(struct opendr_string **string);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
+                                                      size_t count,
+                                                      opendr_bounding_box_3d_list **list);
+
+/*
+ How many boxes there are; 0 for what is no such list.
+ */
+size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
+                                                   size_t index,
+                                                   struct opendr_bounding_box_3d *item);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
+                                                   size_t count,
+                                                   opendr_bounding_box_list **list);
+
+/*
+ How many boxes there are; 0 for what is no such list.
+ */
+size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
+                                                size_t index,
+                                                struct opendr_bounding_box *item);
+
+/*
+ Makes a category; everything is copied.
+ */
+enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
+
+/*
+ Shows what a category says; what the fields point to lives as long as the category.
+ */
+enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
+
+/*
+ Makes a heat map; everything is copied.
+ */
+enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
+
+/*
+ Shows the elements of a heat map, which live as long as it.
+ */
+enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
+
+/*
+ How many persons there are; 0 for what is no such list.
+ */
+size_t opendr_pose_list_count(const opendr_pose_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
+
+/*
+ Makes a command; everything is copied.
+ */
+enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
+                                                opendr_speech_command **command);
+
+/*
+ Shows what a command says; the word lives as long as the command.
+ */
+enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
+                                              struct opendr_speech_command_fields *fields);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
+                                                             size_t count,
+                                                             opendr_tracking_annotation_3d_list **list);
+
+/*
+ How many tracks there are; 0 for what is no such list.
+ */
+size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
+                                                          size_t index,
+                                                          struct opendr_tracking_annotation_3d *item);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
+                                                          size_t count,
+                                                          opendr_tracking_annotation_list **list);
+
+/*
+ How many tracks there are; 0 for what is no such list.
+ */
+size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
+                                                       size_t index,
+                                                       struct opendr_tracking_annotation *item);
+
+/*
+ Makes a transcription of words.
+ */
+enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
+
+/*
+ The words, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
+
+/*
+ Makes a transcription of words so far; finished tells whether the phrase is.
+ */
+enum opendr_status opendr_vosk_transcription_create(const char *text,
+                                                    bool finished,
+                                                    opendr_vosk_transcription **transcription);
+
+/*
+ The words so far, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
+
+/*
+ Whether the phrase is finished: the words will not change any more.
+ */
+bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
+
+/*
+ Makes a transcription of words and its segments, which are copied.
+ */
+enum opendr_status opendr_whisper_transcription_create(const char *text,
+                                                       const struct opendr_whisper_segment *segments,
+                                                       size_t count,
+                                                       opendr_whisper_transcription **transcription);
+
+/*
+ The words, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
+
+/*
+ How many segments there are; 0 for what is no such transcription.
+ */
+size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
+
+/*
+ Shows a segment; its words live as long as the transcription.
+ */
+enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
+                                                    size_t index,
+                                                    struct opendr_whisper_segment *segment);
+
+/*
+ The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
+ */
+const char *opendr_value_type(const struct opendr_value *value);
+
+/*
+ The JSON of a target (docs/json.md).
+ */
+enum opendr_status opendr_value_to_json(const struct opendr_value *value, struct opendr_string **json);
+
+/*
+ A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
+ */
+enum opendr_status opendr_value_from_json(const char *type_name, const char *json, struct opendr_value **value);
+
+/*
+ The value as people read it: a line for each item.
+ */
+enum opendr_status opendr_value_to_text(const struct opendr_value *value, struct opendr_string **string);
+
+/*
+ When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
+ */
+enum opendr_status opendr_value_stamp(const struct opendr_value *value, int64_t *stamp_ns);
+
+/*
+ Sets when the value was taken; OPENDR_NO_STAMP forgets it.
+ */
+enum opendr_status opendr_value_set_stamp(struct opendr_value *value, int64_t stamp_ns);
+
+/*
+ The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
+ */
+const char *opendr_value_frame_id(const struct opendr_value *value);
+
+/*
+ Sets the coordinate frame of the value; NULL forgets it.
+ */
+enum opendr_status opendr_value_set_frame_id(struct opendr_value *value, const char *frame_id);
+
+/*
+ A handle of its own to the same value; bulky payloads stay shared.
+ */
+enum opendr_status opendr_value_copy(const struct opendr_value *value, struct opendr_value **copy);
+
+/*
+ Frees the value and makes the variable NULL; a NULL in it is freed already.
+ */
+enum opendr_status opendr_value_free(struct opendr_value **value);
+
+/*
+ Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
+ */
+enum opendr_status opendr_source_open(const char *input, struct opendr_source **source);
+
+/*
+ The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
+ the next file.
+ */
+enum opendr_status opendr_source_next(struct opendr_source *source, opendr_image **image);
+
+/*
+ The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
+ until the next call with this source.
+ */
+const char *opendr_source_path(const struct opendr_source *source);
+
+/*
+ Closes the source and makes the variable NULL; a NULL in it is closed already.
+ */
+enum opendr_status opendr_source_free(struct opendr_source **source);
+
+/*
+ Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
+ thread.
+ */
+const char *opendr_last_error(void);
+
+/*
+ The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
+ */
+const char *opendr_status_name(int32_t status);
+
+/*
+ The version of the library, e.g. "0.1.0".
+ */
+const char *opendr_version(void);
+
+/*
+ The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
+ */
+const char *opendr_string_text(const struct opendr_string *string);
+
+/*
+ How many bytes the text has, the zero at its end not counted.
+ */
+size_t opendr_string_length(const struct opendr_string *string);
+
+/*
+ Frees the string and makes the variable NULL; a NULL in it is freed already.
+ */
+enum opendr_status opendr_string_free(struct opendr_string **string);
+
+/*
+ The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
+ */
+const char *opendr_value_type(const struct opendr_value *value);
+
+/*
+ The JSON of a target (docs/json.md).
+ */
+enum opendr_status opendr_value_to_json(const struct opendr_value *value, struct opendr_string **json);
+
+/*
+ A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
+ */
+enum opendr_status opendr_value_from_json(const char *type_name, const char *json, struct opendr_value **value);
+
+/*
+ The value as people read it: a line for each item.
+ */
+enum opendr_status opendr_value_to_text(const struct opendr_value *value, struct opendr_string **string);
+
+/*
+ When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
+ */
+enum opendr_status opendr_value_stamp(const struct opendr_value *value, int64_t *stamp_ns);
+
+/*
+ Sets when the value was taken; OPENDR_NO_STAMP forgets it.
+ */
+enum opendr_status opendr_value_set_stamp(struct opendr_value *value, int64_t stamp_ns);
+
+/*
+ The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
+ */
+const char *opendr_value_frame_id(const struct opendr_value *value);
+
+/*
+ Sets the coordinate frame of the value; NULL forgets it.
+ */
+enum opendr_status opendr_value_set_frame_id(struct opendr_value *value, const char *frame_id);
+
+/*
+ A handle of its own to the same value; bulky payloads stay shared.
+ */
+enum opendr_status opendr_value_copy(const struct opendr_value *value, struct opendr_value **copy);
+
+/*
+ Frees the value and makes the variable NULL; a NULL in it is freed already.
+ */
+enum opendr_status opendr_value_free(struct opendr_value **value);
+
+/*
+ Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
+ */
+enum opendr_status opendr_array_create(const char *type_name,
+                                       const float *numbers,
+                                       size_t length,
+                                       const size_t *shape,
+                                       size_t axes,
+                                       struct opendr_value **value);
+
+/*
+ Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
+ The numbers live as long as the datum.
+ */
+enum opendr_status opendr_array_read(const struct opendr_value *value,
+                                     const float **numbers,
+                                     size_t *length,
+                                     size_t *shape,
+                                     size_t axes);
+
+/*
+ Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
+ */
+enum opendr_status opendr_audio_create(const float *samples,
+                                       size_t length,
+                                       size_t channels,
+                                       uint32_t sample_rate,
+                                       opendr_audio **audio);
+
+/*
+ Shows the samples of a sound, which live as long as it.
+ */
+enum opendr_status opendr_audio_read(const opendr_audio *audio,
+                                     const float **samples,
+                                     size_t *length,
+                                     size_t *channels,
+                                     uint32_t *sample_rate);
+
+/*
+ Makes a calibration of its matrices.
+ */
+enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
+                                             opendr_calibration **calibration);
+
+/*
+ Reads a calibration file of KITTI's detection or tracking benchmark.
+ */
+enum opendr_status opendr_calibration_open(const char *path, opendr_calibration **calibration);
+
+/*
+ Copies the matrices of a calibration.
+ */
+enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
+                                           struct opendr_calibration_matrices *matrices);
+
+/*
+ Reads a picture file: JPEG, PNG, BMP or WebP.
+ */
+enum opendr_status opendr_image_open(const char *path, opendr_image **image);
+
+/*
+ Reads a picture from the bytes of a file.
+ */
+enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
+
+/*
+ Makes a picture of pixels in memory, which are copied.
+ */
+enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
+
+/*
+ Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
+ */
+enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
+
+/*
+ Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
+ */
+enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
+
+/*
+ Makes a picture with boxes; picture and boxes stay the caller's.
+ */
+enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
+                                                       const opendr_bounding_box_list *boxes,
+                                                       opendr_image_with_detections **both);
+
+/*
+ Gives new handles of the picture and of the boxes, to be freed.
+ */
+enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
+                                                     opendr_image **image,
+                                                     opendr_bounding_box_list **boxes);
+
+/*
+ Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
+ */
+enum opendr_status opendr_array_create(const char *type_name,
+                                       const float *numbers,
+                                       size_t length,
+                                       const size_t *shape,
+                                       size_t axes,
+                                       struct opendr_value **value);
+
+/*
+ Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
+ The numbers live as long as the datum.
+ */
+enum opendr_status opendr_array_read(const struct opendr_value *value,
+                                     const float **numbers,
+                                     size_t *length,
+                                     size_t *shape,
+                                     size_t axes);
+
+/*
+ Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
+ */
+enum opendr_status opendr_audio_create(const float *samples,
+                                       size_t length,
+                                       size_t channels,
+                                       uint32_t sample_rate,
+                                       opendr_audio **audio);
+
+/*
+ Shows the samples of a sound, which live as long as it.
+ */
+enum opendr_status opendr_audio_read(const opendr_audio *audio,
+                                     const float **samples,
+                                     size_t *length,
+                                     size_t *channels,
+                                     uint32_t *sample_rate);
+
+/*
+ Makes a calibration of its matrices.
+ */
+enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
+                                             opendr_calibration **calibration);
+
+/*
+ Reads a calibration file of KITTI's detection or tracking benchmark.
+ */
+enum opendr_status opendr_calibration_open(const char *path, opendr_calibration **calibration);
+
+/*
+ Copies the matrices of a calibration.
+ */
+enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
+                                           struct opendr_calibration_matrices *matrices);
+
+/*
+ Reads a picture file: JPEG, PNG, BMP or WebP.
+ */
+enum opendr_status opendr_image_open(const char *path, opendr_image **image);
+
+/*
+ Reads a picture from the bytes of a file.
+ */
+enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
+
+/*
+ Makes a picture of pixels in memory, which are copied.
+ */
+enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
+
+/*
+ Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
+ */
+enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
+
+/*
+ Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
+ */
+enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
+
+/*
+ Makes a picture with boxes; picture and boxes stay the caller's.
+ */
+enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
+                                                       const opendr_bounding_box_list *boxes,
+                                                       opendr_image_with_detections **both);
+
+/*
+ Gives new handles of the picture and of the boxes, to be freed.
+ */
+enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
+                                                     opendr_image **image,
+                                                     opendr_bounding_box_list **boxes);
+
+/*
+ Makes an observation of length numbers without parts, which are copied.
+ */
+enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
+
+/*
+ Makes an observation of named parts, which are copied.
+ */
+enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
+                                                   size_t count,
+                                                   opendr_observation **observation);
+
+/*
+ Shows all numbers of an observation in a row, which live as long as it.
+ */
+enum opendr_status opendr_observation_read(const opendr_observation *observation,
+                                           const float **numbers,
+                                           size_t *length);
+
+/*
+ How many named parts an observation has; 0 for what is none.
+ */
+size_t opendr_observation_part_count(const opendr_observation *observation);
+
+/*
+ Shows a part of an observation; what it points to lives as long as the observation.
+ */
+enum opendr_status opendr_observation_get(const opendr_observation *observation,
+                                          size_t index,
+                                          struct opendr_observation_part *part);
+
+/*
+ Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
+ picture in pixels, or NULL.
+ */
+enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
+                                                              const opendr_calibration *calibration,
+                                                              const size_t *image_shape,
+                                                              opendr_point_cloud_with_calibration **both);
+
+/*
+ Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
+ are not known.
+ */
+enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
+                                                            opendr_point_cloud **cloud,
+                                                            opendr_calibration **calibration,
+                                                            size_t *height,
+                                                            size_t *width);
+
+/*
+ Makes an observation of length numbers without parts, which are copied.
+ */
+enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
+
+/*
+ Makes an observation of named parts, which are copied.
+ */
+enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
+                                                   size_t count,
+                                                   opendr_observation **observation);
+
+/*
+ Shows all numbers of an observation in a row, which live as long as it.
+ */
+enum opendr_status opendr_observation_read(const opendr_observation *observation,
+                                           const float **numbers,
+                                           size_t *length);
+
+/*
+ How many named parts an observation has; 0 for what is none.
+ */
+size_t opendr_observation_part_count(const opendr_observation *observation);
+
+/*
+ Shows a part of an observation; what it points to lives as long as the observation.
+ */
+enum opendr_status opendr_observation_get(const opendr_observation *observation,
+                                          size_t index,
+                                          struct opendr_observation_part *part);
+
+/*
+ Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
+ picture in pixels, or NULL.
+ */
+enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
+                                                              const opendr_calibration *calibration,
+                                                              const size_t *image_shape,
+                                                              opendr_point_cloud_with_calibration **both);
+
+/*
+ Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
+ are not known.
+ */
+enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
+                                                            opendr_point_cloud **cloud,
+                                                            opendr_calibration **calibration,
+                                                            size_t *height,
+                                                            size_t *width);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
+                                                      size_t count,
+                                                      opendr_bounding_box_3d_list **list);
+
+/*
+ How many boxes there are; 0 for what is no such list.
+ */
+size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
+                                                   size_t index,
+                                                   struct opendr_bounding_box_3d *item);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
+                                                   size_t count,
+                                                   opendr_bounding_box_list **list);
+
+/*
+ How many boxes there are; 0 for what is no such list.
+ */
+size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
+                                                size_t index,
+                                                struct opendr_bounding_box *item);
+
+/*
+ Makes a category; everything is copied.
+ */
+enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
+
+/*
+ Shows what a category says; what the fields point to lives as long as the category.
+ */
+enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
+
+/*
+ Makes a heat map; everything is copied.
+ */
+enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
+
+/*
+ Shows the elements of a heat map, which live as long as it.
+ */
+enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
+                                                      size_t count,
+                                                      opendr_bounding_box_3d_list **list);
+
+/*
+ How many boxes there are; 0 for what is no such list.
+ */
+size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
+                                                   size_t index,
+                                                   struct opendr_bounding_box_3d *item);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
+                                                   size_t count,
+                                                   opendr_bounding_box_list **list);
+
+/*
+ How many boxes there are; 0 for what is no such list.
+ */
+size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
+                                                size_t index,
+                                                struct opendr_bounding_box *item);
+
+/*
+ Makes a category; everything is copied.
+ */
+enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
+
+/*
+ Shows what a category says; what the fields point to lives as long as the category.
+ */
+enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
+
+/*
+ Makes a heat map; everything is copied.
+ */
+enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
+
+/*
+ Shows the elements of a heat map, which live as long as it.
+ */
+enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
+
+/*
+ How many persons there are; 0 for what is no such list.
+ */
+size_t opendr_pose_list_count(const opendr_pose_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
+
+/*
+ Makes a command; everything is copied.
+ */
+enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
+                                                opendr_speech_command **command);
+
+/*
+ Shows what a command says; the word lives as long as the command.
+ */
+enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
+                                              struct opendr_speech_command_fields *fields);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
+                                                             size_t count,
+                                                             opendr_tracking_annotation_3d_list **list);
+
+/*
+ How many tracks there are; 0 for what is no such list.
+ */
+size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
+                                                          size_t index,
+                                                          struct opendr_tracking_annotation_3d *item);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
+                                                          size_t count,
+                                                          opendr_tracking_annotation_list **list);
+
+/*
+ How many tracks there are; 0 for what is no such list.
+ */
+size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
+                                                       size_t index,
+                                                       struct opendr_tracking_annotation *item);
+
+/*
+ Makes a transcription of words.
+ */
+enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
+
+/*
+ The words, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
+
+/*
+ Makes a transcription of words so far; finished tells whether the phrase is.
+ */
+enum opendr_status opendr_vosk_transcription_create(const char *text,
+                                                    bool finished,
+                                                    opendr_vosk_transcription **transcription);
+
+/*
+ The words so far, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
+
+/*
+ Whether the phrase is finished: the words will not change any more.
+ */
+bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
+
+/*
+ Makes a transcription of words and its segments, which are copied.
+ */
+enum opendr_status opendr_whisper_transcription_create(const char *text,
+                                                       const struct opendr_whisper_segment *segments,
+                                                       size_t count,
+                                                       opendr_whisper_transcription **transcription);
+
+/*
+ The words, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
+
+/*
+ How many segments there are; 0 for what is no such transcription.
+ */
+size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
+
+/*
+ Shows a segment; its words live as long as the transcription.
+ */
+enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
+                                                    size_t index,
+                                                    struct opendr_whisper_segment *segment);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
+
+/*
+ How many persons there are; 0 for what is no such list.
+ */
+size_t opendr_pose_list_count(const opendr_pose_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
+
+/*
+ Makes a command; everything is copied.
+ */
+enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
+                                                opendr_speech_command **command);
+
+/*
+ Shows what a command says; the word lives as long as the command.
+ */
+enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
+                                              struct opendr_speech_command_fields *fields);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
+                                                             size_t count,
+                                                             opendr_tracking_annotation_3d_list **list);
+
+/*
+ How many tracks there are; 0 for what is no such list.
+ */
+size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
+                                                          size_t index,
+                                                          struct opendr_tracking_annotation_3d *item);
+
+/*
+ Makes a list of items, which are copied.
+ */
+enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
+                                                          size_t count,
+                                                          opendr_tracking_annotation_list **list);
+
+/*
+ How many tracks there are; 0 for what is no such list.
+ */
+size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
+
+/*
+ Shows an item of the list; what it points to lives as long as the list.
+ */
+enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
+                                                       size_t index,
+                                                       struct opendr_tracking_annotation *item);
+
+/*
+ Makes a transcription of words.
+ */
+enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
+
+/*
+ The words, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
+
+/*
+ Makes a transcription of words so far; finished tells whether the phrase is.
+ */
+enum opendr_status opendr_vosk_transcription_create(const char *text,
+                                                    bool finished,
+                                                    opendr_vosk_transcription **transcription);
+
+/*
+ The words so far, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
+
+/*
+ Whether the phrase is finished: the words will not change any more.
+ */
+bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
+
+/*
+ Makes a transcription of words and its segments, which are copied.
+ */
+enum opendr_status opendr_whisper_transcription_create(const char *text,
+                                                       const struct opendr_whisper_segment *segments,
+                                                       size_t count,
+                                                       opendr_whisper_transcription **transcription);
+
+/*
+ The words, NULL for what is no such transcription; they live as long as it.
+ */
+const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
+
+/*
+ How many segments there are; 0 for what is no such transcription.
+ */
+size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
+
+/*
+ Shows a segment; its words live as long as the transcription.
+ */
+enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
+                                                    size_t index,
+                                                    struct opendr_whisper_segment *segment);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+/*
+ * The same functions for each type X of values: opendr_X_free(), opendr_X_copy(), opendr_X_to_text(), opendr_X_stamp(),
+ * opendr_X_set_stamp(), opendr_X_frame_id(), opendr_X_set_frame_id(); see opendr_value_free() and its neighbours.
+ */
+#define OPENDR_VALUE_FUNCTIONS(X) \
+    static inline opendr_status X##_free(X **variable) { \
+        opendr_value *value = variable == NULL ? NULL : (opendr_value *)*variable; \
+        opendr_status status = opendr_value_free(variable == NULL ? NULL : &value); \
+        if (variable != NULL) *variable = (X *)value; \
+        return status; \
+    } \
+    static inline opendr_status X##_copy(const X *value, X **variable) { \
+        opendr_value *copy = NULL; \
+        opendr_status status = opendr_value_copy((const opendr_value *)value, variable == NULL ? NULL : &copy); \
+        if (variable != NULL) *variable = (X *)copy; \
+        return status; \
+    } \
+    static inline opendr_status X##_to_text(const X *value, opendr_string **text) { \
+        return opendr_value_to_text((const opendr_value *)value, text); \
+    } \
+    static inline opendr_status X##_stamp(const X *value, int64_t *stamp_ns) { \
+        return opendr_value_stamp((const opendr_value *)value, stamp_ns); \
+    } \
+    static inline opendr_status X##_set_stamp(X *value, int64_t stamp_ns) { \
+        return opendr_value_set_stamp((opendr_value *)value, stamp_ns); \
+    } \
+    static inline const char *X##_frame_id(const X *value) { \
+        return opendr_value_frame_id((const opendr_value *)value); \
+    } \
+    static inline opendr_status X##_set_frame_id(X *value, const char *frame_id) { \
+        return opendr_value_set_frame_id((opendr_value *)value, frame_id); \
+    }
+
+/* For each type X of targets besides: opendr_X_to_json(), opendr_X_from_json() and opendr_X_draw(). */
+#define OPENDR_TARGET_FUNCTIONS(X, name) \
+    static inline opendr_status X##_to_json(const X *value, opendr_string **json) { \
+        return opendr_value_to_json((const opendr_value *)value, json); \
+    } \
+    static inline opendr_status X##_from_json(const char *json, X **variable) { \
+        opendr_value *value = NULL; \
+        opendr_status status = opendr_value_from_json(name, json, variable == NULL ? NULL : &value); \
+        if (variable != NULL) *variable = (X *)value; \
+        return status; \
+    } \
+    static inline opendr_status X##_draw(const X *value, opendr_image *image) { \
+        return opendr_value_draw((const opendr_value *)value, image); \
+    }
+
+/* For each type X of numbers along axes besides: opendr_X_create() and opendr_X_read(); see opendr_array_create(). */
+#define OPENDR_ARRAY_FUNCTIONS(X, name, axes) \
+    static inline opendr_status X##_create(const float *numbers, size_t length, const size_t shape[axes], X **variable) { \
+        opendr_value *value = NULL; \
+        opendr_value **place = variable == NULL ? NULL : &value; \
+        opendr_status status = opendr_array_create(name, numbers, length, shape, axes, place); \
+        if (variable != NULL) *variable = (X *)value; \
+        return status; \
+    } \
+    static inline opendr_status X##_read(const X *value, const float **numbers, size_t *length, size_t shape[axes]) { \
+        return opendr_array_read((const opendr_value *)value, numbers, length, shape, axes); \
+    }
+
+OPENDR_VALUE_FUNCTIONS(opendr_image)
+OPENDR_VALUE_FUNCTIONS(opendr_image_with_detections)
+OPENDR_VALUE_FUNCTIONS(opendr_video)
+OPENDR_VALUE_FUNCTIONS(opendr_point_cloud)
+OPENDR_VALUE_FUNCTIONS(opendr_point_cloud_with_calibration)
+OPENDR_VALUE_FUNCTIONS(opendr_calibration)
+OPENDR_VALUE_FUNCTIONS(opendr_timeseries)
+OPENDR_VALUE_FUNCTIONS(opendr_vector)
+OPENDR_VALUE_FUNCTIONS(opendr_audio)
+OPENDR_VALUE_FUNCTIONS(opendr_skeleton_sequence)
+OPENDR_VALUE_FUNCTIONS(opendr_observation)
+OPENDR_VALUE_FUNCTIONS(opendr_bounding_box_list)
+OPENDR_VALUE_FUNCTIONS(opendr_tracking_annotation_list)
+OPENDR_VALUE_FUNCTIONS(opendr_bounding_box_3d_list)
+OPENDR_VALUE_FUNCTIONS(opendr_tracking_annotation_3d_list)
+OPENDR_VALUE_FUNCTIONS(opendr_pose_list)
+OPENDR_VALUE_FUNCTIONS(opendr_category)
+OPENDR_VALUE_FUNCTIONS(opendr_heatmap)
+OPENDR_VALUE_FUNCTIONS(opendr_speech_command)
+OPENDR_VALUE_FUNCTIONS(opendr_base_transcription)
+OPENDR_VALUE_FUNCTIONS(opendr_whisper_transcription)
+OPENDR_VALUE_FUNCTIONS(opendr_vosk_transcription)
+
+OPENDR_TARGET_FUNCTIONS(opendr_bounding_box_list, "BoundingBoxList")
+OPENDR_TARGET_FUNCTIONS(opendr_tracking_annotation_list, "TrackingAnnotationList")
+OPENDR_TARGET_FUNCTIONS(opendr_bounding_box_3d_list, "BoundingBox3DList")
+OPENDR_TARGET_FUNCTIONS(opendr_tracking_annotation_3d_list, "TrackingAnnotation3DList")
+OPENDR_TARGET_FUNCTIONS(opendr_pose_list, "PoseList")
+OPENDR_TARGET_FUNCTIONS(opendr_category, "Category")
+OPENDR_TARGET_FUNCTIONS(opendr_heatmap, "Heatmap")
+OPENDR_TARGET_FUNCTIONS(opendr_speech_command, "SpeechCommand")
+OPENDR_TARGET_FUNCTIONS(opendr_base_transcription, "BaseTranscription")
+OPENDR_TARGET_FUNCTIONS(opendr_whisper_transcription, "WhisperTranscription")
+OPENDR_TARGET_FUNCTIONS(opendr_vosk_transcription, "VoskTranscription")
+
+/* shape: channels, time, height, width */
+OPENDR_ARRAY_FUNCTIONS(opendr_video, "Video", 4)
+/* shape: points, channels */
+OPENDR_ARRAY_FUNCTIONS(opendr_point_cloud, "PointCloud", 2)
+/* shape: time, features */
+OPENDR_ARRAY_FUNCTIONS(opendr_timeseries, "Timeseries", 2)
+/* shape: features */
+OPENDR_ARRAY_FUNCTIONS(opendr_vector, "Vector", 1)
+/* shape: samples, channels, frames, joints, persons */
+OPENDR_ARRAY_FUNCTIONS(opendr_skeleton_sequence, "SkeletonSequence", 5)
+
+/*
+ * Learners. opendr_load_X() is opendr_load() with the learner's name; opendr_infer_X() is opendr_infer() with its inputs
+ * and outputs. An output that is not wanted may be NULL.
+ */
+
+/*
+ * CenterNetDetectorLearner: CenterNet on MobileNetV3 finds the 80 COCO classes; the best of the light detectors here.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.3): Detections below this score are dropped.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.5): Boxes of one class that overlap more than this (intersection over union) are one object.
+ *   max_detections (an int 1..=100, may change while it runs, default 100): At most this many boxes a picture.
+ *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_centernet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("centernet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_centernet(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * NanodetLearner: NanoDet finds the 80 COCO classes; light, good on small things.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.35): Detections below this score are dropped.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.6): Boxes of one class that overlap more than this (intersection over union) are one object.
+ *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a picture.
+ *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_nanodet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("nanodet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_nanodet(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * UltraLightFaceLearner: Ultra-Light RFB finds faces in a few milliseconds; boxes only.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.7): Faces below this score are dropped.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.3): Faces that overlap more than this (intersection over union) are one face.
+ *   max_detections (an int 1..=1000, may change while it runs, default 200): At most this many faces a picture.
+ *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_ultra_light_face(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("ultra_light_face", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_ultra_light_face(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * YunetLearner: YuNet finds faces with eyes, nose and corners of the mouth; tiny and fast.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.6): Faces below this score are dropped.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.3): Faces that overlap more than this (intersection over union) are one face.
+ *   max_detections (an int 1..=1000, may change while it runs, default 200): At most this many faces a picture.
+ *   size (an int 32..=4096 px, default 640): Side of the network's input, for models that take any; a multiple of 32.
+ *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_yunet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("yunet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_yunet(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * MovenetLearner: MoveNet finds 18 joints of one person (lightning) or of up to six (multipose).
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.2): Persons below this score are dropped.
+ *   keypoint_threshold (a float 0..=1, may change while it runs, default 0.1): Joints below this score are missing.
+ *   size (an int 128..=1024 px, default 256): Longer side of the input of MultiPose; a multiple of 32. Larger finds smaller persons.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_movenet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("movenet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_movenet(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * PosenetLearner: PoseNet finds 18 joints of any number of persons; convolutions only.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.25): Persons below this score are dropped.
+ *   keypoint_threshold (a float 0..=1, may change while it runs, default 0.1): Joints below this score are missing.
+ *   peak_threshold (a float 0.01..=0.99, may change while it runs, default 0.5): Joints below this score start no person.
+ *   nms_radius (a float 0..=200 px, may change while it runs, default 20): Joints of one kind nearer than this belong to one person, in pixels of the network's input.
+ *   max_detections (an int 1..=100, may change while it runs, default 20): At most this many persons a picture.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_posenet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("posenet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_posenet(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+#endif /* OPENDR_H */

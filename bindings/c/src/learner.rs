@@ -1,0 +1,350 @@
+//! Learners of any kind, by name.
+
+use std::ffi::c_char;
+use std::ptr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
+use opendr::params::{ParamMap, ParamValue};
+use opendr::{Device, Error, Result, Silent};
+
+use crate::handle::{self, Held, Out};
+use crate::pointer::{optional_text, path, place, slice, text};
+use crate::status::{guard, guard_value, opendr_status};
+use crate::string::{Text, opendr_string};
+use crate::texts::Texts;
+use crate::value::{AnyValue, opendr_value};
+
+/// A learner with its model; threads may use it at once, one call is answered after the other.
+pub struct opendr_learner(());
+
+/// A named input.
+#[repr(C)]
+pub struct opendr_input {
+    /// The input's name, e.g. "image".
+    pub name: *const c_char,
+    /// Any data or target; NULL leaves an optional input out.
+    pub value: *const opendr_value,
+}
+
+/// A named output.
+#[repr(C)]
+pub struct opendr_output {
+    /// The output's name, e.g. "boxes".
+    pub name: *const c_char,
+    /// What was found, to be freed; set by the call, NULL when it failed.
+    pub value: *mut opendr_value,
+}
+
+struct Loaded {
+    entry: &'static Entry,
+    learner: Mutex<Box<dyn AnyLearner>>,
+    texts: Texts,
+}
+
+impl Held for Loaded {
+    const NAME: &'static str = "opendr_learner";
+    const MAGIC: u64 = u64::from_le_bytes(*b"ODRlearn");
+}
+
+impl Loaded {
+    /// # Safety
+    /// As [`handle::held`].
+    unsafe fn of<'a>(learner: *const opendr_learner) -> Result<&'a Self> {
+        // SAFETY: the caller's promise.
+        unsafe { handle::held(learner, "learner") }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Box<dyn AnyLearner>> {
+        self.learner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Loads a learner, e.g. "nanodet" or "yunet/n_320".
+///
+/// path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
+/// "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_load(
+    name: *const c_char,
+    path: *const c_char,
+    device: *const c_char,
+    params_json: *const c_char,
+    learner: *mut *mut opendr_learner,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { load(name, path, device, params_json, learner) })
+}
+
+/// # Safety
+/// As [`opendr_load`].
+unsafe fn load(
+    name: *const c_char,
+    container: *const c_char,
+    device: *const c_char,
+    params_json: *const c_char,
+    learner: *mut *mut opendr_learner,
+) -> Result<()> {
+    // SAFETY: the caller's promise.
+    let (out, spec, device, params) = unsafe {
+        (
+            Out::new(learner, "learner")?,
+            text(name, "name")?,
+            optional_text(device, "device")?.unwrap_or("auto"),
+            optional_text(params_json, "params_json")?.unwrap_or("{}"),
+        )
+    };
+    let entry = opendr::registry().find(spec.split('/').next().unwrap_or(spec))?;
+    let device: Device = device.parse()?;
+    let params: ParamMap = serde_json::from_str(params).map_err(|error| {
+        Error::invalid_param("params_json is no JSON object of parameters").with_source(error)
+    })?;
+    let learner = if container.is_null() {
+        opendr::learner_with(spec, &params, device, &Silent)?
+    } else {
+        let mut learner = entry.make(&params, device)?;
+        // SAFETY: the caller's promise.
+        learner.load(unsafe { path(container, "path") }?)?;
+        learner
+    };
+    out.set(Loaded { entry, learner: Mutex::new(learner), texts: Texts::default() });
+    Ok(())
+}
+
+/// Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
+/// left out. Inputs stay the caller's.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_infer(
+    learner: *const opendr_learner,
+    inputs: *const opendr_input,
+    input_count: usize,
+    outputs: *mut opendr_output,
+    output_count: usize,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { infer(learner, inputs, input_count, outputs, output_count) })
+}
+
+/// # Safety
+/// As [`opendr_infer`].
+unsafe fn infer(
+    learner: *const opendr_learner,
+    inputs: *const opendr_input,
+    input_count: usize,
+    outputs: *mut opendr_output,
+    output_count: usize,
+) -> Result<()> {
+    // SAFETY: the caller's promise.
+    let wanted = unsafe { Wanted::new(outputs, output_count) }?;
+    // SAFETY: the caller's promise.
+    let (loaded, inputs) = unsafe { (Loaded::of(learner)?, slice(inputs, input_count, "inputs")?) };
+    wanted.check(loaded.entry)?;
+    let mut ports = Ports::default();
+    for input in inputs.iter().filter(|input| !input.value.is_null()) {
+        // SAFETY: the caller's promise.
+        let (name, value) = unsafe {
+            (text(input.name, "the name of an input")?, AnyValue::of(input.value, "the value of an input")?)
+        };
+        if ports.get(name).is_some() {
+            return Err(Error::invalid_input(format!("input {name:?} is given twice; give it once")));
+        }
+        ports = ports.with(name, &value.value);
+    }
+    let answer = loaded.lock().infer(&ports)?;
+    wanted.give(&answer)
+}
+
+/// The outputs that the caller asked for.
+struct Wanted<'a> {
+    names: Vec<&'a str>,
+    outputs: *mut opendr_output,
+}
+
+impl Wanted<'_> {
+    /// Makes every value null.
+    ///
+    /// # Safety
+    /// `outputs` leads to `count` outputs whose names are texts; they may be written to until this is dropped.
+    unsafe fn new(outputs: *mut opendr_output, count: usize) -> Result<Self> {
+        // SAFETY: the caller's promise.
+        unsafe { slice(outputs.cast::<std::mem::MaybeUninit<opendr_output>>(), count, "outputs") }?;
+        let mut names = Vec::new();
+        for index in 0..count {
+            // SAFETY: within the outputs.
+            let name = unsafe {
+                let output = outputs.add(index);
+                (&raw mut (*output).value).write(ptr::null_mut());
+                (*output).name
+            };
+            names.push(name);
+        }
+        // SAFETY: the caller's promise.
+        let names = names.into_iter().map(|name| unsafe { text(name, "the name of an output") });
+        Ok(Self { names: names.collect::<Result<_>>()?, outputs })
+    }
+
+    fn check(&self, entry: &Entry) -> Result<()> {
+        let known: Vec<_> = entry.outputs.iter().map(|output| output.name).collect();
+        match self.names.iter().find(|name| !known.contains(name)) {
+            Some(name) => {
+                Err(Error::invalid_input(format!("no output {name:?}; there are {}", known.join(", "))))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn give(self, answer: &Outputs) -> Result<()> {
+        let found = self.names.iter().map(|name| answer.get(name).cloned());
+        let found: Option<Vec<_>> = found.collect();
+        let found =
+            found.ok_or_else(|| Error::internal("the learner left an output out; please report it"))?;
+        for (index, value) in found.into_iter().enumerate() {
+            // SAFETY: within the outputs, as `new` was promised.
+            unsafe {
+                (&raw mut (*self.outputs.add(index)).value).write(handle::handle(AnyValue::from(value)))
+            };
+        }
+        Ok(())
+    }
+}
+
+/// The name of the learner's input number index, NULL after the last. It lives as long as the learner.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_input_name(learner: *const opendr_learner, index: usize) -> *const c_char {
+    guard_value(ptr::null(), || {
+        // SAFETY: the rules at the top of opendr.h.
+        let loaded = unsafe { Loaded::of(learner) }?;
+        Ok(loaded.texts.keep_optional(loaded.entry.ports.get(index).map(|port| port.name)))
+    })
+}
+
+/// The name of the learner's output number index, NULL after the last. It lives as long as the learner.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_output_name(learner: *const opendr_learner, index: usize) -> *const c_char {
+    guard_value(ptr::null(), || {
+        // SAFETY: the rules at the top of opendr.h.
+        let loaded = unsafe { Loaded::of(learner) }?;
+        Ok(loaded.texts.keep_optional(loaded.entry.outputs.get(index).map(|output| output.name)))
+    })
+}
+
+/// Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_set_param(
+    learner: *const opendr_learner,
+    name: *const c_char,
+    value_json: *const c_char,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (loaded, name, json) =
+            unsafe { (Loaded::of(learner)?, text(name, "name")?, text(value_json, "value_json")?) };
+        let value: ParamValue = serde_json::from_str(json).map_err(|error| {
+            Error::invalid_param(format!("{name} = {json} is no JSON value; write texts as \"text\""))
+                .with_source(error)
+        })?;
+        loaded.lock().set(name, value)
+    })
+}
+
+/// The parameters in force as a JSON object.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_params(
+    learner: *const opendr_learner,
+    json: *mut *mut opendr_string,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (json, loaded) = unsafe { (Out::new(json, "json")?, Loaded::of(learner)?) };
+        let params = loaded.lock().params();
+        json.set(Text::new(serde_json::to_string(&params).map_err(no_json)?));
+        Ok(())
+    })
+}
+
+/// Forgets what the learner's own stream remembers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_reset(learner: *const opendr_learner) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        unsafe { Loaded::of(learner) }?.lock().reset();
+        Ok(())
+    })
+}
+
+/// The names of the classes in order, as a JSON list; empty when class numbers have no names.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_classes(
+    learner: *const opendr_learner,
+    json: *mut *mut opendr_string,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (json, loaded) = unsafe { (Out::new(json, "json")?, Loaded::of(learner)?) };
+        let classes = loaded.lock().classes();
+        json.set(Text::new(serde_json::to_string(&classes).map_err(no_json)?));
+        Ok(())
+    })
+}
+
+/// How many classes have names.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_class_count(
+    learner: *const opendr_learner,
+    count: *mut usize,
+) -> opendr_status {
+    guard(|| {
+        let count = place(count, "count")?;
+        // SAFETY: the rules at the top of opendr.h.
+        unsafe { count.write(Loaded::of(learner)?.lock().classes().len()) };
+        Ok(())
+    })
+}
+
+/// The name of a class, NULL when it has none. It lives as long as the learner.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_class_name(
+    learner: *const opendr_learner,
+    class_index: i64,
+) -> *const c_char {
+    guard_value(ptr::null(), || {
+        // SAFETY: the rules at the top of opendr.h.
+        let loaded = unsafe { Loaded::of(learner) }?;
+        let classes = loaded.lock().classes();
+        Ok(loaded.texts.keep_optional(classes.name(class_index).map(|name| &**name)))
+    })
+}
+
+/// Writes the model with the parameters in force as a container to the folder path.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_save(learner: *const opendr_learner, path: *const c_char) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (loaded, path) = unsafe { (Loaded::of(learner)?, crate::pointer::path(path, "path")?) };
+        loaded.lock().save(path)
+    })
+}
+
+/// Frees the learner and makes the variable NULL; a NULL in it is freed already.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_learner_free(learner: *mut *mut opendr_learner) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { handle::free::<Loaded, _>(learner, "learner") })
+}
+
+/// The learners that there are, as a JSON list of their names.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_learners(json: *mut *mut opendr_string) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let json = unsafe { Out::new(json, "json") }?;
+        let names: Vec<_> = opendr::registry().entries().iter().map(|entry| entry.spec.name).collect();
+        json.set(Text::new(serde_json::to_string(&names).map_err(no_json)?));
+        Ok(())
+    })
+}
+
+#[cold]
+fn no_json(error: serde_json::Error) -> Error {
+    Error::internal("a value has no JSON form").with_source(error)
+}

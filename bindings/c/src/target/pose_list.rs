@@ -1,0 +1,137 @@
+//! Persons by their joints.
+
+use opendr::target::{Keypoint, Pose, PoseList, Skeleton};
+use opendr::{Error, Result};
+
+use crate::pointer::slice;
+
+use crate::status::{guard, guard_value, opendr_status};
+use crate::target::list::{self, List};
+use crate::target::{check_finite, known};
+use crate::texts::Texts;
+use crate::value::opendr_pose_list;
+
+/// The joints of a kind of body, and their order (docs/json.md).
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum opendr_skeleton {
+    /// OpenDR's 18 joints of a person.
+    OPENDR_OPENDR18 = 0,
+    /// COCO's 17 joints of a person.
+    OPENDR_COCO17 = 1,
+}
+
+/// A point found in a picture, pixels; (-1, -1) means not found.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct opendr_keypoint {
+    /// Pixels from the left edge.
+    pub x: f32,
+    /// Pixels from the upper edge.
+    pub y: f32,
+    /// Score, 0 to 1.
+    pub confidence: f32,
+}
+
+// `opendr_pose` points to keypoints where they lie.
+const _: () = assert!(size_of::<Keypoint>() == size_of::<opendr_keypoint>());
+
+/// One person.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct opendr_pose {
+    /// The joints in the order of the skeleton.
+    pub keypoints: *const opendr_keypoint,
+    /// How many there are.
+    pub keypoint_count: usize,
+    /// Score of the whole, 0 to 1.
+    pub confidence: f32,
+    /// One of opendr_skeleton.
+    pub skeleton: i32,
+    /// The person's track; -1 when none is kept.
+    pub id: i64,
+}
+
+/// Makes a list of items, which are copied.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_pose_list_create(
+    items: *const opendr_pose,
+    count: usize,
+    list: *mut *mut opendr_pose_list,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { list::create::<PoseList, _>(items, count, list) })
+}
+
+/// How many persons there are; 0 for what is no such list.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_pose_list_count(list: *const opendr_pose_list) -> usize {
+    // SAFETY: the rules at the top of opendr.h.
+    guard_value(0, || unsafe { list::count::<PoseList, _>(list) })
+}
+
+/// Shows an item of the list; what it points to lives as long as the list.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_pose_list_get(
+    list: *const opendr_pose_list,
+    index: usize,
+    item: *mut opendr_pose,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { list::get::<PoseList, _>(list, index, item) })
+}
+
+impl List for PoseList {
+    type Item = Pose;
+    type Plain = opendr_pose;
+
+    fn items(&self) -> &[Pose] {
+        &self.poses
+    }
+
+    fn plain(&self, item: &Pose, _: &Texts) -> opendr_pose {
+        opendr_pose {
+            keypoints: item.keypoints.as_ptr().cast(),
+            keypoint_count: item.keypoints.len(),
+            confidence: item.confidence,
+            skeleton: match item.skeleton {
+                Skeleton::Coco17 => opendr_skeleton::OPENDR_COCO17 as i32,
+                _ => opendr_skeleton::OPENDR_OPENDR18 as i32,
+            },
+            id: item.id.unwrap_or(-1),
+        }
+    }
+
+    unsafe fn item(plain: &opendr_pose) -> Result<Pose> {
+        let skeleton = match plain.skeleton {
+            0 => Skeleton::Opendr18,
+            1 => Skeleton::Coco17,
+            other => {
+                return Err(Error::invalid_input(format!(
+                    "skeleton is {other}; give one of opendr_skeleton"
+                )));
+            }
+        };
+        // SAFETY: the caller's promise.
+        let points = unsafe { slice(plain.keypoints, plain.keypoint_count, "the keypoints of a pose") }?;
+        let joints = skeleton.joints().len();
+        if points.len() != joints {
+            return Err(Error::invalid_input(format!(
+                "{} keypoints instead of {joints}; give one a joint",
+                points.len()
+            )));
+        }
+        points
+            .iter()
+            .try_for_each(|point| check_finite(&[point.x, point.y, point.confidence], "a keypoint"))?;
+        check_finite(&[plain.confidence], "the score of a pose")?;
+        let keypoints =
+            points.iter().map(|point| Keypoint { x: point.x, y: point.y, confidence: point.confidence });
+        Ok(Pose {
+            keypoints: keypoints.collect(),
+            confidence: plain.confidence,
+            id: known(plain.id),
+            skeleton,
+        })
+    }
+}

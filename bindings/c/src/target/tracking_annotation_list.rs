@@ -1,0 +1,73 @@
+//! Boxes with an identity: 2D tracking.
+
+use opendr::Result;
+use opendr::target::{TrackingAnnotation, TrackingAnnotationList};
+
+use crate::status::{guard, guard_value, opendr_status};
+use crate::target::list::{self, List};
+use crate::target::{known, opendr_bounding_box};
+use crate::texts::Texts;
+use crate::value::opendr_tracking_annotation_list;
+
+/// A box of one object that is followed through a video.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct opendr_tracking_annotation {
+    /// Where it is.
+    pub bounding_box: opendr_bounding_box,
+    /// The object's number, the same in every picture; -1 when it is not known.
+    pub id: i64,
+    /// Number of the picture in its video; -1 when it has none.
+    pub frame: i64,
+}
+
+/// Makes a list of items, which are copied.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_tracking_annotation_list_create(
+    items: *const opendr_tracking_annotation,
+    count: usize,
+    list: *mut *mut opendr_tracking_annotation_list,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { list::create::<TrackingAnnotationList, _>(items, count, list) })
+}
+
+/// How many tracks there are; 0 for what is no such list.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_tracking_annotation_list_count(
+    list: *const opendr_tracking_annotation_list,
+) -> usize {
+    // SAFETY: the rules at the top of opendr.h.
+    guard_value(0, || unsafe { list::count::<TrackingAnnotationList, _>(list) })
+}
+
+/// Shows an item of the list; what it points to lives as long as the list.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_tracking_annotation_list_get(
+    list: *const opendr_tracking_annotation_list,
+    index: usize,
+    item: *mut opendr_tracking_annotation,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { list::get::<TrackingAnnotationList, _>(list, index, item) })
+}
+
+impl List for TrackingAnnotationList {
+    type Item = TrackingAnnotation;
+    type Plain = opendr_tracking_annotation;
+
+    fn items(&self) -> &[TrackingAnnotation] {
+        &self.annotations
+    }
+
+    fn plain(&self, item: &TrackingAnnotation, texts: &Texts) -> opendr_tracking_annotation {
+        let bounding_box = opendr_bounding_box::new(&item.bounding_box, &self.classes, texts);
+        opendr_tracking_annotation { bounding_box, id: item.id, frame: item.frame.unwrap_or(-1) }
+    }
+
+    unsafe fn item(plain: &opendr_tracking_annotation) -> Result<TrackingAnnotation> {
+        // SAFETY: the caller's promise.
+        let bounding_box = unsafe { plain.bounding_box.to_bounding_box() }?;
+        Ok(TrackingAnnotation { bounding_box, id: plain.id, frame: known(plain.frame) })
+    }
+}

@@ -1,0 +1,242 @@
+//! Data and targets of any type: what their handles have in common.
+
+use std::ffi::c_char;
+use std::ptr;
+
+use opendr::{Datum, Error, Result, Value, ValueType};
+
+use crate::handle::{self, Held, Out};
+use crate::pointer::{optional_text, place, text};
+use crate::status::{guard, guard_value, opendr_status};
+use crate::string::{Text, opendr_string};
+use crate::texts::Texts;
+
+/// A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
+pub struct opendr_value(());
+
+macro_rules! typed {
+    ($($name:ident)*) => {$(
+        /// A handle of the type of its name.
+        pub struct $name(());
+    )*};
+}
+
+typed! {
+    opendr_image opendr_image_with_detections opendr_video opendr_point_cloud opendr_point_cloud_with_calibration
+    opendr_calibration opendr_timeseries opendr_vector opendr_audio opendr_skeleton_sequence opendr_observation
+    opendr_bounding_box_list opendr_tracking_annotation_list opendr_bounding_box_3d_list
+    opendr_tracking_annotation_3d_list opendr_pose_list opendr_category opendr_heatmap opendr_speech_command
+    opendr_base_transcription opendr_whisper_transcription opendr_vosk_transcription
+}
+
+/// The time stamp of a value that has none.
+pub const OPENDR_NO_STAMP: i64 = i64::MIN;
+
+/// What handles of values hold.
+pub(crate) struct AnyValue {
+    pub(crate) value: Value,
+    pub(crate) texts: Texts,
+}
+
+impl Held for AnyValue {
+    const NAME: &'static str = "opendr_value";
+    const MAGIC: u64 = u64::from_le_bytes(*b"ODRvalue");
+}
+
+impl<V: Into<Value>> From<V> for AnyValue {
+    fn from(value: V) -> Self {
+        Self { value: value.into(), texts: Texts::default() }
+    }
+}
+
+impl AnyValue {
+    /// What is behind any handle of a value.
+    ///
+    /// # Safety
+    /// As [`handle::held`].
+    pub(crate) unsafe fn of<'a, P>(value: *const P, name: &str) -> Result<&'a Self> {
+        // SAFETY: the caller's promise.
+        unsafe { handle::held(value, name) }
+    }
+
+    /// The value, when it is of this type.
+    pub(crate) fn typed<D: Datum>(&self, name: &str) -> Result<&D> {
+        D::from_value_ref(self.value.as_value_ref()).ok_or_else(|| {
+            let (wanted, given) = (D::TYPE.name(), self.type_name());
+            Error::invalid_input(format!("{name} takes a {wanted}, not a {given}; give one"))
+        })
+    }
+
+    fn type_name(&self) -> &'static str {
+        self.value.as_value_ref().value_type().name()
+    }
+}
+
+/// The value behind a handle that should be of type `D`.
+///
+/// # Safety
+/// As [`handle::held`].
+pub(crate) unsafe fn typed<'a, D: Datum, P>(value: *const P, name: &str) -> Result<&'a D> {
+    // SAFETY: the caller's promise.
+    unsafe { AnyValue::of(value, name) }?.typed(name)
+}
+
+/// The type called `name`.
+///
+/// # Errors
+/// `NotFound`, with the types that there are.
+pub(crate) fn type_named(name: &str) -> Result<ValueType> {
+    ValueType::ALL.iter().copied().find(|known| known.name() == name).ok_or_else(|| {
+        let names: Vec<_> = ValueType::ALL.iter().map(|known| known.name()).collect();
+        Error::not_found(format!("no type {name:?}; there are {}", names.join(", ")))
+    })
+}
+
+/// The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_type(value: *const opendr_value) -> *const c_char {
+    guard_value(ptr::null(), || {
+        // SAFETY: the rules at the top of opendr.h.
+        let value = unsafe { AnyValue::of(value, "value") }?;
+        Ok(value.texts.keep(value.type_name()))
+    })
+}
+
+/// The JSON of a target (docs/json.md).
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_to_json(
+    value: *const opendr_value,
+    json: *mut *mut opendr_string,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (json, value) = unsafe { (Out::new(json, "json")?, AnyValue::of(value, "value")?) };
+        if !value.value.as_value_ref().value_type().is_target() {
+            return Err(Error::unsupported(format!(
+                "{} has no JSON form; write it as a file",
+                value.type_name()
+            )));
+        }
+        let text = serde_json::to_string(&value.value)
+            .map_err(|error| Error::internal("the value has no JSON form").with_source(error))?;
+        json.set(Text::new(text));
+        Ok(())
+    })
+}
+
+/// A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_from_json(
+    type_name: *const c_char,
+    json: *const c_char,
+    value: *mut *mut opendr_value,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (out, wanted, json) = unsafe {
+            (Out::new(value, "value")?, optional_text(type_name, "type_name")?, text(json, "json")?)
+        };
+        let wanted = wanted.map(type_named).transpose()?;
+        let value: Value = serde_json::from_str(json).map_err(|error| {
+            Error::format("no JSON of a target; docs/json.md shows them").with_source(error)
+        })?;
+        let value = AnyValue::from(value);
+        match wanted {
+            Some(wanted) if wanted.name() != value.type_name() => Err(Error::invalid_input(format!(
+                "JSON of a {} where a {} is wanted; give that",
+                value.type_name(),
+                wanted.name()
+            ))),
+            _ => {
+                out.set(value);
+                Ok(())
+            }
+        }
+    })
+}
+
+/// The value as people read it: a line for each item.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_to_text(
+    value: *const opendr_value,
+    string: *mut *mut opendr_string,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (string, value) = unsafe { (Out::new(string, "string")?, AnyValue::of(value, "value")?) };
+        string.set(Text::new(format!("{:#}", value.value.as_value_ref())));
+        Ok(())
+    })
+}
+
+/// When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_stamp(value: *const opendr_value, stamp_ns: *mut i64) -> opendr_status {
+    guard(|| {
+        let stamp_ns = place(stamp_ns, "stamp_ns")?;
+        // SAFETY: the rules at the top of opendr.h.
+        unsafe {
+            let value = AnyValue::of(value, "value")?;
+            stamp_ns.write(value.value.header().stamp_ns.unwrap_or(OPENDR_NO_STAMP));
+        }
+        Ok(())
+    })
+}
+
+/// Sets when the value was taken; OPENDR_NO_STAMP forgets it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_set_stamp(value: *mut opendr_value, stamp_ns: i64) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let value = unsafe { handle::held_mut::<AnyValue, _>(value, "value") }?;
+        value.value.header_mut().stamp_ns = (stamp_ns != OPENDR_NO_STAMP).then_some(stamp_ns);
+        Ok(())
+    })
+}
+
+/// The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_frame_id(value: *const opendr_value) -> *const c_char {
+    guard_value(ptr::null(), || {
+        // SAFETY: the rules at the top of opendr.h.
+        let value = unsafe { AnyValue::of(value, "value") }?;
+        Ok(value.texts.keep_optional(value.value.header().frame_id.as_deref()))
+    })
+}
+
+/// Sets the coordinate frame of the value; NULL forgets it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_set_frame_id(
+    value: *mut opendr_value,
+    frame_id: *const c_char,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (frame_id, value) = unsafe {
+            (optional_text(frame_id, "frame_id")?, handle::held_mut::<AnyValue, _>(value, "value")?)
+        };
+        value.value.header_mut().frame_id = frame_id.map(Into::into);
+        Ok(())
+    })
+}
+
+/// A handle of its own to the same value; bulky payloads stay shared.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_copy(
+    value: *const opendr_value,
+    copy: *mut *mut opendr_value,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (copy, value) = unsafe { (Out::new(copy, "copy")?, AnyValue::of(value, "value")?) };
+        copy.set(AnyValue::from(value.value.clone()));
+        Ok(())
+    })
+}
+
+/// Frees the value and makes the variable NULL; a NULL in it is freed already.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_free(value: *mut *mut opendr_value) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe { handle::free::<AnyValue, _>(value, "value") })
+}
