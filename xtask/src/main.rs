@@ -1,5 +1,6 @@
-//! The chores of this repository: `cargo xtask test`, `cargo xtask realtime`.
+//! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
 
+mod install_c;
 mod realtime;
 mod shell;
 mod test;
@@ -11,16 +12,21 @@ const USAGE: &str = "\
 usage: cargo xtask VERB
 
   test       everything that CI checks; installs what it needs (Debian packages, a Python environment in target/)
+  test-c     the part of it that tests the C library
   realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
+  install-c PREFIX
+             the C library with its headers, pkg-config file and CMake package under PREFIX
 
 environment:
   OPENDR_TEST_DATA   folder with models/ and data/; tests that need it are skipped without";
 
 fn main() -> ExitCode {
-    let verb = std::env::args().nth(1);
-    let done = match verb.as_deref() {
-        Some("test") => test::run(),
-        Some("realtime") => realtime::run(),
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["test"] => test::run(),
+        ["test-c"] => test::run_c(),
+        ["realtime"] => realtime::run(),
+        ["install-c", prefix] => install_c::run(prefix.as_ref()),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

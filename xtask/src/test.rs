@@ -3,14 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::install_c;
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
 
 /// Runs every check; the first that fails ends it.
 pub fn run() -> Result<()> {
     install_debian()?;
-    let python = Python::install("test-venv", "tests/python/requirements.txt")?;
-    let environment = Environment { library: python.onnxruntime()?, data: test_data(), cache: cache()? };
+    let outside = Python::install("test-venv", "tests/python/requirements.txt")?;
+    let environment = Environment { library: outside.onnxruntime()?, data: test_data(), cache: cache()? };
     if environment.data.is_none() {
         println!("skipped: no OPENDR_TEST_DATA (tests with real models and pictures)");
     }
@@ -33,7 +34,7 @@ pub fn run() -> Result<()> {
         cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     )?;
     step("release build", &mut cargo(&["build", "--release"]))?;
-    let mut pytest = command(python.program());
+    let mut pytest = command(outside.program());
     pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
     environment.apply(&mut pytest);
     step("tests from outside", &mut pytest)?;
@@ -43,8 +44,32 @@ pub fn run() -> Result<()> {
     pytest.args(["-m", "pytest", "-ra", "bindings/python/tests"]).env("OPENDR_WHEEL", wheel);
     environment.apply(&mut pytest);
     step("tests of the Python package", &mut pytest)?;
+    c_library(&outside, &environment)?;
     println!("\nall checks passed");
     Ok(())
+}
+
+/// The tests of the C library alone.
+pub fn run_c() -> Result<()> {
+    install_debian()?;
+    let outside = Python::install("test-venv", "tests/python/requirements.txt")?;
+    let environment = Environment { library: outside.onnxruntime()?, data: test_data(), cache: cache()? };
+    step("release build", command("cargo").args(["build", "--release"]))?;
+    c_library(&outside, &environment)
+}
+
+fn c_library(outside: &Python, environment: &Environment) -> Result<()> {
+    let mut cargo = command("cargo");
+    cargo.args(["test", "--package", "opendr-c", "--features", "test-learner", "--tests"]);
+    environment.apply(&mut cargo);
+    step("tests of the C library", &mut cargo)?;
+    let prefix = target().join("c");
+    install_c::run_for_tests(&prefix)?;
+    let mut pytest = command(outside.program());
+    pytest.args(["-m", "pytest", "-ra", "tests/c"]).env("OPENDR_C_PREFIX", prefix);
+    pytest.env("OPENDR_BIN", target().join("release/opendr"));
+    environment.apply(&mut pytest);
+    step("tests of C programs", &mut pytest)
 }
 
 struct Environment {

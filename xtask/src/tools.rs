@@ -6,7 +6,13 @@ use std::path::PathBuf;
 use crate::shell::{Result, command, is_installed, root, step, target};
 
 /// Debian packages by the program that they bring.
-const DEBIAN: [(&str, &str); 1] = [("ffmpeg", "ffmpeg")];
+const DEBIAN: [(&str, &str); 5] = [
+    ("ffmpeg", "ffmpeg"),
+    ("g++", "g++"),
+    ("pkg-config", "pkg-config"),
+    ("cmake", "cmake"),
+    ("valgrind", "valgrind"),
+];
 
 /// A Python environment with the packages of a file of requirements.
 pub struct Python {

@@ -43,542 +43,296 @@ typedef struct opendr_base_transcription opendr_base_transcription;
 typedef struct opendr_whisper_transcription opendr_whisper_transcription;
 typedef struct opendr_vosk_transcription opendr_vosk_transcription;
 
-/*
- The time stamp of a value that has none.
- */
+// The time stamp of a value that has none.
 #define OPENDR_NO_STAMP INT64_MIN
 
-/*
- How a call went; the numbers are the exit codes of the command `opendr`.
- */
+// How a call went; the numbers are the exit codes of the command `opendr`.
 typedef enum opendr_status {
-    /*
-     All went well.
-     */
+    // All went well.
     OPENDR_OK = 0,
-    /*
-     A datum, target, pointer or file handed in does not fit: null, wrong shape, empty, NaN, undecodable picture.
-     */
+    // A datum, target, pointer or file handed in does not fit: null, wrong shape, empty, NaN, undecodable picture.
     OPENDR_INVALID_INPUT = 11,
-    /*
-     A parameter is unknown, of the wrong type or out of range.
-     */
+    // A parameter is unknown, of the wrong type or out of range.
     OPENDR_INVALID_PARAM = 12,
-    /*
-     A file, model, learner, device node or class name does not exist.
-     */
+    // A file, model, learner, device node or class name does not exist.
     OPENDR_NOT_FOUND = 13,
-    /*
-     The operating system refused to read or write.
-     */
+    // The operating system refused to read or write.
     OPENDR_IO = 14,
-    /*
-     A server or package client could not be reached or broke off.
-     */
+    // A server or package client could not be reached or broke off.
     OPENDR_NETWORK = 15,
-    /*
-     Bytes differ from their checksum or stated size, or an archive member leaves its folder.
-     */
+    // Bytes differ from their checksum or stated size, or an archive member leaves its folder.
     OPENDR_INTEGRITY = 16,
-    /*
-     A file or message does not follow its format.
-     */
+    // A file or message does not follow its format.
     OPENDR_FORMAT = 17,
-    /*
-     This learner, runtime or build cannot do what was asked.
-     */
+    // This learner, runtime or build cannot do what was asked.
     OPENDR_UNSUPPORTED = 18,
-    /*
-     The device asked for is not there or failed.
-     */
+    // The device asked for is not there or failed.
     OPENDR_DEVICE = 19,
-    /*
-     A fault of OpenDR itself: please report it.
-     */
+    // A fault of OpenDR itself: please report it.
     OPENDR_INTERNAL = 20,
 } opendr_status;
 
-/*
- The type of a picture's samples.
- */
+// The type of a picture's samples.
 typedef enum opendr_samples {
-    /*
-     8 bits, 0 to 255.
-     */
+    // 8 bits, 0 to 255.
     OPENDR_U8 = 0,
-    /*
-     16 bits: depth in millimetres, thermal counts.
-     */
+    // 16 bits: depth in millimetres, thermal counts.
     OPENDR_U16 = 1,
-    /*
-     Floats: depth in metres, or colours.
-     */
+    // Floats: depth in metres, or colours.
     OPENDR_F32 = 2,
 } opendr_samples;
 
-/*
- The channels of a picture in memory.
- */
+// The channels of a picture in memory.
 typedef enum opendr_pixel_format {
-    /*
-     One channel: brightness, depth.
-     */
+    // One channel: brightness, depth.
     OPENDR_GREY = 0,
-    /*
-     Red, green, blue.
-     */
+    // Red, green, blue.
     OPENDR_RGB = 1,
-    /*
-     Blue, green, red (OpenCV).
-     */
+    // Blue, green, red (OpenCV).
     OPENDR_BGR = 2,
-    /*
-     Red, green, blue, opacity.
-     */
+    // Red, green, blue, opacity.
     OPENDR_RGBA = 3,
-    /*
-     Blue, green, red, opacity.
-     */
+    // Blue, green, red, opacity.
     OPENDR_BGRA = 4,
 } opendr_pixel_format;
 
-/*
- The order of the axes of a picture in memory.
- */
+// The order of the axes of a picture in memory.
 typedef enum opendr_layout {
-    /*
-     [height, width, channels]: pixels lie together (cameras, OpenCV).
-     */
+    // [height, width, channels]: pixels lie together (cameras, OpenCV).
     OPENDR_HWC = 0,
-    /*
-     [channels, height, width]: planes lie together (networks).
-     */
+    // [channels, height, width]: planes lie together (networks).
     OPENDR_CHW = 1,
 } opendr_layout;
 
-/*
- The joints of a kind of body, and their order (docs/json.md).
- */
+// The joints of a kind of body, and their order (docs/json.md).
 typedef enum opendr_skeleton {
-    /*
-     OpenDR's 18 joints of a person.
-     */
+    // OpenDR's 18 joints of a person.
     OPENDR_OPENDR18 = 0,
-    /*
-     COCO's 17 joints of a person.
-     */
+    // COCO's 17 joints of a person.
     OPENDR_COCO17 = 1,
 } opendr_skeleton;
 
-/*
- A learner with its model; threads may use it at once, one call is answered after the other.
- */
+// A learner with its model; threads may use it at once, one call is answered after the other.
 typedef struct opendr_learner opendr_learner;
 
-/*
- Pictures one after the other; two threads may take from it at once.
- */
+// Pictures one after the other; two threads may take from it at once.
 typedef struct opendr_source opendr_source;
 
-/*
- A text that the library made; free it with opendr_string_free().
- */
+// A text that the library made; free it with opendr_string_free().
 typedef struct opendr_string opendr_string;
 
-/*
- A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
- */
+// A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
 typedef struct opendr_value opendr_value;
 
-/*
- A named input.
- */
+// A named input.
 typedef struct opendr_input {
-    /*
-     The input's name, e.g. "image".
-     */
+    // The input's name, e.g. "image".
     const char *name;
-    /*
-     Any data or target; NULL leaves an optional input out.
-     */
+    // Any data or target; NULL leaves an optional input out.
     const struct opendr_value *value;
 } opendr_input;
 
-/*
- A named output.
- */
+// A named output.
 typedef struct opendr_output {
-    /*
-     The output's name, e.g. "boxes".
-     */
+    // The output's name, e.g. "boxes".
     const char *name;
-    /*
-     What was found, to be freed; set by the call, NULL when it failed.
-     */
+    // What was found, to be freed; set by the call, NULL when it failed.
     struct opendr_value *value;
 } opendr_output;
 
-/*
- The matrices of a calibration, row by row, as KITTI names them.
- */
+// The matrices of a calibration, row by row, as KITTI names them.
 typedef struct opendr_calibration_matrices {
-    /*
-     Projection of the rectified camera frame into the left colour picture.
-     */
+    // Projection of the rectified camera frame into the left colour picture.
     double p2[3][4];
-    /*
-     Rectifying rotation.
-     */
+    // Rectifying rotation.
     double r0_rect[3][3];
-    /*
-     From the lidar's frame to the camera's, metres.
-     */
+    // From the lidar's frame to the camera's, metres.
     double tr_velo_to_cam[3][4];
 } opendr_calibration_matrices;
 
-/*
- Pixels in memory.
- */
+// Pixels in memory.
 typedef struct opendr_pixels {
-    /*
-     The first sample.
-     */
+    // The first sample.
     const void *data;
-    /*
-     Bytes from the first sample to the end of the memory.
-     */
+    // Bytes from the first sample to the end of the memory.
     size_t size;
-    /*
-     Pixels a row.
-     */
+    // Pixels a row.
     size_t width;
-    /*
-     Rows.
-     */
+    // Rows.
     size_t height;
-    /*
-     Bytes from one row to the next; 0 when rows follow each other without a gap. Planes are height rows.
-     */
+    // Bytes from one row to the next; 0 when rows follow each other without a gap. Planes are height rows.
     size_t row_stride;
-    /*
-     One of opendr_samples.
-     */
+    // One of opendr_samples.
     int32_t samples;
-    /*
-     One of opendr_pixel_format.
-     */
+    // One of opendr_pixel_format.
     int32_t format;
-    /*
-     One of opendr_layout.
-     */
+    // One of opendr_layout.
     int32_t layout;
 } opendr_pixels;
 
-/*
- A named part of an observation.
- */
+// A named part of an observation.
 typedef struct opendr_observation_part {
-    /*
-     Its name.
-     */
+    // Its name.
     const char *name;
-    /*
-     Its numbers, last axis fastest.
-     */
+    // Its numbers, last axis fastest.
     const float *numbers;
-    /*
-     How many numbers there are.
-     */
+    // How many numbers there are.
     size_t length;
-    /*
-     The sizes of its axes.
-     */
+    // The sizes of its axes.
     const size_t *shape;
-    /*
-     How many axes there are.
-     */
+    // How many axes there are.
     size_t axes;
 } opendr_observation_part;
 
-/*
- A box in space, in the camera frame of KITTI: x right, y down, z ahead.
- */
+// A box in space, in the camera frame of KITTI: x right, y down, z ahead.
 typedef struct opendr_bounding_box_3d {
-    /*
-     Class number; -1 when there is only a label.
-     */
+    // Class number; -1 when there is only a label.
     int64_t class_index;
-    /*
-     What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
-     */
+    // What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
     const char *label;
-    /*
-     How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
-     */
+    // How much of the object lies outside the picture, 0 to 1; -1 when it is not known.
     float truncated;
-    /*
-     0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
-     */
+    // 0 visible, 1 partly hidden, 2 mostly hidden, 3 or -1 not known.
     int32_t occluded;
-    /*
-     Angle under which the object is seen, radians.
-     */
+    // Angle under which the object is seen, radians.
     float alpha;
-    /*
-     The object in the picture, corners x0, y0, x1, y1, pixels.
-     */
+    // The object in the picture, corners x0, y0, x1, y1, pixels.
     float bbox2d[4];
-    /*
-     Length, height and width, metres.
-     */
+    // Length, height and width, metres.
     float dimensions[3];
-    /*
-     x, y, z of the middle of its floor, metres.
-     */
+    // x, y, z of the middle of its floor, metres.
     float location[3];
-    /*
-     Turn about the vertical axis, radians; 0 looks along x.
-     */
+    // Turn about the vertical axis, radians; 0 looks along x.
     float rotation_y;
-    /*
-     Score.
-     */
+    // Score.
     float confidence;
 } opendr_bounding_box_3d;
 
-/*
- A point in a picture, pixels.
- */
+// A point in a picture, pixels.
 typedef struct opendr_point {
-    /*
-     Pixels from the left edge.
-     */
+    // Pixels from the left edge.
     float x;
-    /*
-     Pixels from the upper edge.
-     */
+    // Pixels from the upper edge.
     float y;
 } opendr_point;
 
-/*
- A box in a picture. Outlines (segments) are in the JSON of the list.
- */
+// A box in a picture. Outlines (segments) are in the JSON of the list.
 typedef struct opendr_bounding_box {
-    /*
-     Class number; -1 when there is only a label.
-     */
+    // Class number; -1 when there is only a label.
     int64_t class_index;
-    /*
-     What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
-     */
+    // What the class is called, NULL when that is not known. Given to a list, it counts when class_index is -1.
     const char *label;
-    /*
-     Left edge, pixels.
-     */
+    // Left edge, pixels.
     float left;
-    /*
-     Upper edge, pixels.
-     */
+    // Upper edge, pixels.
     float top;
-    /*
-     Pixels to the right edge.
-     */
+    // Pixels to the right edge.
     float width;
-    /*
-     Pixels to the lower edge.
-     */
+    // Pixels to the lower edge.
     float height;
-    /*
-     Score, 0 to 1.
-     */
+    // Score, 0 to 1.
     float confidence;
-    /*
-     Points that belong to the box (eyes, nose, corners of the mouth of a face).
-     */
+    // Points that belong to the box (eyes, nose, corners of the mouth of a face).
     const struct opendr_point *landmarks;
-    /*
-     How many there are.
-     */
+    // How many there are.
     size_t landmark_count;
 } opendr_bounding_box;
 
-/*
- What a category says.
- */
+// What a category says.
 typedef struct opendr_category_fields {
-    /*
-     Class number.
-     */
+    // Class number.
     int64_t class_index;
-    /*
-     What the class means, NULL when that is not known.
-     */
+    // What the class means, NULL when that is not known.
     const char *description;
-    /*
-     Score of the class, 0 to 1; NaN when there is none.
-     */
+    // Score of the class, 0 to 1; NaN when there is none.
     float confidence;
-    /*
-     Score of every class.
-     */
+    // Score of every class.
     const float *probabilities;
-    /*
-     How many there are; 0 when the learner does not tell them.
-     */
+    // How many there are; 0 when the learner does not tell them.
     size_t probability_count;
 } opendr_category_fields;
 
-/*
- The elements of a heat map, last axis fastest: either labels or scores, the other is NULL.
- */
+// The elements of a heat map, last axis fastest: either labels or scores, the other is NULL.
 typedef struct opendr_heatmap_fields {
-    /*
-     Class numbers.
-     */
+    // Class numbers.
     const uint32_t *labels;
-    /*
-     Scores.
-     */
+    // Scores.
     const float *scores;
-    /*
-     How many elements there are.
-     */
+    // How many elements there are.
     size_t length;
-    /*
-     The sizes of the axes, e.g. height and width.
-     */
+    // The sizes of the axes, e.g. height and width.
     const size_t *shape;
-    /*
-     How many axes there are, 1 to 8.
-     */
+    // How many axes there are, 1 to 8.
     size_t axes;
 } opendr_heatmap_fields;
 
-/*
- A point found in a picture, pixels; (-1, -1) means not found.
- */
+// A point found in a picture, pixels; (-1, -1) means not found.
 typedef struct opendr_keypoint {
-    /*
-     Pixels from the left edge.
-     */
+    // Pixels from the left edge.
     float x;
-    /*
-     Pixels from the upper edge.
-     */
+    // Pixels from the upper edge.
     float y;
-    /*
-     Score, 0 to 1.
-     */
+    // Score, 0 to 1.
     float confidence;
 } opendr_keypoint;
 
-/*
- One person.
- */
+// One person.
 typedef struct opendr_pose {
-    /*
-     The joints in the order of the skeleton.
-     */
+    // The joints in the order of the skeleton.
     const struct opendr_keypoint *keypoints;
-    /*
-     How many there are.
-     */
+    // How many there are.
     size_t keypoint_count;
-    /*
-     Score of the whole, 0 to 1.
-     */
+    // Score of the whole, 0 to 1.
     float confidence;
-    /*
-     One of opendr_skeleton.
-     */
+    // One of opendr_skeleton.
     int32_t skeleton;
-    /*
-     The person's track; -1 when none is kept.
-     */
+    // The person's track; -1 when none is kept.
     int64_t id;
 } opendr_pose;
 
-/*
- What a command says.
- */
+// What a command says.
 typedef struct opendr_speech_command_fields {
-    /*
-     Class number; -1 when there is only a word.
-     */
+    // Class number; -1 when there is only a word.
     int64_t class_index;
-    /*
-     The word, NULL when it is not known. Given to a command, it counts when class_index is -1.
-     */
+    // The word, NULL when it is not known. Given to a command, it counts when class_index is -1.
     const char *label;
-    /*
-     Score, 0 to 1.
-     */
+    // Score, 0 to 1.
     float confidence;
-    /*
-     Begin within the sound, seconds; NaN when it is not known.
-     */
+    // Begin within the sound, seconds; NaN when it is not known.
     float begin_s;
-    /*
-     End within the sound, seconds; NaN when it is not known.
-     */
+    // End within the sound, seconds; NaN when it is not known.
     float end_s;
 } opendr_speech_command_fields;
 
-/*
- A box of one object that is followed through space.
- */
+// A box of one object that is followed through space.
 typedef struct opendr_tracking_annotation_3d {
-    /*
-     Where it is.
-     */
+    // Where it is.
     struct opendr_bounding_box_3d bounding_box_3d;
-    /*
-     The object's number, the same at every time; -1 when it is not known.
-     */
+    // The object's number, the same at every time; -1 when it is not known.
     int64_t id;
-    /*
-     Number of the cloud in its recording; -1 when it has none.
-     */
+    // Number of the cloud in its recording; -1 when it has none.
     int64_t frame;
 } opendr_tracking_annotation_3d;
 
-/*
- A box of one object that is followed through a video.
- */
+// A box of one object that is followed through a video.
 typedef struct opendr_tracking_annotation {
-    /*
-     Where it is.
-     */
+    // Where it is.
     struct opendr_bounding_box bounding_box;
-    /*
-     The object's number, the same in every picture; -1 when it is not known.
-     */
+    // The object's number, the same in every picture; -1 when it is not known.
     int64_t id;
-    /*
-     Number of the picture in its video; -1 when it has none.
-     */
+    // Number of the picture in its video; -1 when it has none.
     int64_t frame;
 } opendr_tracking_annotation;
 
-/*
- A part of a transcription. Tokens and measures are in the JSON of the transcription.
- */
+// A part of a transcription. Tokens and measures are in the JSON of the transcription.
 typedef struct opendr_whisper_segment {
-    /*
-     Number of the segment.
-     */
+    // Number of the segment.
     int64_t id;
-    /*
-     Begin within the sound, seconds.
-     */
+    // Begin within the sound, seconds.
     float start_s;
-    /*
-     End within the sound, seconds.
-     */
+    // End within the sound, seconds.
     float end_s;
-    /*
-     The words.
-     */
+    // The words.
     const char *text;
 } opendr_whisper_segment;
 
@@ -586,114 +340,76 @@ typedef struct opendr_whisper_segment {
 extern "C" {
 #endif // __cplusplus
 
-/*
- The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
- index. "" when there is none. Valid until the next call of this thread.
- */
+// The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
+// index. "" when there is none. Valid until the next call of this thread.
 const char *opendr_json_text(const char *json, const char *section, const char *key, int32_t index);
 
-/*
- The number under a key, as opendr_json_text() finds it; 0 when there is none.
- */
+// The number under a key, as opendr_json_text() finds it; 0 when there is none.
 double opendr_json_number(const char *json, const char *section, const char *key, int32_t index);
 
-/*
- Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
- as they are.
- */
+// Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
+// as they are.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
-/*
- Loads a learner, e.g. "nanodet" or "yunet/n_320".
-
- path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
- "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
- */
+// Loads a learner, e.g. "nanodet" or "yunet/n_320".
+//
+// path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
+// "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
 enum opendr_status opendr_load(const char *name,
                                const char *path,
                                const char *device,
                                const char *params_json,
                                struct opendr_learner **learner);
 
-/*
- Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
- left out. Inputs stay the caller's.
- */
+// Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
+// left out. Inputs stay the caller's.
 enum opendr_status opendr_infer(const struct opendr_learner *learner,
                                 const struct opendr_input *inputs,
                                 size_t input_count,
                                 struct opendr_output *outputs,
                                 size_t output_count);
 
-/*
- The name of the learner's input number index, NULL after the last. It lives as long as the learner.
- */
+// The name of the learner's input number index, NULL after the last. It lives as long as the learner.
 const char *opendr_input_name(const struct opendr_learner *learner, size_t index);
 
-/*
- The name of the learner's output number index, NULL after the last. It lives as long as the learner.
- */
+// The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
 
-/*
- Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
- */
+// Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
 enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);
 
-/*
- The parameters in force as a JSON object.
- */
+// The parameters in force as a JSON object.
 enum opendr_status opendr_params(const struct opendr_learner *learner, struct opendr_string **json);
 
-/*
- Forgets what the learner's own stream remembers.
- */
+// Forgets what the learner's own stream remembers.
 enum opendr_status opendr_reset(const struct opendr_learner *learner);
 
-/*
- The names of the classes in order, as a JSON list; empty when class numbers have no names.
- */
+// The names of the classes in order, as a JSON list; empty when class numbers have no names.
 enum opendr_status opendr_classes(const struct opendr_learner *learner, struct opendr_string **json);
 
-/*
- How many classes have names.
- */
+// How many classes have names.
 enum opendr_status opendr_class_count(const struct opendr_learner *learner, size_t *count);
 
-/*
- The name of a class, NULL when it has none. It lives as long as the learner.
- */
+// The name of a class, NULL when it has none. It lives as long as the learner.
 const char *opendr_class_name(const struct opendr_learner *learner, int64_t class_index);
 
-/*
- Writes the model with the parameters in force as a container to the folder path.
- */
+// Writes the model with the parameters in force as a container to the folder path.
 enum opendr_status opendr_save(const struct opendr_learner *learner, const char *path);
 
-/*
- Frees the learner and makes the variable NULL; a NULL in it is freed already.
- */
+// Frees the learner and makes the variable NULL; a NULL in it is freed already.
 enum opendr_status opendr_learner_free(struct opendr_learner **learner);
 
-/*
- The learners that there are, as a JSON list of their names.
- */
+// The learners that there are, as a JSON list of their names.
 enum opendr_status opendr_learners(struct opendr_string **json);
 
-/*
- The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
- index. "" when there is none. Valid until the next call of this thread.
- */
+// The text under a key of a JSON object, or of the object under section where that is not NULL; of a list, the item at
+// index. "" when there is none. Valid until the next call of this thread.
 const char *opendr_json_text(const char *json, const char *section, const char *key, int32_t index);
 
-/*
- The number under a key, as opendr_json_text() finds it; 0 when there is none.
- */
+// The number under a key, as opendr_json_text() finds it; 0 when there is none.
 double opendr_json_number(const char *json, const char *section, const char *key, int32_t index);
 
-/*
- Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
- */
+// Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
 enum opendr_status opendr_array_create(const char *type_name,
                                        const float *numbers,
                                        size_t length,
@@ -701,607 +417,399 @@ enum opendr_status opendr_array_create(const char *type_name,
                                        size_t axes,
                                        struct opendr_value **value);
 
-/*
- Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
- The numbers live as long as the datum.
- */
+// Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
+// The numbers live as long as the datum.
 enum opendr_status opendr_array_read(const struct opendr_value *value,
                                      const float **numbers,
                                      size_t *length,
                                      size_t *shape,
                                      size_t axes);
 
-/*
- Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
- */
+// Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
 enum opendr_status opendr_audio_create(const float *samples,
                                        size_t length,
                                        size_t channels,
                                        uint32_t sample_rate,
                                        opendr_audio **audio);
 
-/*
- Shows the samples of a sound, which live as long as it.
- */
+// Shows the samples of a sound, which live as long as it.
 enum opendr_status opendr_audio_read(const opendr_audio *audio,
                                      const float **samples,
                                      size_t *length,
                                      size_t *channels,
                                      uint32_t *sample_rate);
 
-/*
- Makes a calibration of its matrices.
- */
+// Makes a calibration of its matrices.
 enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
                                              opendr_calibration **calibration);
 
-/*
- Reads a calibration file of KITTI's detection or tracking benchmark.
- */
+// Reads a calibration file of KITTI's detection or tracking benchmark.
 enum opendr_status opendr_calibration_open(const char *path, opendr_calibration **calibration);
 
-/*
- Copies the matrices of a calibration.
- */
+// Copies the matrices of a calibration.
 enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
                                            struct opendr_calibration_matrices *matrices);
 
-/*
- Reads a picture file: JPEG, PNG, BMP or WebP.
- */
+// Reads a picture file: JPEG, PNG, BMP or WebP.
 enum opendr_status opendr_image_open(const char *path, opendr_image **image);
 
-/*
- Reads a picture from the bytes of a file.
- */
+// Reads a picture from the bytes of a file.
 enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
 
-/*
- Makes a picture of pixels in memory, which are copied.
- */
+// Makes a picture of pixels in memory, which are copied.
 enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
 
-/*
- Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
- */
+// Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
 enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
 
-/*
- Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
- */
+// Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
 enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
 
-/*
- Makes a picture with boxes; picture and boxes stay the caller's.
- */
+// Makes a picture with boxes; picture and boxes stay the caller's.
 enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
                                                        const opendr_bounding_box_list *boxes,
                                                        opendr_image_with_detections **both);
 
-/*
- Gives new handles of the picture and of the boxes, to be freed.
- */
+// Gives new handles of the picture and of the boxes, to be freed.
 enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
                                                      opendr_image **image,
                                                      opendr_bounding_box_list **boxes);
 
-/*
- Makes an observation of length numbers without parts, which are copied.
- */
+// Makes an observation of length numbers without parts, which are copied.
 enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
 
-/*
- Makes an observation of named parts, which are copied.
- */
+// Makes an observation of named parts, which are copied.
 enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
                                                    size_t count,
                                                    opendr_observation **observation);
 
-/*
- Shows all numbers of an observation in a row, which live as long as it.
- */
+// Shows all numbers of an observation in a row, which live as long as it.
 enum opendr_status opendr_observation_read(const opendr_observation *observation,
                                            const float **numbers,
                                            size_t *length);
 
-/*
- How many named parts an observation has; 0 for what is none.
- */
+// How many named parts an observation has; 0 for what is none.
 size_t opendr_observation_part_count(const opendr_observation *observation);
 
-/*
- Shows a part of an observation; what it points to lives as long as the observation.
- */
+// Shows a part of an observation; what it points to lives as long as the observation.
 enum opendr_status opendr_observation_get(const opendr_observation *observation,
                                           size_t index,
                                           struct opendr_observation_part *part);
 
-/*
- Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
- picture in pixels, or NULL.
- */
+// Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
+// picture in pixels, or NULL.
 enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
                                                               const opendr_calibration *calibration,
                                                               const size_t *image_shape,
                                                               opendr_point_cloud_with_calibration **both);
 
-/*
- Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
- are not known.
- */
+// Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
+// are not known.
 enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
                                                             opendr_point_cloud **cloud,
                                                             opendr_calibration **calibration,
                                                             size_t *height,
                                                             size_t *width);
 
-/*
- Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
- as they are.
- */
+// Draws a target onto a picture; a type that has no place in a picture leaves it as it is. Copies of the picture stay
+// as they are.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
-/*
- Loads a learner, e.g. "nanodet" or "yunet/n_320".
-
- path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
- "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
- */
+// Loads a learner, e.g. "nanodet" or "yunet/n_320".
+//
+// path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
+// "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
 enum opendr_status opendr_load(const char *name,
                                const char *path,
                                const char *device,
                                const char *params_json,
                                struct opendr_learner **learner);
 
-/*
- Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
- left out. Inputs stay the caller's.
- */
+// Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
+// left out. Inputs stay the caller's.
 enum opendr_status opendr_infer(const struct opendr_learner *learner,
                                 const struct opendr_input *inputs,
                                 size_t input_count,
                                 struct opendr_output *outputs,
                                 size_t output_count);
 
-/*
- The name of the learner's input number index, NULL after the last. It lives as long as the learner.
- */
+// The name of the learner's input number index, NULL after the last. It lives as long as the learner.
 const char *opendr_input_name(const struct opendr_learner *learner, size_t index);
 
-/*
- The name of the learner's output number index, NULL after the last. It lives as long as the learner.
- */
+// The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
 
-/*
- Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
- */
+// Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
 enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);
 
-/*
- The parameters in force as a JSON object.
- */
+// The parameters in force as a JSON object.
 enum opendr_status opendr_params(const struct opendr_learner *learner, struct opendr_string **json);
 
-/*
- Forgets what the learner's own stream remembers.
- */
+// Forgets what the learner's own stream remembers.
 enum opendr_status opendr_reset(const struct opendr_learner *learner);
 
-/*
- The names of the classes in order, as a JSON list; empty when class numbers have no names.
- */
+// The names of the classes in order, as a JSON list; empty when class numbers have no names.
 enum opendr_status opendr_classes(const struct opendr_learner *learner, struct opendr_string **json);
 
-/*
- How many classes have names.
- */
+// How many classes have names.
 enum opendr_status opendr_class_count(const struct opendr_learner *learner, size_t *count);
 
-/*
- The name of a class, NULL when it has none. It lives as long as the learner.
- */
+// The name of a class, NULL when it has none. It lives as long as the learner.
 const char *opendr_class_name(const struct opendr_learner *learner, int64_t class_index);
 
-/*
- Writes the model with the parameters in force as a container to the folder path.
- */
+// Writes the model with the parameters in force as a container to the folder path.
 enum opendr_status opendr_save(const struct opendr_learner *learner, const char *path);
 
-/*
- Frees the learner and makes the variable NULL; a NULL in it is freed already.
- */
+// Frees the learner and makes the variable NULL; a NULL in it is freed already.
 enum opendr_status opendr_learner_free(struct opendr_learner **learner);
 
-/*
- The learners that there are, as a JSON list of their names.
- */
+// The learners that there are, as a JSON list of their names.
 enum opendr_status opendr_learners(struct opendr_string **json);
 
-/*
- Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
- */
+// Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
 enum opendr_status opendr_source_open(const char *input, struct opendr_source **source);
 
-/*
- The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
- the next file.
- */
-enum opendr_status opendr_source_next(struct opendr_source *source, opendr_image **image);
+// The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
+// the next file.
+enum opendr_status opendr_source_next(struct opendr_source *source,
+                                      opendr_image **image);
 
-/*
- The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
- until the next call with this source.
- */
+// The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
+// until the next call with this source.
 const char *opendr_source_path(const struct opendr_source *source);
 
-/*
- Closes the source and makes the variable NULL; a NULL in it is closed already.
- */
+// Closes the source and makes the variable NULL; a NULL in it is closed already.
 enum opendr_status opendr_source_free(struct opendr_source **source);
 
-/*
- Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
- thread.
- */
+// Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
+// thread.
 const char *opendr_last_error(void);
 
-/*
- The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
- */
+// The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
 const char *opendr_status_name(int32_t status);
 
-/*
- The version of the library, e.g. "0.1.0".
- */
+// The version of the library, e.g. "0.1.0".
 const char *opendr_version(void);
 
-/*
- The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
- */
+// The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
 const char *opendr_string_text(const struct opendr_string *string);
 
-/*
- How many bytes the text has, the zero at its end not counted.
- */
+// How many bytes the text has, the zero at its end not counted.
 size_t opendr_string_length(const struct opendr_string *string);
 
-/*
- Frees the string and makes the variable NULL; a NULL in it is freed already.
- */
+// Frees the string and makes the variable NULL; a NULL in it is freed already.
 enum opendr_status opendr_string_free(struct opendr_string **string);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
                                                       size_t count,
                                                       opendr_bounding_box_3d_list **list);
 
-/*
- How many boxes there are; 0 for what is no such list.
- */
+// How many boxes there are; 0 for what is no such list.
 size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
                                                    size_t index,
                                                    struct opendr_bounding_box_3d *item);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
                                                    size_t count,
                                                    opendr_bounding_box_list **list);
 
-/*
- How many boxes there are; 0 for what is no such list.
- */
+// How many boxes there are; 0 for what is no such list.
 size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
                                                 size_t index,
                                                 struct opendr_bounding_box *item);
 
-/*
- Makes a category; everything is copied.
- */
+// Makes a category; everything is copied.
 enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
 
-/*
- Shows what a category says; what the fields point to lives as long as the category.
- */
+// Shows what a category says; what the fields point to lives as long as the category.
 enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
 
-/*
- Makes a heat map; everything is copied.
- */
+// Makes a heat map; everything is copied.
 enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
 
-/*
- Shows the elements of a heat map, which live as long as it.
- */
+// Shows the elements of a heat map, which live as long as it.
 enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
 
-/*
- How many persons there are; 0 for what is no such list.
- */
+// How many persons there are; 0 for what is no such list.
 size_t opendr_pose_list_count(const opendr_pose_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
 
-/*
- Makes a command; everything is copied.
- */
+// Makes a command; everything is copied.
 enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
                                                 opendr_speech_command **command);
 
-/*
- Shows what a command says; the word lives as long as the command.
- */
+// Shows what a command says; the word lives as long as the command.
 enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
                                               struct opendr_speech_command_fields *fields);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
                                                              size_t count,
                                                              opendr_tracking_annotation_3d_list **list);
 
-/*
- How many tracks there are; 0 for what is no such list.
- */
+// How many tracks there are; 0 for what is no such list.
 size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
                                                           size_t index,
                                                           struct opendr_tracking_annotation_3d *item);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
                                                           size_t count,
                                                           opendr_tracking_annotation_list **list);
 
-/*
- How many tracks there are; 0 for what is no such list.
- */
+// How many tracks there are; 0 for what is no such list.
 size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
                                                        size_t index,
                                                        struct opendr_tracking_annotation *item);
 
-/*
- Makes a transcription of words.
- */
+// Makes a transcription of words.
 enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
 
-/*
- The words, NULL for what is no such transcription; they live as long as it.
- */
+// The words, NULL for what is no such transcription; they live as long as it.
 const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
 
-/*
- Makes a transcription of words so far; finished tells whether the phrase is.
- */
+// Makes a transcription of words so far; finished tells whether the phrase is.
 enum opendr_status opendr_vosk_transcription_create(const char *text,
                                                     bool finished,
                                                     opendr_vosk_transcription **transcription);
 
-/*
- The words so far, NULL for what is no such transcription; they live as long as it.
- */
+// The words so far, NULL for what is no such transcription; they live as long as it.
 const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
 
-/*
- Whether the phrase is finished: the words will not change any more.
- */
+// Whether the phrase is finished: the words will not change any more.
 bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
 
-/*
- Makes a transcription of words and its segments, which are copied.
- */
+// Makes a transcription of words and its segments, which are copied.
 enum opendr_status opendr_whisper_transcription_create(const char *text,
                                                        const struct opendr_whisper_segment *segments,
                                                        size_t count,
                                                        opendr_whisper_transcription **transcription);
 
-/*
- The words, NULL for what is no such transcription; they live as long as it.
- */
+// The words, NULL for what is no such transcription; they live as long as it.
 const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
 
-/*
- How many segments there are; 0 for what is no such transcription.
- */
+// How many segments there are; 0 for what is no such transcription.
 size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
 
-/*
- Shows a segment; its words live as long as the transcription.
- */
+// Shows a segment; its words live as long as the transcription.
 enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
                                                     size_t index,
                                                     struct opendr_whisper_segment *segment);
 
-/*
- The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
- */
+// The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
 const char *opendr_value_type(const struct opendr_value *value);
 
-/*
- The JSON of a target (docs/json.md).
- */
+// The JSON of a target (docs/json.md).
 enum opendr_status opendr_value_to_json(const struct opendr_value *value, struct opendr_string **json);
 
-/*
- A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
- */
+// A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
 enum opendr_status opendr_value_from_json(const char *type_name, const char *json, struct opendr_value **value);
 
-/*
- The value as people read it: a line for each item.
- */
+// The value as people read it: a line for each item.
 enum opendr_status opendr_value_to_text(const struct opendr_value *value, struct opendr_string **string);
 
-/*
- When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
- */
+// When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
 enum opendr_status opendr_value_stamp(const struct opendr_value *value, int64_t *stamp_ns);
 
-/*
- Sets when the value was taken; OPENDR_NO_STAMP forgets it.
- */
+// Sets when the value was taken; OPENDR_NO_STAMP forgets it.
 enum opendr_status opendr_value_set_stamp(struct opendr_value *value, int64_t stamp_ns);
 
-/*
- The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
- */
+// The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
 const char *opendr_value_frame_id(const struct opendr_value *value);
 
-/*
- Sets the coordinate frame of the value; NULL forgets it.
- */
+// Sets the coordinate frame of the value; NULL forgets it.
 enum opendr_status opendr_value_set_frame_id(struct opendr_value *value, const char *frame_id);
 
-/*
- A handle of its own to the same value; bulky payloads stay shared.
- */
+// A handle of its own to the same value; bulky payloads stay shared.
 enum opendr_status opendr_value_copy(const struct opendr_value *value, struct opendr_value **copy);
 
-/*
- Frees the value and makes the variable NULL; a NULL in it is freed already.
- */
+// Frees the value and makes the variable NULL; a NULL in it is freed already.
 enum opendr_status opendr_value_free(struct opendr_value **value);
 
-/*
- Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
- */
+// Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
 enum opendr_status opendr_source_open(const char *input, struct opendr_source **source);
 
-/*
- The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
- the next file.
- */
-enum opendr_status opendr_source_next(struct opendr_source *source, opendr_image **image);
+// The next picture, to be freed; *image is NULL at the end. After a file that cannot be read, the next call goes on with
+// the next file.
+enum opendr_status opendr_source_next(struct opendr_source *source,
+                                      opendr_image **image);
 
-/*
- The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
- until the next call with this source.
- */
+// The file that the last picture, or the last failure, came from; "" for a camera, and when there was none yet. Valid
+// until the next call with this source.
 const char *opendr_source_path(const struct opendr_source *source);
 
-/*
- Closes the source and makes the variable NULL; a NULL in it is closed already.
- */
+// Closes the source and makes the variable NULL; a NULL in it is closed already.
 enum opendr_status opendr_source_free(struct opendr_source **source);
 
-/*
- Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
- thread.
- */
+// Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
+// thread.
 const char *opendr_last_error(void);
 
-/*
- The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
- */
+// The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
 const char *opendr_status_name(int32_t status);
 
-/*
- The version of the library, e.g. "0.1.0".
- */
+// The version of the library, e.g. "0.1.0".
 const char *opendr_version(void);
 
-/*
- The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
- */
+// The bytes of the text in UTF-8, ended by a zero; NULL for what is no string. They live as long as the string.
 const char *opendr_string_text(const struct opendr_string *string);
 
-/*
- How many bytes the text has, the zero at its end not counted.
- */
+// How many bytes the text has, the zero at its end not counted.
 size_t opendr_string_length(const struct opendr_string *string);
 
-/*
- Frees the string and makes the variable NULL; a NULL in it is freed already.
- */
+// Frees the string and makes the variable NULL; a NULL in it is freed already.
 enum opendr_status opendr_string_free(struct opendr_string **string);
 
-/*
- The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
- */
+// The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
 const char *opendr_value_type(const struct opendr_value *value);
 
-/*
- The JSON of a target (docs/json.md).
- */
+// The JSON of a target (docs/json.md).
 enum opendr_status opendr_value_to_json(const struct opendr_value *value, struct opendr_string **json);
 
-/*
- A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
- */
+// A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
 enum opendr_status opendr_value_from_json(const char *type_name, const char *json, struct opendr_value **value);
 
-/*
- The value as people read it: a line for each item.
- */
+// The value as people read it: a line for each item.
 enum opendr_status opendr_value_to_text(const struct opendr_value *value, struct opendr_string **string);
 
-/*
- When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
- */
+// When the value was taken, nanoseconds; OPENDR_NO_STAMP when that is not known.
 enum opendr_status opendr_value_stamp(const struct opendr_value *value, int64_t *stamp_ns);
 
-/*
- Sets when the value was taken; OPENDR_NO_STAMP forgets it.
- */
+// Sets when the value was taken; OPENDR_NO_STAMP forgets it.
 enum opendr_status opendr_value_set_stamp(struct opendr_value *value, int64_t stamp_ns);
 
-/*
- The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
- */
+// The coordinate frame of the value; NULL when that is not known. The text lives as long as the value.
 const char *opendr_value_frame_id(const struct opendr_value *value);
 
-/*
- Sets the coordinate frame of the value; NULL forgets it.
- */
+// Sets the coordinate frame of the value; NULL forgets it.
 enum opendr_status opendr_value_set_frame_id(struct opendr_value *value, const char *frame_id);
 
-/*
- A handle of its own to the same value; bulky payloads stay shared.
- */
+// A handle of its own to the same value; bulky payloads stay shared.
 enum opendr_status opendr_value_copy(const struct opendr_value *value, struct opendr_value **copy);
 
-/*
- Frees the value and makes the variable NULL; a NULL in it is freed already.
- */
+// Frees the value and makes the variable NULL; a NULL in it is freed already.
 enum opendr_status opendr_value_free(struct opendr_value **value);
 
-/*
- Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
- */
+// Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
 enum opendr_status opendr_array_create(const char *type_name,
                                        const float *numbers,
                                        size_t length,
@@ -1309,93 +817,65 @@ enum opendr_status opendr_array_create(const char *type_name,
                                        size_t axes,
                                        struct opendr_value **value);
 
-/*
- Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
- The numbers live as long as the datum.
- */
+// Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
+// The numbers live as long as the datum.
 enum opendr_status opendr_array_read(const struct opendr_value *value,
                                      const float **numbers,
                                      size_t *length,
                                      size_t *shape,
                                      size_t axes);
 
-/*
- Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
- */
+// Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
 enum opendr_status opendr_audio_create(const float *samples,
                                        size_t length,
                                        size_t channels,
                                        uint32_t sample_rate,
                                        opendr_audio **audio);
 
-/*
- Shows the samples of a sound, which live as long as it.
- */
+// Shows the samples of a sound, which live as long as it.
 enum opendr_status opendr_audio_read(const opendr_audio *audio,
                                      const float **samples,
                                      size_t *length,
                                      size_t *channels,
                                      uint32_t *sample_rate);
 
-/*
- Makes a calibration of its matrices.
- */
+// Makes a calibration of its matrices.
 enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
                                              opendr_calibration **calibration);
 
-/*
- Reads a calibration file of KITTI's detection or tracking benchmark.
- */
+// Reads a calibration file of KITTI's detection or tracking benchmark.
 enum opendr_status opendr_calibration_open(const char *path, opendr_calibration **calibration);
 
-/*
- Copies the matrices of a calibration.
- */
+// Copies the matrices of a calibration.
 enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
                                            struct opendr_calibration_matrices *matrices);
 
-/*
- Reads a picture file: JPEG, PNG, BMP or WebP.
- */
+// Reads a picture file: JPEG, PNG, BMP or WebP.
 enum opendr_status opendr_image_open(const char *path, opendr_image **image);
 
-/*
- Reads a picture from the bytes of a file.
- */
+// Reads a picture from the bytes of a file.
 enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
 
-/*
- Makes a picture of pixels in memory, which are copied.
- */
+// Makes a picture of pixels in memory, which are copied.
 enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
 
-/*
- Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
- */
+// Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
 enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
 
-/*
- Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
- */
+// Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
 enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
 
-/*
- Makes a picture with boxes; picture and boxes stay the caller's.
- */
+// Makes a picture with boxes; picture and boxes stay the caller's.
 enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
                                                        const opendr_bounding_box_list *boxes,
                                                        opendr_image_with_detections **both);
 
-/*
- Gives new handles of the picture and of the boxes, to be freed.
- */
+// Gives new handles of the picture and of the boxes, to be freed.
 enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
                                                      opendr_image **image,
                                                      opendr_bounding_box_list **boxes);
 
-/*
- Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
- */
+// Makes a datum of the named type ("Vector", "PointCloud", ...) of length numbers, which are copied, last axis fastest.
 enum opendr_status opendr_array_create(const char *type_name,
                                        const float *numbers,
                                        size_t length,
@@ -1403,536 +883,362 @@ enum opendr_status opendr_array_create(const char *type_name,
                                        size_t axes,
                                        struct opendr_value **value);
 
-/*
- Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
- The numbers live as long as the datum.
- */
+// Shows the numbers of such a datum and the sizes of its axes; shape has room for axes sizes, as many as the type has.
+// The numbers live as long as the datum.
 enum opendr_status opendr_array_read(const struct opendr_value *value,
                                      const float **numbers,
                                      size_t *length,
                                      size_t *shape,
                                      size_t axes);
 
-/*
- Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
- */
+// Makes a sound of length samples in [-1, 1], which are copied, instant by instant (channels interleaved).
 enum opendr_status opendr_audio_create(const float *samples,
                                        size_t length,
                                        size_t channels,
                                        uint32_t sample_rate,
                                        opendr_audio **audio);
 
-/*
- Shows the samples of a sound, which live as long as it.
- */
+// Shows the samples of a sound, which live as long as it.
 enum opendr_status opendr_audio_read(const opendr_audio *audio,
                                      const float **samples,
                                      size_t *length,
                                      size_t *channels,
                                      uint32_t *sample_rate);
 
-/*
- Makes a calibration of its matrices.
- */
+// Makes a calibration of its matrices.
 enum opendr_status opendr_calibration_create(const struct opendr_calibration_matrices *matrices,
                                              opendr_calibration **calibration);
 
-/*
- Reads a calibration file of KITTI's detection or tracking benchmark.
- */
+// Reads a calibration file of KITTI's detection or tracking benchmark.
 enum opendr_status opendr_calibration_open(const char *path, opendr_calibration **calibration);
 
-/*
- Copies the matrices of a calibration.
- */
+// Copies the matrices of a calibration.
 enum opendr_status opendr_calibration_read(const opendr_calibration *calibration,
                                            struct opendr_calibration_matrices *matrices);
 
-/*
- Reads a picture file: JPEG, PNG, BMP or WebP.
- */
+// Reads a picture file: JPEG, PNG, BMP or WebP.
 enum opendr_status opendr_image_open(const char *path, opendr_image **image);
 
-/*
- Reads a picture from the bytes of a file.
- */
+// Reads a picture from the bytes of a file.
 enum opendr_status opendr_image_decode(const uint8_t *bytes, size_t size, opendr_image **image);
 
-/*
- Makes a picture of pixels in memory, which are copied.
- */
+// Makes a picture of pixels in memory, which are copied.
 enum opendr_status opendr_image_create(const struct opendr_pixels *pixels, opendr_image **image);
 
-/*
- Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
- */
+// Shows the pixels of a picture as they are stored; they live as long as the picture, and until it is drawn onto.
 enum opendr_status opendr_image_read(const opendr_image *image, struct opendr_pixels *pixels);
 
-/*
- Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
- */
+// Writes a picture file; the extension of its name tells the format: .jpg, .png, .bmp or .webp.
 enum opendr_status opendr_image_save(const opendr_image *image, const char *path);
 
-/*
- Makes a picture with boxes; picture and boxes stay the caller's.
- */
+// Makes a picture with boxes; picture and boxes stay the caller's.
 enum opendr_status opendr_image_with_detections_create(const opendr_image *image,
                                                        const opendr_bounding_box_list *boxes,
                                                        opendr_image_with_detections **both);
 
-/*
- Gives new handles of the picture and of the boxes, to be freed.
- */
+// Gives new handles of the picture and of the boxes, to be freed.
 enum opendr_status opendr_image_with_detections_read(const opendr_image_with_detections *both,
                                                      opendr_image **image,
                                                      opendr_bounding_box_list **boxes);
 
-/*
- Makes an observation of length numbers without parts, which are copied.
- */
+// Makes an observation of length numbers without parts, which are copied.
 enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
 
-/*
- Makes an observation of named parts, which are copied.
- */
+// Makes an observation of named parts, which are copied.
 enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
                                                    size_t count,
                                                    opendr_observation **observation);
 
-/*
- Shows all numbers of an observation in a row, which live as long as it.
- */
+// Shows all numbers of an observation in a row, which live as long as it.
 enum opendr_status opendr_observation_read(const opendr_observation *observation,
                                            const float **numbers,
                                            size_t *length);
 
-/*
- How many named parts an observation has; 0 for what is none.
- */
+// How many named parts an observation has; 0 for what is none.
 size_t opendr_observation_part_count(const opendr_observation *observation);
 
-/*
- Shows a part of an observation; what it points to lives as long as the observation.
- */
+// Shows a part of an observation; what it points to lives as long as the observation.
 enum opendr_status opendr_observation_get(const opendr_observation *observation,
                                           size_t index,
                                           struct opendr_observation_part *part);
 
-/*
- Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
- picture in pixels, or NULL.
- */
+// Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
+// picture in pixels, or NULL.
 enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
                                                               const opendr_calibration *calibration,
                                                               const size_t *image_shape,
                                                               opendr_point_cloud_with_calibration **both);
 
-/*
- Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
- are not known.
- */
+// Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
+// are not known.
 enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
                                                             opendr_point_cloud **cloud,
                                                             opendr_calibration **calibration,
                                                             size_t *height,
                                                             size_t *width);
 
-/*
- Makes an observation of length numbers without parts, which are copied.
- */
+// Makes an observation of length numbers without parts, which are copied.
 enum opendr_status opendr_observation_create(const float *numbers, size_t length, opendr_observation **observation);
 
-/*
- Makes an observation of named parts, which are copied.
- */
+// Makes an observation of named parts, which are copied.
 enum opendr_status opendr_observation_create_parts(const struct opendr_observation_part *parts,
                                                    size_t count,
                                                    opendr_observation **observation);
 
-/*
- Shows all numbers of an observation in a row, which live as long as it.
- */
+// Shows all numbers of an observation in a row, which live as long as it.
 enum opendr_status opendr_observation_read(const opendr_observation *observation,
                                            const float **numbers,
                                            size_t *length);
 
-/*
- How many named parts an observation has; 0 for what is none.
- */
+// How many named parts an observation has; 0 for what is none.
 size_t opendr_observation_part_count(const opendr_observation *observation);
 
-/*
- Shows a part of an observation; what it points to lives as long as the observation.
- */
+// Shows a part of an observation; what it points to lives as long as the observation.
 enum opendr_status opendr_observation_get(const opendr_observation *observation,
                                           size_t index,
                                           struct opendr_observation_part *part);
 
-/*
- Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
- picture in pixels, or NULL.
- */
+// Makes a cloud with its calibration, which both stay the caller's. image_shape is the height and width of the camera's
+// picture in pixels, or NULL.
 enum opendr_status opendr_point_cloud_with_calibration_create(const opendr_point_cloud *cloud,
                                                               const opendr_calibration *calibration,
                                                               const size_t *image_shape,
                                                               opendr_point_cloud_with_calibration **both);
 
-/*
- Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
- are not known.
- */
+// Gives new handles of the cloud and of the calibration, to be freed; height and width of the picture are 0 when they
+// are not known.
 enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_cloud_with_calibration *both,
                                                             opendr_point_cloud **cloud,
                                                             opendr_calibration **calibration,
                                                             size_t *height,
                                                             size_t *width);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
                                                       size_t count,
                                                       opendr_bounding_box_3d_list **list);
 
-/*
- How many boxes there are; 0 for what is no such list.
- */
+// How many boxes there are; 0 for what is no such list.
 size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
                                                    size_t index,
                                                    struct opendr_bounding_box_3d *item);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
                                                    size_t count,
                                                    opendr_bounding_box_list **list);
 
-/*
- How many boxes there are; 0 for what is no such list.
- */
+// How many boxes there are; 0 for what is no such list.
 size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
                                                 size_t index,
                                                 struct opendr_bounding_box *item);
 
-/*
- Makes a category; everything is copied.
- */
+// Makes a category; everything is copied.
 enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
 
-/*
- Shows what a category says; what the fields point to lives as long as the category.
- */
+// Shows what a category says; what the fields point to lives as long as the category.
 enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
 
-/*
- Makes a heat map; everything is copied.
- */
+// Makes a heat map; everything is copied.
 enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
 
-/*
- Shows the elements of a heat map, which live as long as it.
- */
+// Shows the elements of a heat map, which live as long as it.
 enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_bounding_box_3d_list_create(const struct opendr_bounding_box_3d *items,
                                                       size_t count,
                                                       opendr_bounding_box_3d_list **list);
 
-/*
- How many boxes there are; 0 for what is no such list.
- */
+// How many boxes there are; 0 for what is no such list.
 size_t opendr_bounding_box_3d_list_count(const opendr_bounding_box_3d_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_bounding_box_3d_list_get(const opendr_bounding_box_3d_list *list,
                                                    size_t index,
                                                    struct opendr_bounding_box_3d *item);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_bounding_box_list_create(const struct opendr_bounding_box *items,
                                                    size_t count,
                                                    opendr_bounding_box_list **list);
 
-/*
- How many boxes there are; 0 for what is no such list.
- */
+// How many boxes there are; 0 for what is no such list.
 size_t opendr_bounding_box_list_count(const opendr_bounding_box_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_bounding_box_list_get(const opendr_bounding_box_list *list,
                                                 size_t index,
                                                 struct opendr_bounding_box *item);
 
-/*
- Makes a category; everything is copied.
- */
+// Makes a category; everything is copied.
 enum opendr_status opendr_category_create(const struct opendr_category_fields *fields, opendr_category **category);
 
-/*
- Shows what a category says; what the fields point to lives as long as the category.
- */
+// Shows what a category says; what the fields point to lives as long as the category.
 enum opendr_status opendr_category_read(const opendr_category *category, struct opendr_category_fields *fields);
 
-/*
- Makes a heat map; everything is copied.
- */
+// Makes a heat map; everything is copied.
 enum opendr_status opendr_heatmap_create(const struct opendr_heatmap_fields *fields, opendr_heatmap **heatmap);
 
-/*
- Shows the elements of a heat map, which live as long as it.
- */
+// Shows the elements of a heat map, which live as long as it.
 enum opendr_status opendr_heatmap_read(const opendr_heatmap *heatmap, struct opendr_heatmap_fields *fields);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
 
-/*
- How many persons there are; 0 for what is no such list.
- */
+// How many persons there are; 0 for what is no such list.
 size_t opendr_pose_list_count(const opendr_pose_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
 
-/*
- Makes a command; everything is copied.
- */
+// Makes a command; everything is copied.
 enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
                                                 opendr_speech_command **command);
 
-/*
- Shows what a command says; the word lives as long as the command.
- */
+// Shows what a command says; the word lives as long as the command.
 enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
                                               struct opendr_speech_command_fields *fields);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
                                                              size_t count,
                                                              opendr_tracking_annotation_3d_list **list);
 
-/*
- How many tracks there are; 0 for what is no such list.
- */
+// How many tracks there are; 0 for what is no such list.
 size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
                                                           size_t index,
                                                           struct opendr_tracking_annotation_3d *item);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
                                                           size_t count,
                                                           opendr_tracking_annotation_list **list);
 
-/*
- How many tracks there are; 0 for what is no such list.
- */
+// How many tracks there are; 0 for what is no such list.
 size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
                                                        size_t index,
                                                        struct opendr_tracking_annotation *item);
 
-/*
- Makes a transcription of words.
- */
+// Makes a transcription of words.
 enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
 
-/*
- The words, NULL for what is no such transcription; they live as long as it.
- */
+// The words, NULL for what is no such transcription; they live as long as it.
 const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
 
-/*
- Makes a transcription of words so far; finished tells whether the phrase is.
- */
+// Makes a transcription of words so far; finished tells whether the phrase is.
 enum opendr_status opendr_vosk_transcription_create(const char *text,
                                                     bool finished,
                                                     opendr_vosk_transcription **transcription);
 
-/*
- The words so far, NULL for what is no such transcription; they live as long as it.
- */
+// The words so far, NULL for what is no such transcription; they live as long as it.
 const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
 
-/*
- Whether the phrase is finished: the words will not change any more.
- */
+// Whether the phrase is finished: the words will not change any more.
 bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
 
-/*
- Makes a transcription of words and its segments, which are copied.
- */
+// Makes a transcription of words and its segments, which are copied.
 enum opendr_status opendr_whisper_transcription_create(const char *text,
                                                        const struct opendr_whisper_segment *segments,
                                                        size_t count,
                                                        opendr_whisper_transcription **transcription);
 
-/*
- The words, NULL for what is no such transcription; they live as long as it.
- */
+// The words, NULL for what is no such transcription; they live as long as it.
 const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
 
-/*
- How many segments there are; 0 for what is no such transcription.
- */
+// How many segments there are; 0 for what is no such transcription.
 size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
 
-/*
- Shows a segment; its words live as long as the transcription.
- */
+// Shows a segment; its words live as long as the transcription.
 enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
                                                     size_t index,
                                                     struct opendr_whisper_segment *segment);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_pose_list_create(const struct opendr_pose *items, size_t count, opendr_pose_list **list);
 
-/*
- How many persons there are; 0 for what is no such list.
- */
+// How many persons there are; 0 for what is no such list.
 size_t opendr_pose_list_count(const opendr_pose_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
 
-/*
- Makes a command; everything is copied.
- */
+// Makes a command; everything is copied.
 enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
                                                 opendr_speech_command **command);
 
-/*
- Shows what a command says; the word lives as long as the command.
- */
+// Shows what a command says; the word lives as long as the command.
 enum opendr_status opendr_speech_command_read(const opendr_speech_command *command,
                                               struct opendr_speech_command_fields *fields);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_3d_list_create(const struct opendr_tracking_annotation_3d *items,
                                                              size_t count,
                                                              opendr_tracking_annotation_3d_list **list);
 
-/*
- How many tracks there are; 0 for what is no such list.
- */
+// How many tracks there are; 0 for what is no such list.
 size_t opendr_tracking_annotation_3d_list_count(const opendr_tracking_annotation_3d_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_tracking_annotation_3d_list_get(const opendr_tracking_annotation_3d_list *list,
                                                           size_t index,
                                                           struct opendr_tracking_annotation_3d *item);
 
-/*
- Makes a list of items, which are copied.
- */
+// Makes a list of items, which are copied.
 enum opendr_status opendr_tracking_annotation_list_create(const struct opendr_tracking_annotation *items,
                                                           size_t count,
                                                           opendr_tracking_annotation_list **list);
 
-/*
- How many tracks there are; 0 for what is no such list.
- */
+// How many tracks there are; 0 for what is no such list.
 size_t opendr_tracking_annotation_list_count(const opendr_tracking_annotation_list *list);
 
-/*
- Shows an item of the list; what it points to lives as long as the list.
- */
+// Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_tracking_annotation_list_get(const opendr_tracking_annotation_list *list,
                                                        size_t index,
                                                        struct opendr_tracking_annotation *item);
 
-/*
- Makes a transcription of words.
- */
+// Makes a transcription of words.
 enum opendr_status opendr_base_transcription_create(const char *text, opendr_base_transcription **transcription);
 
-/*
- The words, NULL for what is no such transcription; they live as long as it.
- */
+// The words, NULL for what is no such transcription; they live as long as it.
 const char *opendr_base_transcription_text(const opendr_base_transcription *transcription);
 
-/*
- Makes a transcription of words so far; finished tells whether the phrase is.
- */
+// Makes a transcription of words so far; finished tells whether the phrase is.
 enum opendr_status opendr_vosk_transcription_create(const char *text,
                                                     bool finished,
                                                     opendr_vosk_transcription **transcription);
 
-/*
- The words so far, NULL for what is no such transcription; they live as long as it.
- */
+// The words so far, NULL for what is no such transcription; they live as long as it.
 const char *opendr_vosk_transcription_text(const opendr_vosk_transcription *transcription);
 
-/*
- Whether the phrase is finished: the words will not change any more.
- */
+// Whether the phrase is finished: the words will not change any more.
 bool opendr_vosk_transcription_finished(const opendr_vosk_transcription *transcription);
 
-/*
- Makes a transcription of words and its segments, which are copied.
- */
+// Makes a transcription of words and its segments, which are copied.
 enum opendr_status opendr_whisper_transcription_create(const char *text,
                                                        const struct opendr_whisper_segment *segments,
                                                        size_t count,
                                                        opendr_whisper_transcription **transcription);
 
-/*
- The words, NULL for what is no such transcription; they live as long as it.
- */
+// The words, NULL for what is no such transcription; they live as long as it.
 const char *opendr_whisper_transcription_text(const opendr_whisper_transcription *transcription);
 
-/*
- How many segments there are; 0 for what is no such transcription.
- */
+// How many segments there are; 0 for what is no such transcription.
 size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *transcription);
 
-/*
- Shows a segment; its words live as long as the transcription.
- */
+// Shows a segment; its words live as long as the transcription.
 enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
                                                     size_t index,
                                                     struct opendr_whisper_segment *segment);

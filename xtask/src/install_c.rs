@@ -1,0 +1,135 @@
+//! `cargo xtask install-c PREFIX`: the C library with what programs need to find it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Result, command, root, step, target};
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// What a program links besides the static library: what `rustc --print native-static-libs` tells.
+const SYSTEM_LIBRARIES: [&str; 7] = ["gcc_s", "util", "rt", "pthread", "m", "dl", "c"];
+
+/// Builds the library for users and installs it under `prefix`.
+pub fn run(prefix: &Path) -> Result<()> {
+    step("C library", command("cargo").args(["build", "--release", "--package", "opendr-c"]))?;
+    install(prefix, &target().join("release"))
+}
+
+/// As [`run`], with the learner that tests use, built quickly.
+pub fn run_for_tests(prefix: &Path) -> Result<()> {
+    let build = ["build", "--package", "opendr-c", "--features", "test-learner"];
+    step("C library for tests", command("cargo").args(build))?;
+    install(prefix, &target().join("debug"))
+}
+
+fn install(prefix: &Path, built: &Path) -> Result<()> {
+    let prefix = std::path::absolute(prefix).map_err(|error| format!("{}: {error}", prefix.display()))?;
+    let place = Place(prefix.clone());
+    for header in ["opendr.h", "opendr_compat.h"] {
+        place.copy(&root().join("bindings/c/include").join(header), &format!("include/{header}"))?;
+    }
+    place.copy(&built.join("libopendr_c.a"), "lib/libopendr.a")?;
+    if cfg!(target_os = "macos") {
+        place.copy(&built.join("libopendr_c.dylib"), "lib/libopendr.0.dylib")?;
+        place.link("libopendr.0.dylib", "lib/libopendr.dylib")?;
+    } else {
+        let file = format!("libopendr.so.{VERSION}");
+        place.copy(&built.join("libopendr_c.so"), &format!("lib/{file}"))?;
+        place.link(&file, "lib/libopendr.so.0")?;
+        place.link("libopendr.so.0", "lib/libopendr.so")?;
+    }
+    place.write("lib/pkgconfig/opendr.pc", &pkg_config())?;
+    place.write("lib/cmake/OpenDR/OpenDRConfig.cmake", &cmake_config())?;
+    place.write("lib/cmake/OpenDR/OpenDRConfigVersion.cmake", &cmake_version())?;
+    println!("installed OpenDR {VERSION} under {}", prefix.display());
+    Ok(())
+}
+
+fn pkg_config() -> String {
+    let private: Vec<_> = SYSTEM_LIBRARIES.iter().map(|library| format!("-l{library}")).collect();
+    format!(
+        "prefix=${{pcfiledir}}/../..\n\
+         libdir=${{prefix}}/lib\n\
+         includedir=${{prefix}}/include\n\n\
+         Name: OpenDR\n\
+         Description: Open deep-learning toolkit for robotics\n\
+         Version: {VERSION}\n\
+         Cflags: -I${{includedir}}\n\
+         Libs: -L${{libdir}} -lopendr\n\
+         Libs.private: {}\n",
+        private.join(" ")
+    )
+}
+
+fn cmake_config() -> String {
+    format!(
+        "# The targets OpenDR::opendr (shared) and OpenDR::opendr_static.\n\
+         get_filename_component(_opendr_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
+         if(NOT TARGET OpenDR::opendr)\n\
+         \x20 add_library(OpenDR::opendr SHARED IMPORTED)\n\
+         \x20 set_target_properties(OpenDR::opendr PROPERTIES\n\
+         \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/lib/libopendr${{CMAKE_SHARED_LIBRARY_SUFFIX}}\"\n\
+         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_opendr_prefix}}/include\")\n\
+         \x20 add_library(OpenDR::opendr_static STATIC IMPORTED)\n\
+         \x20 set_target_properties(OpenDR::opendr_static PROPERTIES\n\
+         \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/lib/libopendr.a\"\n\
+         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_opendr_prefix}}/include\"\n\
+         \x20   INTERFACE_LINK_LIBRARIES \"{}\")\n\
+         endif()\n\
+         unset(_opendr_prefix)\n",
+        SYSTEM_LIBRARIES.join(";")
+    )
+}
+
+/// Before version 1, a program needs the minor version that it was written for.
+fn cmake_version() -> String {
+    let minor = VERSION.rsplit_once('.').map_or(VERSION, |(minor, _)| minor);
+    format!(
+        "set(PACKAGE_VERSION \"{VERSION}\")\n\
+         set(PACKAGE_VERSION_COMPATIBLE FALSE)\n\
+         if(NOT PACKAGE_FIND_VERSION VERSION_GREATER PACKAGE_VERSION AND NOT PACKAGE_FIND_VERSION VERSION_LESS \"{minor}\")\n\
+         \x20 set(PACKAGE_VERSION_COMPATIBLE TRUE)\n\
+         endif()\n\
+         if(PACKAGE_FIND_VERSION VERSION_EQUAL PACKAGE_VERSION)\n\
+         \x20 set(PACKAGE_VERSION_EXACT TRUE)\n\
+         endif()\n"
+    )
+}
+
+/// Where things are installed.
+struct Place(PathBuf);
+
+impl Place {
+    fn path(&self, name: &str) -> Result<PathBuf> {
+        let path = self.0.join(name);
+        let folder = path.parent().unwrap_or(&self.0);
+        fs::create_dir_all(folder).map_err(|error| format!("making {}: {error}", folder.display()))?;
+        // A program that runs keeps the library that it has.
+        fs::remove_file(&path).ok();
+        Ok(path)
+    }
+
+    fn copy(&self, from: &Path, name: &str) -> Result<()> {
+        let path = self.path(name)?;
+        fs::copy(from, &path)
+            .map_err(|error| format!("copying {} to {}: {error}", from.display(), path.display()))?;
+        Ok(())
+    }
+
+    fn write(&self, name: &str, text: &str) -> Result<()> {
+        let path = self.path(name)?;
+        fs::write(&path, text).map_err(|error| format!("writing {}: {error}", path.display()))
+    }
+
+    #[cfg(unix)]
+    fn link(&self, to: &str, name: &str) -> Result<()> {
+        let path = self.path(name)?;
+        std::os::unix::fs::symlink(to, &path).map_err(|error| format!("linking {}: {error}", path.display()))
+    }
+
+    #[cfg(not(unix))]
+    fn link(&self, _to: &str, name: &str) -> Result<()> {
+        Err(format!("{name} is a link; this system has none, copy the library yourself"))
+    }
+}
