@@ -2,6 +2,7 @@
 
 import json
 import os
+import subprocess
 
 import pytest
 
@@ -66,7 +67,5 @@ def test_names_that_are_no_utf8(compiler, shared, tmp_path):
         file.write((shared / "data/photos/zidane.jpg").read_bytes())
     arguments = ["ultra_light_face", "{}"]
     plain = compiler.run(runner, *arguments, shared / "data/photos/zidane.jpg")
-    import subprocess
-
     done = subprocess.run([runner, *arguments, odd], env=compiler.environment, capture_output=True)
     assert (done.returncode, done.stdout) == (0, plain.stdout), done.stderr
