@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, command, root, step, target};
+use crate::test::TEST_LEARNER;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -18,7 +19,7 @@ pub fn run(prefix: &Path) -> Result<()> {
 
 /// As [`run`], with the learner that tests use, built quickly.
 pub fn run_for_tests(prefix: &Path) -> Result<()> {
-    let build = ["build", "--package", "opendr-c", "--features", "test-learner"];
+    let build = ["build", "--package", "opendr-c", TEST_LEARNER];
     step("C library for tests", command("cargo").args(build))?;
     install(prefix, &target().join("debug"))
 }

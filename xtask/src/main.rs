@@ -1,6 +1,7 @@
 //! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
 
 mod install_c;
+mod parity;
 mod realtime;
 mod shell;
 mod test;

@@ -3,9 +3,9 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::install_c;
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
+use crate::{install_c, parity};
 
 /// Runs every check; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -22,32 +22,36 @@ pub fn run() -> Result<()> {
         cargo
     };
     step("format", &mut cargo(&["fmt", "--all", "--check"]))?;
-    step("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", "--", "--deny", "warnings"]))?;
+    step(
+        "lints",
+        &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]),
+    )?;
     if is_installed("cargo-nextest") {
-        step("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast"]))?;
+        step("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
     } else {
-        step("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests"]))?;
+        step("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests", TEST_LEARNER]))?;
     }
-    step("documentation tests", &mut cargo(&["test", "--workspace", "--doc"]))?;
+    step("documentation tests", &mut cargo(&["test", "--workspace", "--doc", TEST_LEARNER]))?;
     step(
         "documentation",
         cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     )?;
     step("release build", &mut cargo(&["build", "--release"]))?;
-    let mut pytest = command(outside.program());
-    pytest.args(["-m", "pytest", "-ra", "tests/python"]).env("OPENDR_BIN", target().join("release/opendr"));
-    environment.apply(&mut pytest);
-    step("tests from outside", &mut pytest)?;
+    step("tests from outside", &mut pytest(&outside, "tests/python", &environment))?;
     let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
     let wheel = python.install_wheel()?;
-    let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra", "bindings/python/tests"]).env("OPENDR_WHEEL", wheel);
-    environment.apply(&mut pytest);
-    step("tests of the Python package", &mut pytest)?;
-    c_library(&outside, &environment)?;
+    step(
+        "tests of the Python package",
+        pytest(&python, "bindings/python/tests", &environment).env("OPENDR_WHEEL", wheel),
+    )?;
+    let prefix = c_library(&outside, &environment)?;
+    parity::run(&python, &prefix, |pytest| environment.apply(pytest))?;
     println!("\nall checks passed");
     Ok(())
 }
+
+/// The learner that every surface is tested with is in every build for tests.
+pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
 
 /// The tests of the C library alone.
 pub fn run_c() -> Result<()> {
@@ -55,21 +59,26 @@ pub fn run_c() -> Result<()> {
     let outside = Python::install("test-venv", "tests/python/requirements.txt")?;
     let environment = Environment { library: outside.onnxruntime()?, data: test_data(), cache: cache()? };
     step("release build", command("cargo").args(["build", "--release"]))?;
-    c_library(&outside, &environment)
-}
-
-fn c_library(outside: &Python, environment: &Environment) -> Result<()> {
     let mut cargo = command("cargo");
-    cargo.args(["test", "--package", "opendr-c", "--features", "test-learner", "--tests"]);
+    cargo.args(["test", "--package", "opendr-c", TEST_LEARNER, "--tests"]);
     environment.apply(&mut cargo);
     step("tests of the C library", &mut cargo)?;
+    c_library(&outside, &environment).map(drop)
+}
+
+/// Installs the C library under the build folder and tests programs against it; where it is.
+fn c_library(outside: &Python, environment: &Environment) -> Result<PathBuf> {
     let prefix = target().join("c");
     install_c::run_for_tests(&prefix)?;
-    let mut pytest = command(outside.program());
-    pytest.args(["-m", "pytest", "-ra", "tests/c"]).env("OPENDR_C_PREFIX", prefix);
-    pytest.env("OPENDR_BIN", target().join("release/opendr"));
+    step("tests of C programs", pytest(outside, "tests/c", environment).env("OPENDR_C_PREFIX", &prefix))?;
+    Ok(prefix)
+}
+
+fn pytest(python: &Python, tests: &str, environment: &Environment) -> Command {
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", tests]).env("OPENDR_BIN", target().join("release/opendr"));
     environment.apply(&mut pytest);
-    step("tests of C programs", &mut pytest)
+    pytest
 }
 
 struct Environment {

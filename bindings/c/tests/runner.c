@@ -1,9 +1,8 @@
 /*
- * What a learner answers, for the tests that compare surfaces: runner LEARNER[/VARIANT] PARAMS_JSON INPUT [PORT=JSON_FILE ...]
+ * What a learner answers, for the tests that compare surfaces; the twin of crates/opendr/examples/infer_json.rs:
+ * runner LEARNER[=CONTAINER] PARAMS_JSON PORT=PICTURE PORT=@TARGET.json ... , PORT=PICTURE ...
  *
- * For each picture of INPUT a line with the JSON of the outputs by name, as `opendr infer --json` has it under "outputs".
- * OPENDR_RUNNER_MODEL names a model container; without it the pretrained model is taken. An init input is given with
- * the first picture only; every picture is a stream of its own unless OPENDR_RUNNER_SEQUENCE is set.
+ * Commas stand between the calls of one stream. Each gives a line with the JSON of the outputs by name.
  */
 #include <opendr.h>
 #include <stdio.h>
@@ -48,43 +47,50 @@ static void print(opendr_output *outputs, size_t count) {
     printf("}\n");
 }
 
-int main(int argc, char **argv) {
-    opendr_learner *learner = NULL;
-    opendr_source *source = NULL;
+/* The input that `PORT=PICTURE` or `PORT=@TARGET.json` is. */
+static opendr_input input(char *word) {
+    opendr_input input;
     opendr_image *image = NULL;
-    opendr_input inputs[MOST];
-    opendr_output outputs[MOST];
-    size_t input_count = 1, output_count = 0;
-    if (argc < 4 || argc - 3 > MOST) return fprintf(stderr, "usage: runner LEARNER PARAMS_JSON INPUT [PORT=FILE ...]\n"), 2;
-    check(opendr_load(argv[1], getenv("OPENDR_RUNNER_MODEL"), NULL, argv[2], &learner));
-    check(opendr_source_open(argv[3], &source));
-    for (int i = 4; i < argc; i++, input_count++) {
-        char *file = strchr(argv[i], '=');
-        char *json = NULL;
-        opendr_value *value = NULL;
-        if (file == NULL) return fprintf(stderr, "%s is no PORT=FILE\n", argv[i]), 2;
-        *file = '\0';
-        json = read_file(file + 1);
+    opendr_value *value = NULL;
+    char *file = strchr(word, '=');
+    if (file == NULL) return fprintf(stderr, "%s is no PORT=FILE\n", word), exit(2), input;
+    *file++ = '\0';
+    if (*file == '@') {
+        char *json = read_file(file + 1);
         check(opendr_value_from_json(NULL, json, &value));
         free(json);
-        inputs[input_count].name = argv[i];
-        inputs[input_count].value = value;
+    } else {
+        check(opendr_image_open(file, &image));
+        value = (opendr_value *)image;
     }
+    input.name = word;
+    input.value = value;
+    return input;
+}
+
+int main(int argc, char **argv) {
+    opendr_learner *learner = NULL;
+    opendr_output outputs[MOST];
+    size_t output_count = 0;
+    char *container;
+    if (argc < 4) return fprintf(stderr, "usage: runner LEARNER[=CONTAINER] PARAMS_JSON PORT=FILE ... [, PORT=FILE ...]\n"), 2;
+    container = strchr(argv[1], '=');
+    if (container != NULL) *container++ = '\0';
+    check(opendr_load(argv[1], container, NULL, argv[2], &learner));
     for (; output_count < MOST && opendr_output_name(learner, output_count) != NULL; output_count++)
         outputs[output_count].name = opendr_output_name(learner, output_count);
     qsort(outputs, output_count, sizeof outputs[0], by_name);
-    inputs[0].name = opendr_input_name(learner, 0);
-    for (check(opendr_source_next(source, &image)); image != NULL; check(opendr_source_next(source, &image))) {
-        inputs[0].value = (const opendr_value *)image;
+    for (int word = 3; word < argc; word++) {
+        opendr_input inputs[MOST];
+        size_t input_count = 0;
+        for (; word < argc && strcmp(argv[word], ",") != 0 && input_count < MOST; word++)
+            inputs[input_count++] = input(argv[word]);
         check(opendr_infer(learner, inputs, input_count, outputs, output_count));
         print(outputs, output_count);
-        check(opendr_image_free(&image));
-        if (getenv("OPENDR_RUNNER_SEQUENCE") == NULL) check(opendr_reset(learner));
+        while (input_count > 0) {
+            opendr_value *value = (opendr_value *)inputs[--input_count].value;
+            check(opendr_value_free(&value));
+        }
     }
-    for (size_t i = 1; i < input_count; i++) {
-        opendr_value *value = (opendr_value *)inputs[i].value;
-        check(opendr_value_free(&value));
-    }
-    check(opendr_source_free(&source));
     return opendr_learner_free(&learner);
 }

@@ -2,7 +2,7 @@
 
 mod models;
 
-use opendr::learner::{CheckOptions, check_learner};
+use opendr::learner::{CheckOptions, Entry, check_learner};
 use opendr::{Header, Value};
 
 #[test]
@@ -18,7 +18,7 @@ fn every_learner_keeps_its_promises() {
         })
         .collect();
     let mut checked = 0;
-    for entry in opendr::registry().entries() {
+    for entry in learners() {
         let Some(model) = models.get(entry.spec.name) else { continue };
         let options = CheckOptions { model: &model, scratch: &scratch, calls: &calls };
         check_learner(entry, &options).unwrap();
@@ -29,10 +29,15 @@ fn every_learner_keeps_its_promises() {
     std::fs::remove_dir_all(&scratch).ok();
 }
 
+/// All but the test learner, which the engine's own tests check: it takes more than a picture.
+fn learners() -> impl Iterator<Item = &'static Entry> {
+    opendr::registry().entries().into_iter().filter(|entry| entry.spec.name != "counter")
+}
+
 #[test]
 fn every_learner_has_a_card_of_its_task() {
     let zoo = opendr::zoo::Zoo::new(opendr::zoo::ZooOptions::new("unused")).unwrap();
-    for entry in opendr::registry().entries() {
+    for entry in learners() {
         let item = zoo.find(entry.spec.name).unwrap();
         assert_eq!(item.card.task, Some(entry.spec.task), "{}", entry.spec.name);
         entry.make(&item.variant.params, opendr::Device::Cpu).unwrap();
