@@ -1,7 +1,9 @@
 //! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
 
+mod generate;
 mod install_c;
 mod parity;
+mod python_package;
 mod realtime;
 mod shell;
 mod test;
@@ -14,6 +16,7 @@ usage: cargo xtask VERB
 
   test       everything that CI checks; installs what it needs (Debian packages, a Python environment in target/)
   test-c     the part of it that tests the C library
+  generate   write stubs, C headers and docs/learners.md, which are made of the registry
   realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
   install-c PREFIX
              the C library with its headers, pkg-config file and CMake package under PREFIX
@@ -26,6 +29,7 @@ fn main() -> ExitCode {
     let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["test"] => test::run(),
         ["test-c"] => test::run_c(),
+        ["generate"] => generate::run(),
         ["realtime"] => realtime::run(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),
         _ => {

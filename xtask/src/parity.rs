@@ -1,30 +1,21 @@
 //! The cases of `tests/cases` through every surface, all built with the test learner.
 
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use crate::shell::{Result, command, root, step, target};
+use crate::python_package;
+use crate::shell::{Result, command, step, target};
 use crate::test::TEST_LEARNER;
 use crate::tools::Python;
 
 /// Builds the runner of each surface and compares what they print; the C library is installed under `prefix`.
 pub fn run(python: &Python, prefix: &Path, environment: impl Fn(&mut Command)) -> Result<()> {
-    let packages = ["--package", "opendr", "--package", "opendr-cli", "--package", "opendr-python"];
+    let packages = ["--package", "opendr", "--package", "opendr-cli"];
     let mut build = command("cargo");
-    build.args(["build", "--lib", "--bins", "--example", "infer_json", TEST_LEARNER]).args(packages);
+    build.args(["build", "--bins", "--example", "infer_json", TEST_LEARNER]).args(packages);
     step("runners", &mut build)?;
     let folder = target().join("parity");
-    let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
-    // Nothing there is what is wanted.
-    fs::remove_dir_all(&folder).ok();
-    fs::create_dir_all(&folder).map_err(failed)?;
-    let package = folder.join("opendr");
-    step(
-        "python runner",
-        command("cp").arg("-r").arg(root().join("bindings/python/python/opendr")).arg(&package),
-    )?;
-    fs::copy(target().join("debug/lib_opendr.so"), package.join("_opendr.abi3.so")).map_err(failed)?;
+    python_package::build(&folder)?;
     let runner = folder.join("runner");
     let mut gcc = command("gcc");
     gcc.args(["-std=c11", "-O1", "bindings/c/tests/runner.c", "-o"]).arg(&runner).arg("-I");

@@ -1,5 +1,5 @@
 //! `include/opendr.h` is made here: what the library exports, and what follows from the types and the registry.
-//! `OPENDR_UPDATE=1 cargo test -p opendr-c --test header` writes it anew.
+//! `cargo xtask generate` writes it anew.
 
 #![allow(clippy::unwrap_used)]
 
@@ -25,11 +25,7 @@ fn check(path: &Path, rendered: &str) {
     }
     let found = fs::read_to_string(path).unwrap_or_default();
     let stale = found.lines().zip(rendered.lines()).find(|(found, rendered)| found != rendered);
-    assert!(
-        found == rendered,
-        "{} is stale ({stale:?}); run OPENDR_UPDATE=1 cargo test -p opendr-c --all-features --test header",
-        path.display()
-    );
+    assert!(found == rendered, "{} is stale ({stale:?}); run cargo xtask generate", path.display());
 }
 
 #[test]

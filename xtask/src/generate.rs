@@ -1,0 +1,19 @@
+//! `cargo xtask generate`: writes what is made of the registry and checked in.
+
+use crate::python_package;
+use crate::shell::{Result, command, root, step, target};
+use crate::test::TEST_LEARNER;
+
+/// Writes the type stubs of Python, `docs/learners.md` and the C headers; tests fail when these are stale.
+pub fn run() -> Result<()> {
+    let folder = target().join("generate");
+    python_package::build(&folder)?;
+    let mut stubs = command("python3");
+    stubs.arg(root().join("bindings/python/stubs.py")).env("PYTHONPATH", &folder);
+    step("stubs and docs/learners.md", &mut stubs)?;
+    let mut headers = command("cargo");
+    headers
+        .args(["test", "--package", "opendr-c", TEST_LEARNER, "--test", "header"])
+        .env("OPENDR_UPDATE", "1");
+    step("C headers", &mut headers)
+}
