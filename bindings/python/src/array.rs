@@ -9,8 +9,9 @@ use pyo3::types::{PyDict, PyTuple};
 
 /// A NumPy array's memory: where it is and how it is laid out.
 ///
-/// It is valid as long as the array lives and the interpreter lock is held; elements are copied out byte by byte, so
-/// neither alignment nor a thread of the user's that writes meanwhile can do more harm than a torn picture.
+/// It is valid as long as the caller holds the array: NumPy moves no memory of an array that others hold. Elements are
+/// copied out byte by byte through raw pointers, so neither alignment nor a thread of the user's that writes meanwhile
+/// can do more harm than a torn picture.
 pub struct ArrayMemory {
     start: *const u8,
     shape: Vec<usize>,
@@ -44,15 +45,19 @@ impl Element for f32 {
 impl ArrayMemory {
     /// The memory of `array`, which must be a NumPy array: nothing else is trusted to describe its memory rightly.
     pub fn of(array: &Bound<'_, PyAny>) -> PyResult<Self> {
-        static NDARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
+        static NDARRAY: PyOnceLock<(Py<PyAny>, Py<PyAny>)> = PyOnceLock::new();
         let py = array.py();
-        let ndarray =
-            NDARRAY.get_or_try_init(py, || py.import("numpy")?.getattr("ndarray").map(Bound::unbind))?;
+        let (ndarray, describe) = NDARRAY.get_or_try_init(py, || {
+            let ndarray = py.import("numpy")?.getattr("ndarray")?;
+            let describe = ndarray.getattr("__array_interface__")?.getattr("__get__")?;
+            PyResult::Ok((ndarray.unbind(), describe.unbind()))
+        })?;
         if !array.is_instance(ndarray.bind(py))? {
             let given = array.get_type().name()?;
             return Err(PyTypeError::new_err(format!("a numpy.ndarray is wanted, not {given}")));
         }
-        let interface = array.getattr("__array_interface__")?.cast_into::<PyDict>()?;
+        // NumPy's own words, in one call, not those of a subclass.
+        let interface = describe.bind(py).call1((array,))?.cast_into::<PyDict>()?;
         let entry = |name: &str| {
             interface
                 .get_item(name)?
@@ -60,8 +65,11 @@ impl ArrayMemory {
         };
         let (address, _): (usize, bool) = entry("data")?.extract()?;
         let shape: Vec<usize> = entry("shape")?.extract()?;
-        let strides: Vec<isize> = array.getattr("strides")?.extract()?;
-        let type_text = entry("typestr")?.extract()?;
+        let type_text: String = entry("typestr")?.extract()?;
+        let strides = match entry("strides")?.extract()? {
+            Some(strides) => strides,
+            None => strides_of_row_major(&shape, &type_text),
+        };
         Ok(Self { start: address as *const u8, shape, strides, type_text })
     }
 
@@ -129,6 +137,18 @@ impl ArrayMemory {
         copy(self.start, &[height, width, channels], &[row, column, channel], elements)?;
         Ok((Stored::Together, shape))
     }
+}
+
+/// Strides that NumPy leaves out, since nothing lies between the elements.
+fn strides_of_row_major(shape: &[usize], type_text: &str) -> Vec<isize> {
+    // A type is a byte order, a letter, and the bytes of an element.
+    let mut stride: isize = type_text.get(2..).and_then(|size| size.parse().ok()).unwrap_or_default();
+    let mut strides = vec![0; shape.len()];
+    for (place, side) in strides.iter_mut().zip(shape).rev() {
+        *place = stride;
+        stride = stride.saturating_mul((*side).cast_signed());
+    }
+    strides
 }
 
 /// How a picture lies in memory.

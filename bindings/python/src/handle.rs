@@ -143,7 +143,7 @@ impl Stream {
     }
 }
 
-/// Never held while Python runs: whoever waits for it has released the interpreter.
+/// Whoever waits here has released the interpreter, so that a learner written in Python can run meanwhile.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -1,9 +1,8 @@
 //! The native half of the Python package `opendr`: registry, learners, values, sources, zoo, command.
 //!
 //! It knows data and target types, never learners. Data are Python objects that own NumPy arrays; their memory is read
-//! through raw pointers in one pass with the interpreter lock held, since other threads may write to it. Targets cross
-//! as the JSON objects of `docs/json.md`, so that one schema serves every surface. The lock is released in every long
-//! call.
+//! through raw pointers in one pass, since other threads may write to it. Targets cross as the JSON objects of
+//! `docs/json.md`, so that one schema serves every surface. The lock is released in every long call.
 
 mod array;
 mod bar;
@@ -22,7 +21,8 @@ mod zoo;
 
 use pyo3::prelude::*;
 
-#[pymodule]
+// Nothing here counts on the interpreter's lock: what threads share is frozen, or behind a mutex.
+#[pymodule(gil_used = false)]
 fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let prefix = module.py().import("sys")?.getattr("prefix")?;
     opendr::inference::prefer_python(prefix.extract()?);

@@ -46,6 +46,18 @@ def test_huge_views_of_nothing_are_refused(nanodet):
         nanodet.infer(Image(huge))
 
 
+def test_arrays_that_lie_about_their_memory(nanodet, photo):
+    class Liar(np.ndarray):
+        __array_interface__ = {"data": (16, True), "shape": (3, 9999, 9999), "typestr": "|u1", "strides": None}
+        strides = (1, 1, 1)
+
+    image = Image.open(photo)
+    wanted = nanodet.infer(Image(image.numpy(), guess_format=False)).to_json()
+    told = Image(image.numpy(), guess_format=False)
+    told._data = told.data.view(Liar)
+    assert nanodet.infer(told).to_json() == wanted
+
+
 def test_swapped_bytes_and_unaligned_memory(nanodet, photo):
     frame = Image.open(photo).opencv()
     wanted = nanodet.infer(frame).to_json()
