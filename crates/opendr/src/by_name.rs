@@ -9,7 +9,7 @@ use opendr_zoo::{Zoo, ZooOptions};
 
 use crate::registry;
 
-/// The learner that `spec` names (`"nanodet"`, `"yunet/n_320"`), with its pretrained model, on the best device.
+/// The learner that `spec` names (`"nanodet"`, `"yunet/320"`), with its pretrained model, on the best device.
 ///
 /// The model is downloaded into the cache the first time.
 ///
