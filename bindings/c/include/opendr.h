@@ -351,7 +351,7 @@ double opendr_json_number(const char *json, const char *section, const char *key
 // as they are.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
-// Loads a learner, e.g. "nanodet" or "yunet/n_320".
+// Loads a learner, e.g. "nanodet" or "yunet/320".
 //
 // path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
 // "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
@@ -515,7 +515,7 @@ enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_c
 // as they are.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
-// Loads a learner, e.g. "nanodet" or "yunet/n_320".
+// Loads a learner, e.g. "nanodet" or "yunet/320".
 //
 // path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
 // "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.

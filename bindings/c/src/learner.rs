@@ -60,7 +60,7 @@ impl Loaded {
     }
 }
 
-/// Loads a learner, e.g. "nanodet" or "yunet/n_320".
+/// Loads a learner, e.g. "nanodet" or "yunet/320".
 ///
 /// path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
 /// "cpu", "cuda:0", ...; NULL takes the best one there is. params_json is an object of parameters; NULL takes the defaults.
