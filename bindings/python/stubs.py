@@ -13,6 +13,7 @@ import textwrap
 from pathlib import Path
 
 from opendr import _opendr
+from opendr._native_learner import OF_SEVERAL_PARTS
 from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr.engine.learners import BaseLearner
@@ -48,8 +49,12 @@ def param_type(field):
 
 
 def input_type(port):
-    kinds = [port["type"], *ALSO.get(port["type"], [] if is_target(port["type"]) else ["ArrayLike"])]
+    kinds = [port["type"], *ALSO.get(port["type"], ["ArrayLike"] if stands_for_array(port["type"]) else [])]
     return f"Union[{', '.join(kinds)}]" if len(kinds) > 1 else kinds[0]
+
+
+def stands_for_array(kind):
+    return not is_target(kind) and kind not in OF_SEVERAL_PARTS
 
 
 def is_target(kind):
@@ -98,7 +103,7 @@ def infer(entry):
     if rest:
         return call("infer", ["self", f"{first}: {one}", *rest, *keywords], result)
     # A str is a sequence of str, an array one of arrays: the first that fits is meant.
-    overlap = "" if is_target(ports[0]["type"]) else "  # type: ignore[overload-overlap]"
+    overlap = "" if not stands_for_array(ports[0]["type"]) else "  # type: ignore[overload-overlap]"
     return "".join((
         call("infer", ["self", f"{first}: {one}", *keywords], result, True, overlap),
         call("infer", ["self", f"{first}: Sequence[{one}]", *keywords], f"list[{result}]", True),

@@ -6,8 +6,15 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyList, PyString, PyTuple};
 
+/// Lists in lists; a list may hold itself.
+const MAX_DEPTH: usize = 8;
+
 /// The value that a Python object is: `None`, bool, int, float, str, a list or tuple of such, or a NumPy number.
 pub fn param_from_python(value: &Bound<'_, PyAny>) -> PyResult<ParamValue> {
+    param_at_depth(value, 0)
+}
+
+fn param_at_depth(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<ParamValue> {
     if value.is_none() {
         return Ok(ParamValue::None);
     }
@@ -18,7 +25,12 @@ pub fn param_from_python(value: &Bound<'_, PyAny>) -> PyResult<ParamValue> {
         return Ok(ParamValue::Text(text.extract()?));
     }
     if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
-        let items: PyResult<_> = value.try_iter()?.map(|item| param_from_python(&item?)).collect();
+        if depth == MAX_DEPTH {
+            return Err(PyTypeError::new_err(format!(
+                "a parameter has lists in lists, more than {MAX_DEPTH} deep; give flat lists"
+            )));
+        }
+        let items: PyResult<_> = value.try_iter()?.map(|item| param_at_depth(&item?, depth + 1)).collect();
         return items.map(ParamValue::List);
     }
     if !value.is_instance_of::<PyFloat>()

@@ -4,14 +4,16 @@ import inspect
 import itertools
 import pickle
 import warnings
+from typing import Annotated, NamedTuple, Optional
 
 import numpy as np
 import opendr
 import pytest
 from opendr import Source, _opendr
-from opendr.engine.data import Image
-from opendr.engine.learners import BaseLearner, Learner
-from opendr.engine.target import BoundingBoxList
+from opendr._native_learner import _value, native_class
+from opendr.engine.data import Image, Vector
+from opendr.engine.learners import BaseLearner, Init, Learner
+from opendr.engine.target import BoundingBoxList, Heatmap
 from opendr.perception.object_detection_2d import (
     CenterNetDetectorLearner,
     NanodetLearner,
@@ -128,6 +130,8 @@ def test_opendrs_arguments_are_taken(zoo, photo):
     told = {str(warning.message).split(" has no effect")[0].split(": ")[1] for warning in warned}
     assert {"model_to_use", "weight_decay", "grad_clip"} <= told
     nanodet.load(verbose=False)
+    with pytest.raises(TypeError, match="iou_threshold twice|threshold twice"):
+        NanodetLearner(threshold=0.5, conf_threshold=0.5)
     with pytest.warns(UserWarning, match="hf has no effect"):
         found = nanodet.infer(input := Image.open(photo), conf_threshold=0.5, iou_threshold=0.5, nms_max_num=1, hf=False)
     assert len(found) == 1 and input.data.shape[0] == 3
@@ -248,3 +252,74 @@ def test_numbers_that_are_none(monkeypatch):
     assert BoundingBoxList.from_json(right)[0].left == 4
     with pytest.raises(opendr.InvalidInput, match=r"boxes\[1\]\.left is NaN"):
         BoundingBoxList.from_json(wrong)
+
+
+class PairOutputs(NamedTuple):
+    boxes: BoundingBoxList
+    heatmap: Heatmap
+
+
+class PairLearner(Learner):
+    """Gives its boxes back, and the sums of picture and vector."""
+
+    name = "pair"
+    task = "object_detection_2d"
+
+    def load(self, path: str) -> bool:
+        return True
+
+    def infer(self, image: Image, boxes: BoundingBoxList, start: Annotated[Optional[Vector], Init] = None) -> PairOutputs:
+        self.start = start if start is not None else getattr(self, "start", Vector([0]))
+        return PairOutputs(boxes, Heatmap(np.array([image.data.sum(), self.start.data.sum()], np.float32)))
+
+
+@pytest.fixture(scope="module")
+def pair():
+    opendr.register(PairLearner)
+    (entry,) = (entry for entry in _opendr.entries() if entry["name"] == "pair")
+    learner = native_class(entry, __name__)(device="cpu")
+    learner.load(".")
+    return learner
+
+
+def test_own_learners_have_no_variants(pair):
+    with pytest.raises(FileNotFoundError, match="no pretrained models"):
+        opendr.learner("pair/small")
+
+
+def test_several_inputs_and_outputs(pair):
+    picture, boxes = Image(np.ones((3, 4, 5), np.uint8), guess_format=False), BoundingBoxList()
+    for answer in (pair.infer(picture, boxes, [1, 2]), pair.infer(boxes=boxes, image=picture, start=Vector([3]))):
+        assert type(answer).__name__ == "PairLearnerOutputs" and answer._fields == ("boxes", "heatmap")
+        assert (answer.boxes, answer.heatmap.data.tolist()) == (boxes, [60, 3])
+    # The vector goes with the first of a list; the same boxes, or one list each, with all.
+    given = [boxes, BoundingBoxList(classes=["cat"])]
+    first, second = pair.infer([picture, picture], given, [4, 5])
+    assert [first.heatmap.data[1], second.heatmap.data[1]] == [9, 9]
+    assert [first.boxes, second.boxes] == given
+    assert [answer.boxes for answer in pair.infer([picture, picture], given[1])] == [given[1]] * 2
+    assert [answer.boxes for answer in pair.infer(iter([picture]), iter(given))] == given[:1]
+    assert pair.stream().infer(picture, boxes, None).boxes == boxes
+    with pytest.raises(ValueError, match="differ in number.*'image': 2, 'boxes': 1"):
+        pair.infer([picture, picture], given[:1])
+    with pytest.raises(TypeError, match="boxes should be a BoundingBoxList, not list"):
+        pair.infer(picture, given)
+    with pytest.raises(ValueError, match='"boxes" is missing'):
+        pair.infer(picture)
+    with pytest.raises(opendr.Unsupported, match="pieces"):
+        pair.stream().push(picture, boxes)
+    with pytest.raises(opendr.Unsupported, match="pieces"):
+        pair.stream().flush()
+
+
+@pytest.mark.parametrize("given", [np.zeros((3, 2)), None, "sound.wav", [1, 2]])
+def test_data_of_several_parts_are_not_guessed(given):
+    with pytest.raises(TypeError, match="sound should be an Audio, not"):
+        _value(given, "sound", "Audio")
+
+
+def test_lists_that_hold_themselves():
+    endless = []
+    endless.append(endless)
+    with pytest.raises(TypeError, match="lists in lists"):
+        _opendr.Handle("nanodet", {"threshold": endless}, "cpu")

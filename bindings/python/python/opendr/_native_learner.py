@@ -14,6 +14,8 @@ from opendr.engine.learners import BaseLearner, Learner
 
 PathLike = Union[str, "os.PathLike[str]"]
 Table = dict[str, Any]
+#: Data that no array alone can stand for.
+OF_SEVERAL_PARTS = ("Audio", "Calibration", "ImageWithDetections", "PointCloudWithCalibration")
 
 
 class NativeLearner(Learner):
@@ -26,7 +28,7 @@ class NativeLearner(Learner):
     _entry: ClassVar[Table]
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        known = self._known(kwargs)
+        known = self._known(kwargs, stacklevel=3)
         super().__init__(*args, **{name: value for name, value in known.items() if value is not None})
         params = {field["name"]: getattr(self, field["name"]) for field in self._entry["params"]}
         self._handle = _opendr.Handle(self._entry["name"], params, self.device)
@@ -64,6 +66,11 @@ class NativeLearner(Learner):
         if isinstance(first, Iterator):
             return self._each(ports, overrides)
         if isinstance(first, (list, tuple)):
+            init = {port["name"] for port in self._entry["ports"] if port["init"]}
+            items = {name: value for name, value in ports.items() if name not in init}
+            lengths = {name: len(value) for name, value in items.items() if isinstance(value, (list, tuple))}
+            if len(set(lengths.values())) > 1:
+                raise ValueError(f"the inputs differ in number: {lengths}; give as many of each")
             return list(self._each(ports, overrides))
         return self._one(self._handle, ports, overrides)
 
@@ -173,17 +180,20 @@ class NativeLearner(Learner):
     def __reduce__(self) -> NoReturn:
         raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; save() it, and load() it there")
 
-    def _known(self, arguments: dict[str, Any]) -> dict[str, Any]:
+    def _known(self, arguments: dict[str, Any], stacklevel: int) -> dict[str, Any]:
         """Arguments under the names they have here; those without effect are left out, with a warning."""
         renamed = {alias: field["name"] for field in self._entry["params"] for alias in field["aliases"]}
         idle = dict(self._entry["without_effect"])
-        known = {}
-        for name, value in arguments.items():
-            if name in idle:
-                place = f"{type(self).__name__}: {name} has no effect: {idle[name]}"
-                warnings.warn(place, UserWarning, stacklevel=3)
+        known: dict[str, Any] = {}
+        for given, value in arguments.items():
+            name = renamed.get(given, given)
+            if given in idle:
+                place = f"{type(self).__name__}: {given} has no effect: {idle[given]}"
+                warnings.warn(place, UserWarning, stacklevel=stacklevel)
+            elif name in known:
+                raise TypeError(f"{type(self).__name__} got {name} twice (also as {given}); give it once")
             else:
-                known[renamed.get(name, name)] = value
+                known[name] = value
         return known
 
     def _arguments(self, inputs: tuple[Any, ...], named: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -193,7 +203,7 @@ class NativeLearner(Learner):
             raise TypeError(f"infer takes {len(names)} inputs ({', '.join(names)}), not {len(inputs)}")
         ports, overrides = dict(zip(names, inputs)), dict[str, Any]()
         live = {field["name"] for field in self._entry["params"] if field["live"]}
-        for name, value in self._known(named).items():
+        for name, value in self._known(named, stacklevel=4).items():
             if name in ports:
                 raise TypeError(f"infer got {name} twice; give it once")
             if name not in names and name not in live:
@@ -255,6 +265,15 @@ class Stream:
             raise TypeError(f"a stream takes no parameters ({', '.join(overrides)}); set them on the learner")
         return self._learner._one(self._stream, ports, {})
 
+    def push(self, *piece: Any, **named: Any) -> list[Any]:
+        """Takes the next piece of the input, as ``push`` of the learner does."""
+        ports, _ = self._learner._arguments(piece, named)
+        return [self._learner._answer(outputs) for outputs in self._stream.push(self._learner._values(ports))]
+
+    def flush(self) -> list[Any]:
+        """Ends the input that was taken in pieces; what is left to answer."""
+        return [self._learner._answer(outputs) for outputs in self._stream.push(None)]
+
     def reset(self) -> None:
         """Forgets what was seen."""
         self._stream.reset()
@@ -262,19 +281,17 @@ class Stream:
 
 def _value(value: Any, name: str, kind: str) -> Any:
     """``value`` as the data or target class ``kind``."""
-    wanted: Any = getattr(target, kind, None)
-    if wanted is not None:
-        if isinstance(value, wanted):
-            return value
-        given = type(value).__name__
-        raise TypeError(f"{name} should be a {kind}, not {given}")
-    wanted = getattr(data, kind)
+    is_target = hasattr(target, kind)
+    wanted: Any = getattr(target if is_target else data, kind)
     if isinstance(value, wanted):
         return value
     if kind == "Image" and isinstance(value, (str, os.PathLike)):
         return _opendr.open_image(os.fspath(value))
+    article = "an" if kind[0] in "AEIOU" else "a"
+    if is_target or kind in OF_SEVERAL_PARTS:
+        raise TypeError(f"{name} should be {article} {kind}, not {type(value).__name__}")
     if value is None or isinstance(value, (str, bytes)):
-        raise TypeError(f"{name} should be a {kind} or an array of numbers, not {value!r:.100}")
+        raise TypeError(f"{name} should be {article} {kind} or an array of numbers, not {value!r:.100}")
     return wanted(value)
 
 

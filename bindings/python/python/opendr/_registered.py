@@ -68,8 +68,10 @@ def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:
     classes = learners()
     if name not in classes:
         raise NotFound(f"no learner {name!r}; there are {', '.join(classes)}")
+    if variant and name in _OWN:
+        raise NotFound(f"the learner {name!r} has no pretrained models; write {name!r}, and load() one of yours")
     made: Any = classes[name](**arguments)
-    if variant or name not in _OWN:
+    if name not in _OWN:
         made.load(verbose=verbose, variant=variant or None)
     return made
 
