@@ -468,6 +468,16 @@ def test_heatmap():
             Heatmap(labels, wrong)
 
 
+def test_heatmaps_of_huge_class_numbers():
+    with pytest.raises(ValueError, match="class number 4000000000 is too high"):
+        Heatmap(np.zeros((2, 2), int), {4_000_000_000: "sky"}).to_json()
+    with pytest.raises(ValueError, match="numbers up to 4294967296"):
+        Heatmap(np.array([1 << 32])).to_json()
+    found = Heatmap(np.array([(1 << 32) - 1]), {"other": "road", -1: "none", 1: "sky"})
+    assert json.loads(found.to_json())["classes"] == ["", "sky"]
+    assert Heatmap.from_json(found.to_json()).data.tolist() == [(1 << 32) - 1]
+
+
 def test_speech():
     command = SpeechCommand("stop", 0.75, [0.5, 1])
     assert (str(command), command.command, command.span_s) == (

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
 from opendr import _opendr
 from opendr._show import show_picture
+from opendr.engine._checks import names_by_number
 from opendr.engine._equality import is_array
 from opendr.engine.data import Image
 from opendr.engine.target import BaseTarget, BoundingBoxList, Pose, PoseList, TrackingAnnotationList
@@ -128,8 +129,7 @@ def _image_from_opencv(picture: NDArray[Any]) -> Image:
 
 def _list_of_names(class_names: ClassNames) -> list[str]:
     if isinstance(class_names, Mapping):
-        count = max(class_names, default=-1) + 1
-        return [str(class_names.get(index, "")) for index in range(count)]
+        return names_by_number(class_names)
     if isinstance(class_names, str):
         raise TypeError(f"class_names should be a list of names, not {class_names!r}")
     return [str(name) for name in class_names]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from opendr._errors import InvalidInput
 from opendr.engine import data, target
+from opendr.engine._checks import names_by_number
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -87,6 +88,8 @@ def heatmap_numbers(heatmap: target.Heatmap) -> NDArray[Any]:
     import numpy as np
 
     numbers = heatmap.data
+    if numbers.dtype.kind != "f" and numbers.size and int(numbers.max()) > 0xFFFFFFFF:
+        raise ValueError(f"a Heatmap of class numbers up to {numbers.max()}; give numbers below {1 << 32}")
     return np.asarray(numbers, dtype=np.float32 if numbers.dtype.kind == "f" else np.uint32)
 
 
@@ -188,9 +191,8 @@ def _write_category(category: target.Category) -> Fields:
 
 def _write_heatmap(heatmap: target.Heatmap) -> Fields:
     fields: Fields = {"type": "Heatmap", "shape": [0], "scores": []}
-    names = heatmap.class_names or {}
-    count = max((index for index in names if isinstance(index, int)), default=-1) + 1
-    return {**fields, "classes": [names.get(index, "") for index in range(count)]} if count else fields
+    names = names_by_number(heatmap.class_names or {})
+    return {**fields, "classes": names} if names else fields
 
 
 def _write_command(command: target.SpeechCommand) -> Fields:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Sequence
-from typing import SupportsFloat, SupportsIndex, Union
+from collections.abc import Mapping, Sequence
+from typing import Any, SupportsFloat, SupportsIndex, Union
 
 #: A number of Python's or NumPy's.
 Real = Union[float, SupportsFloat, SupportsIndex]
+#: Class numbers that names can be listed for.
+_MAX_CLASSES = 1 << 16
 
 
 def whole(value: SupportsIndex, what: str) -> int:
@@ -82,3 +84,17 @@ def text(value: str, what: str) -> str:
     if not isinstance(value, str):
         raise TypeError(f"{what} should be a str, not {value!r}")
     return value
+
+
+def names_by_number(names: Mapping[Any, str]) -> list[str]:
+    """The names of classes in the order of their numbers, empty where one has none; keys that are no class numbers are
+    left out.
+
+    Raises:
+        ValueError: A number is too high for a list.
+    """
+    numbers = [key for key in names if isinstance(key, int) and key >= 0]
+    count = max(numbers, default=-1) + 1
+    if count > _MAX_CLASSES:
+        raise ValueError(f"class number {count - 1} is too high to name; give numbers below {_MAX_CLASSES}")
+    return [str(names.get(number, "")) for number in range(count)]
