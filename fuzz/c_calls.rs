@@ -2,10 +2,10 @@
 // the corpus (`bindings/c/tests/corpus.rs`). Lengths are true or impossible, since the rest is the caller's promise.
 
 use std::ffi::{CString, c_char};
-use std::path::PathBuf;
 use std::ptr::{null, null_mut};
 use std::sync::OnceLock;
 
+use opendr::model::{Manifest, ModelWriter};
 use opendr_c::*;
 
 /// Variables that a program might have.
@@ -16,20 +16,16 @@ const PORTS: [&std::ffi::CStr; 6] = [c"image", c"detections", c"first", c"count"
 
 /// Makes the calls that `bytes` stand for.
 pub fn run(bytes: &[u8]) {
-    let mut program = Program { bytes, values: [null_mut(); SLOTS], learner: null_mut() };
-    let path = text(counter_model().as_os_str().as_encoded_bytes());
-    // SAFETY: texts and a variable.
+    let mut program = Program { bytes, values: [null_mut(); SLOTS], learner: learner() };
+    // SAFETY: handles are those of the slots or null.
     unsafe {
-        let loaded =
-            opendr_load(c"counter".as_ptr(), path.as_ptr(), c"cpu".as_ptr(), null(), &mut program.learner);
-        assert_eq!(loaded, opendr_status::OPENDR_OK);
+        opendr_reset(program.learner);
         while !program.bytes.is_empty() {
             program.call();
         }
         for slot in 0..SLOTS {
             program.free(slot);
         }
-        assert_eq!(opendr_learner_free(&mut program.learner), opendr_status::OPENDR_OK);
     }
 }
 
@@ -333,12 +329,19 @@ fn text(bytes: &[u8]) -> CString {
     CString::new(&bytes[..end]).unwrap_or_default()
 }
 
-/// A container of the test learner, written once.
-fn counter_model() -> &'static PathBuf {
-    static MODEL: OnceLock<PathBuf> = OnceLock::new();
-    MODEL.get_or_init(|| {
+/// The learner that every surface is tested with, loaded once; null where it is not compiled in.
+fn learner() -> *mut opendr_learner {
+    static LEARNER: OnceLock<usize> = OnceLock::new();
+    let load = || {
         let folder = std::env::temp_dir().join(format!("opendr-c-calls-{}", std::process::id()));
-        opendr::learner::counter::write_model(&folder, 1, &Default::default()).unwrap();
-        folder
-    })
+        let mut writer = ModelWriter::new(&folder, Manifest::new("counter", "")).unwrap();
+        writer.add("bias.bin", &[1]).unwrap();
+        writer.finish().unwrap();
+        let (path, mut learner) = (text(folder.as_os_str().as_encoded_bytes()), null_mut());
+        // SAFETY: texts and a variable.
+        unsafe { opendr_load(c"counter".as_ptr(), path.as_ptr(), c"cpu".as_ptr(), null(), &mut learner) };
+        std::fs::remove_dir_all(folder).unwrap();
+        learner.expose_provenance()
+    };
+    std::ptr::with_exposed_provenance_mut(*LEARNER.get_or_init(load))
 }

@@ -1,6 +1,5 @@
 //! What the fuzzer of the C API found interesting never makes it fall.
 
-#![cfg(feature = "test-learner")]
 #![allow(clippy::unwrap_used)]
 
 #[path = "../../../fuzz/c_calls.rs"]
