@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import opendr
 import pytest
 
 TESTS = Path(__file__).parent
@@ -67,7 +66,7 @@ def test_every_mistake_is_found(check, cache, tmp_path):
 
 @CHECKERS
 def test_the_package_itself(check, cache, tmp_path):
-    found, report = check(Path(opendr.__file__).parent, cwd=tmp_path, cache=cache)
+    found, report = check(PACKAGE / "python/opendr", cwd=tmp_path, cache=cache)
     assert not found, report
 
 
