@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import opendr
 import pytest
 
 TESTS = Path(__file__).parent
@@ -64,9 +65,15 @@ def test_every_mistake_is_found(check, cache, tmp_path):
     assert found == wrong, report
 
 
-@CHECKERS
-def test_the_package_itself(check, cache, tmp_path):
-    found, report = check(PACKAGE / "python/opendr", cwd=tmp_path, cache=cache)
+def test_mypy_accepts_the_package(cache, tmp_path):
+    # mypy checks nothing that lies among installed packages.
+    found, report = lines_of_mypy(PACKAGE / "python/opendr", cwd=tmp_path, cache=cache)
+    assert not found, report
+
+
+def test_pyright_accepts_the_package(cache, tmp_path):
+    # pyright wants the native half beside its stub.
+    found, report = lines_of_pyright(Path(opendr.__file__).parent, cwd=tmp_path, cache=cache)
     assert not found, report
 
 
