@@ -55,7 +55,7 @@ typedef struct NanodetModel {
     int keepRatio;
 } NanodetModelT;
 
-/* ---- values out of the JSON of a model ---- */
+/* Values out of the JSON of a model. */
 
 static inline const char *jsonGetStringFromKey(const char *json, const char *key, int index) {
     return opendr_json_text(json, NULL, key, index);
@@ -73,7 +73,7 @@ static inline float jsonGetFloatFromKeyInInferenceParams(const char *json, const
     return (float)opendr_json_number(json, "inference_params", key, index);
 }
 
-/* ---- pictures ---- */
+/* Pictures. */
 
 static inline void loadImage(const char *path, OpenDRImageT *image) {
     opendr_image *opened = NULL;
@@ -87,7 +87,7 @@ static inline void freeImage(OpenDRImageT *image) {
     image->data = NULL;
 }
 
-/* ---- detections; an empty vector has one detection with the name -1 ---- */
+/* Detections; an empty vector has one detection with the name -1. */
 
 static inline void loadDetectionsVector(OpenDRDetectionVectorTargetT *vector, OpenDRDetectionTargetT *detections,
     int count) {
@@ -108,7 +108,7 @@ static inline void freeDetectionsVector(OpenDRDetectionVectorTargetT *vector) {
     vector->size = 0;
 }
 
-/* ---- tensors ---- */
+/* Tensors. */
 
 static inline void initTensor(OpenDRTensorT *tensor) {
     memset(tensor, 0, sizeof *tensor);
@@ -190,8 +190,6 @@ static inline void iterTensorVector(OpenDRTensorT *tensor, OpenDRTensorVectorT *
     loadTensor(tensor, vector->datas[index], vector->batchSizes[index], vector->frames[index], vector->channels[index],
         vector->widths[index], vector->heights[index]);
 }
-
-/* ---- NanoDet ---- */
 
 /* modelPath "" or NULL takes the pretrained model; modelName is that of the file and not needed here. The model's own size
  * is used: height and width other than 0 are told of on stderr. */
