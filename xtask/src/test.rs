@@ -26,6 +26,12 @@ pub fn run() -> Result<()> {
         "lints",
         &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]),
     )?;
+    step(
+        "free-threaded Python",
+        cargo(&["check", "--package", "opendr-python"])
+            .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
+            .env("PYO3_BUILD_EXTENSION_MODULE", "1"),
+    )?;
     if is_installed("cargo-nextest") {
         step("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
     } else {

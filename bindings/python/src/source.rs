@@ -36,14 +36,24 @@ struct Asked {
 impl Source {
     #[new]
     fn new(py: Python<'_>, inputs: Vec<PathBuf>) -> PyResult<Self> {
-        let source = py.detach(|| Frames::open_all(inputs, SourceOptions::default())).to_python(py)?;
-        let (length, live) = (source.len_hint(), source.is_live());
         let (questions, asked) = sync_channel::<()>(1);
         let (answer, answers) = sync_channel(1);
-        thread::spawn(move || {
-            let mut source = source;
-            while asked.recv().is_ok() && answer.send(source.next()).is_ok() {}
+        let (tell, mut told) = sync_channel(1);
+        // Opening may wait as well: for a pipe, a camera, a network's folder.
+        thread::spawn(move || match Frames::open_all(inputs, SourceOptions::default()) {
+            Err(error) => drop(tell.send(Err(error))),
+            Ok(mut source) => {
+                let known = tell.send(Ok((source.len_hint(), source.is_live())));
+                while known.is_ok() && asked.recv().is_ok() && answer.send(source.next()).is_ok() {}
+            }
         });
+        let opened = loop {
+            py.check_signals()?;
+            if let Some(opened) = py.detach(|| look(&mut told)).to_python(py)? {
+                break opened;
+            }
+        };
+        let (length, live) = opened.to_python(py)?;
         Ok(Self { thread: Mutex::new(Asked { questions, answers, waiting: false }), length, live })
     }
 
@@ -85,18 +95,25 @@ impl Source {
 impl Asked {
     /// The answer, or `None` when there is none yet.
     fn wait(&mut self) -> Result<Option<Option<Result<Frame>>>> {
-        let gone = || Error::internal("the thread that reads frames is gone");
         if !self.waiting {
             self.questions.send(()).map_err(|_| gone())?;
             self.waiting = true;
         }
-        match self.answers.recv_timeout(LOOK) {
-            Ok(answer) => {
-                self.waiting = false;
-                Ok(Some(answer))
-            }
-            Err(RecvTimeoutError::Timeout) => Ok(None),
-            Err(RecvTimeoutError::Disconnected) => Err(gone()),
-        }
+        let answer = look(&mut self.answers)?;
+        self.waiting = answer.is_none();
+        Ok(answer)
     }
+}
+
+/// What the thread tells, or `None` when it has not told yet.
+fn look<T>(receiver: &mut Receiver<T>) -> Result<Option<T>> {
+    match receiver.recv_timeout(LOOK) {
+        Ok(told) => Ok(Some(told)),
+        Err(RecvTimeoutError::Timeout) => Ok(None),
+        Err(RecvTimeoutError::Disconnected) => Err(gone()),
+    }
+}
+
+fn gone() -> Error {
+    Error::internal("the thread that reads frames is gone")
 }
