@@ -13,7 +13,9 @@ import pytest
 
 def interrupt(program, ready, env, seconds=1.0):
     """Runs a program, sends SIGINT after it printed `ready`, and says how long it took to end and what it printed."""
-    command = [sys.executable, "-c", textwrap.dedent(program)]
+    # Shells start background jobs with SIGINT ignored, and Python leaves it so.
+    heed = "import signal\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    command = [sys.executable, "-c", heed + textwrap.dedent(program)]
     child = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     try:
         assert child.stdout.readline().strip() == ready, child.stderr.read()
