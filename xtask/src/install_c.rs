@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, command, root, step, target};
-use crate::test::TEST_LEARNER;
+use crate::surfaces;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -19,8 +19,7 @@ pub fn run(prefix: &Path) -> Result<()> {
 
 /// As [`run`], with the learner that tests use, built quickly.
 pub fn run_for_tests(prefix: &Path) -> Result<()> {
-    let build = ["build", "--package", "opendr-c", TEST_LEARNER];
-    step("C library for tests", command("cargo").args(build))?;
+    surfaces::build()?;
     install(prefix, &target().join("debug"))
 }
 

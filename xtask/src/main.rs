@@ -6,6 +6,7 @@ mod parity;
 mod python_package;
 mod realtime;
 mod shell;
+mod surfaces;
 mod test;
 mod tools;
 

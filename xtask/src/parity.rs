@@ -5,15 +5,10 @@ use std::process::Command;
 
 use crate::python_package;
 use crate::shell::{Result, command, step, target};
-use crate::test::TEST_LEARNER;
 use crate::tools::Python;
 
 /// Builds the runner of each surface and compares what they print; the C library is installed under `prefix`.
 pub fn run(python: &Python, prefix: &Path, environment: impl Fn(&mut Command)) -> Result<()> {
-    let packages = ["--package", "opendr", "--package", "opendr-cli"];
-    let mut build = command("cargo");
-    build.args(["build", "--bins", "--example", "infer_json", TEST_LEARNER]).args(packages);
-    step("runners", &mut build)?;
     let folder = target().join("parity");
     python_package::build(&folder)?;
     let runner = folder.join("runner");

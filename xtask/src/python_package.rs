@@ -4,12 +4,11 @@ use std::fs;
 use std::path::Path;
 
 use crate::shell::{Result, command, root, step, target};
-use crate::test::TEST_LEARNER;
+use crate::surfaces;
 
 /// Builds the native half with the test learner, and puts the package below `folder`, for `PYTHONPATH`.
 pub fn build(folder: &Path) -> Result<()> {
-    let build = ["build", "--package", "opendr-python", "--lib", TEST_LEARNER];
-    step("python package", command("cargo").args(build))?;
+    surfaces::build()?;
     let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
     // Nothing there is what is wanted.
     fs::remove_dir_all(folder).ok();
