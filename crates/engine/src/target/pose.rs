@@ -8,7 +8,7 @@ use smallvec::SmallVec;
 use crate::Header;
 use crate::numpy_text::python_float;
 use crate::target::json_number::null_as_nan;
-use crate::target::{Action, Keypoint, Skeleton, mean};
+use crate::target::{Action, BoundingBox, Keypoint, Skeleton, mean};
 
 /// One person (or hand, or animal): its joints in a picture, in pixels, in the order of its [`Skeleton`].
 ///
@@ -26,6 +26,9 @@ pub struct Pose {
     /// What the joints are.
     #[serde(default)]
     pub skeleton: Skeleton,
+    /// The person's box, with outline, size and whether it is a crowd, where they are known: as COCO annotates persons.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub region: Option<Box<BoundingBox>>,
 }
 
 impl Pose {

@@ -1,0 +1,14 @@
+//! Data set formats, one file each, lazy and readable from several threads; augmentation and the parallel loader.
+//!
+//! [`open`] recognises a data set; [`formats`] lists what there is. Nothing on disk is trusted: what is broken is told
+//! with its file and line or key, through [`Problems`].
+
+mod any;
+mod format;
+mod problems;
+mod registry;
+
+pub use any::{FormatEntry, Recognition};
+pub use format::{Format, OpenOptions, WriteOptions};
+pub use problems::{Place, Problem, Problems};
+pub use registry::{find, formats, open, recognise};

@@ -1,0 +1,143 @@
+//! What is broken in a data set, and where.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+use opendr_engine::{Error, Result};
+use serde::Serialize;
+
+/// Problems that are kept word by word; more are counted.
+const MOST_KEPT: usize = 10_000;
+
+/// Where in a file.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// Line, from 1.
+    Line(u64),
+    /// Byte, from 0.
+    Byte(u64),
+    /// A key of JSON or XML, a field, the number of an annotation.
+    Key(String),
+}
+
+/// One broken thing.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Problem {
+    /// The file it is in.
+    pub file: PathBuf,
+    /// Where in the file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<Place>,
+    /// What is wrong, the values, what to do.
+    pub message: String,
+}
+
+impl Problem {
+    /// A problem of a whole file.
+    pub fn new(file: impl Into<PathBuf>, message: impl Into<String>) -> Self {
+        Self { file: file.into(), place: None, message: message.into() }
+    }
+
+    /// A problem of one line, from 1.
+    pub fn at_line(file: impl Into<PathBuf>, line: u64, message: impl Into<String>) -> Self {
+        Self { place: Some(Place::Line(line)), ..Self::new(file, message) }
+    }
+
+    /// A problem at one byte, from 0.
+    pub fn at_byte(file: impl Into<PathBuf>, byte: u64, message: impl Into<String>) -> Self {
+        Self { place: Some(Place::Byte(byte)), ..Self::new(file, message) }
+    }
+
+    /// A problem of one key or field.
+    pub fn at_key(file: impl Into<PathBuf>, key: impl Into<String>, message: impl Into<String>) -> Self {
+        Self { place: Some(Place::Key(key.into())), ..Self::new(file, message) }
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        match &self.place {
+            Some(Place::Line(line)) => write!(f, ":{line}")?,
+            Some(Place::Byte(byte)) => write!(f, " at byte {byte}")?,
+            Some(Place::Key(key)) => write!(f, " at {key}")?,
+            None => {}
+        }
+        write!(f, ": {}", self.message)
+    }
+}
+
+impl From<Problem> for Error {
+    fn from(problem: Problem) -> Self {
+        Self::format(problem.to_string())
+    }
+}
+
+/// Collects what is broken; or lets the first end the work.
+#[derive(Debug, Default)]
+pub struct Problems {
+    skip: bool,
+    kept: Mutex<(Vec<Problem>, u64)>,
+}
+
+impl Problems {
+    /// The first problem is an error.
+    pub fn strict() -> Self {
+        Self::default()
+    }
+
+    /// What is broken is left out, counted and listed.
+    pub fn skipping() -> Self {
+        Self { skip: true, ..Self::default() }
+    }
+
+    /// Whether what is broken is left out.
+    pub fn skips(&self) -> bool {
+        self.skip
+    }
+
+    /// Notes a problem; the caller leaves the broken thing out and goes on, unless this is an error.
+    ///
+    /// # Errors
+    /// The problem, in strict mode.
+    pub fn report(&self, problem: Problem) -> Result<()> {
+        if !self.skip {
+            return Err(problem.into());
+        }
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.1 += 1;
+        if kept.0.len() < MOST_KEPT {
+            kept.0.push(problem);
+        }
+        Ok(())
+    }
+
+    /// How many there were.
+    pub fn count(&self) -> u64 {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).1
+    }
+
+    /// Those that were kept word by word: the first ten thousand.
+    pub fn list(&self) -> Vec<Problem> {
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strict_stops_and_skipping_counts() {
+        let problem = || Problem::at_line("gt.txt", 7, "10 columns, not 9");
+        let error = Problems::strict().report(problem()).unwrap_err();
+        assert_eq!(error.to_string(), "gt.txt:7: 10 columns, not 9");
+        let problems = Problems::skipping();
+        for _ in 0..MOST_KEPT + 5 {
+            problems.report(problem()).unwrap();
+        }
+        assert_eq!((problems.count(), problems.list().len()), (MOST_KEPT as u64 + 5, MOST_KEPT));
+    }
+}

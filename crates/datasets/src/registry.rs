@@ -1,0 +1,67 @@
+//! Which formats there are: one line each.
+
+use std::path::Path;
+
+use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
+use opendr_engine::{Error, Result};
+
+use crate::{FormatEntry, OpenOptions, Problems, Recognition};
+
+/// Every format; of several that may be meant, the first is taken.
+#[rustfmt::skip] // One line a format.
+pub const fn formats() -> &'static [FormatEntry] {
+    &[
+    ]
+}
+
+/// The format called `name`, by its name or another that is used for it; upper and lower case are the same.
+///
+/// # Errors
+/// `NotFound`, with the names that there are.
+pub fn find(name: &str) -> Result<&'static FormatEntry> {
+    let name = name.to_lowercase();
+    formats().iter().find(|entry| entry.name == name || entry.aliases.contains(&&*name)).ok_or_else(|| {
+        let names: Vec<_> = formats().iter().map(|entry| entry.name).collect();
+        Error::not_found(format!("no data set format {name:?}; there are {}", names.join(", ")))
+    })
+}
+
+/// The format of the data set at `path`.
+///
+/// # Errors
+/// `NotFound` when there is nothing; `InvalidInput` when it is of no format, with what each misses.
+pub fn recognise(path: &Path) -> Result<&'static FormatEntry> {
+    if !path.exists() {
+        return Err(Error::not_found(format!("there is no data set at {}", path.display())));
+    }
+    let (mut possible, mut missing) = (None, String::new());
+    for entry in formats() {
+        match (entry.recognise)(path) {
+            Recognition::Certain => return Ok(entry),
+            Recognition::Possible => possible = possible.or(Some(entry)),
+            Recognition::No(what) => missing.push_str(&format!("\n  {}: {what}", entry.name)),
+        }
+    }
+    possible.ok_or_else(|| {
+        let path = path.display();
+        Error::invalid_input(format!(
+            "{path} is no data set of a known format; name the format if it should be one. Missing for{missing}"
+        ))
+    })
+}
+
+/// Opens the data set at `path`, of the format that is named or, for an empty `dataset_type`, recognised.
+///
+/// # Errors
+/// As [`find`], [`recognise`] and [`Format::open`](crate::Format::open).
+pub fn open(
+    dataset: &ExternalDataset,
+    options: &OpenOptions,
+    problems: &Problems,
+) -> Result<Box<dyn DatasetIterator>> {
+    let entry = match dataset.dataset_type() {
+        "" | "auto" => recognise(dataset.path())?,
+        name => find(name)?,
+    };
+    (entry.open)(dataset.path(), options, problems)
+}

@@ -1,0 +1,72 @@
+//! Computes metrics from lines of JSON on standard input, a line of JSON each on standard output: how tests in other
+//! languages compare them with the reference tools.
+//!
+//! A line is `{"metric": NAME, "params": {..}, "samples": [{"prediction": TARGET, "truth": TARGET}, ..], "parts": N}`;
+//! `"end_sequence": true` in a sample ends a sequence after it; with `parts`, samples are spread over so many
+//! accumulators, sequence by sequence where there are sequences, that are then merged. The answer is the report, or
+//! `{"error": TEXT}`. Targets are written as docs/json.md has them.
+
+use std::error::Error;
+use std::io::{self, BufRead, Write};
+
+use opendr_engine::params::ParamMap;
+use opendr_engine::{Result, Value};
+use opendr_metrics::{Report, find};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Case {
+    metric: String,
+    #[serde(default)]
+    params: ParamMap,
+    samples: Vec<Sample>,
+    parts: Option<usize>,
+}
+
+#[derive(Deserialize)]
+struct Sample {
+    prediction: Value,
+    truth: Value,
+    #[serde(default)]
+    end_sequence: bool,
+}
+
+fn main() -> std::result::Result<(), Box<dyn Error>> {
+    let mut answers = io::stdout().lock();
+    for line in io::stdin().lock().lines() {
+        let line = line?;
+        match serde_json::from_str::<Case>(&line).map_err(|error| error.to_string()) {
+            Ok(case) => match compute(&case) {
+                Ok(report) => serde_json::to_writer(&mut answers, &report)?,
+                Err(error) => {
+                    serde_json::to_writer(&mut answers, &serde_json::json!({"error": error.to_string()}))?
+                }
+            },
+            Err(error) => serde_json::to_writer(&mut answers, &serde_json::json!({"error": error}))?,
+        }
+        writeln!(answers)?;
+    }
+    Ok(())
+}
+
+fn compute(case: &Case) -> Result<Report> {
+    let entry = find(&case.metric)?;
+    let count = case.parts.unwrap_or(1).max(1);
+    let mut parts = (0..count).map(|_| entry.make(&case.params)).collect::<Result<Vec<_>>>()?;
+    let in_sequences = case.samples.iter().any(|sample| sample.end_sequence);
+    let mut sequence = 0;
+    for (at, sample) in case.samples.iter().enumerate() {
+        let part = &mut parts[if in_sequences { sequence } else { at } % count];
+        part.update(at, (&sample.prediction).into(), (&sample.truth).into())?;
+        if sample.end_sequence {
+            part.end_sequence();
+            sequence += 1;
+        }
+    }
+    // Last first: the order of merging must not matter.
+    let mut whole = entry.make(&case.params)?;
+    for part in parts.into_iter().rev() {
+        whole.merge(part)?;
+    }
+    Ok(whole.finish())
+}

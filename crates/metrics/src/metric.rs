@@ -1,0 +1,59 @@
+//! What a metric is.
+
+use std::borrow::Cow;
+
+use opendr_engine::params::Params;
+use opendr_engine::{Datum, Result, ValueRef};
+
+use crate::Report;
+
+/// A streaming accumulator over the samples of a data set.
+///
+/// Cores that work on plain numbers stand beside it, as methods of the same type or as functions of the same file; this
+/// trait is what `eval` and every surface drive.
+pub trait Metric: Send + Sized + 'static {
+    /// The name, as users write it, e.g. `"coco_detection"`.
+    const NAME: &'static str;
+    /// In one line, with the reference implementation that it equals.
+    const ABOUT: &'static str;
+    /// What a user may set.
+    type Params: Params;
+    /// What a learner answers.
+    type Prediction: Datum;
+    /// What it should answer.
+    type Truth: Datum;
+
+    /// An accumulator that has counted nothing.
+    ///
+    /// # Errors
+    /// `InvalidParam` for parameters that do not go together.
+    fn new(params: &Self::Params) -> Result<Self>;
+
+    /// Counts the answer to sample number `at` of the data set, and tells how good it is: 0 (worst) to 1.
+    ///
+    /// Whatever depends on an order (ties of scores) is settled by `at`, so that the outcome does not depend on how
+    /// samples are spread over threads. Frames of a sequence come one after the other to one accumulator.
+    ///
+    /// # Errors
+    /// `InvalidInput` for an answer or a truth that cannot be counted; nothing has been counted then.
+    fn update(&mut self, at: usize, prediction: &Self::Prediction, truth: &Self::Truth) -> Result<f64>;
+
+    /// The sequence (video, drive) is over; what follows has nothing to do with it.
+    fn end_sequence(&mut self) {}
+
+    /// Counts what `other` counted: whole sequences, and other samples than this one's.
+    fn merge(&mut self, other: Self);
+
+    /// The outcome; counting may go on.
+    fn finish(&self) -> Report;
+
+    /// Reads a prediction; a metric that takes several types overrides it.
+    fn prediction(value: ValueRef<'_>) -> Option<Cow<'_, Self::Prediction>> {
+        Self::Prediction::from_value_ref(value).map(Cow::Borrowed)
+    }
+
+    /// Reads a truth; a metric that takes several types overrides it.
+    fn truth(value: ValueRef<'_>) -> Option<Cow<'_, Self::Truth>> {
+        Self::Truth::from_value_ref(value).map(Cow::Borrowed)
+    }
+}

@@ -1,0 +1,23 @@
+//! Which metrics there are: one line each.
+
+use opendr_engine::{Error, Result};
+
+use crate::MetricEntry;
+
+/// Every metric.
+#[rustfmt::skip] // One line a metric.
+pub const fn metrics() -> &'static [MetricEntry] {
+    &[
+    ]
+}
+
+/// The metric called `name`.
+///
+/// # Errors
+/// `NotFound`, with the names that there are.
+pub fn find(name: &str) -> Result<&'static MetricEntry> {
+    metrics().iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let names: Vec<_> = metrics().iter().map(|entry| entry.name).collect();
+        Error::not_found(format!("no metric {name:?}; there are {}", names.join(", ")))
+    })
+}
