@@ -113,12 +113,14 @@ fn pose() -> impl Strategy<Value = Pose> {
     let keypoint =
         [number(), number(), number()].prop_map(|[x, y, confidence]| Keypoint { x, y, confidence });
     let skeleton = prop_oneof![Just(Skeleton::Opendr18), Just(Skeleton::Coco17)];
-    (vec(keypoint, 0..19), number(), option::of(any::<i64>()), skeleton).prop_map(
-        |(keypoints, confidence, id, skeleton)| Pose {
+    let region = option::of(bounding_box().prop_map(Box::new));
+    (vec(keypoint, 0..19), number(), option::of(any::<i64>()), skeleton, region).prop_map(
+        |(keypoints, confidence, id, skeleton, region)| Pose {
             keypoints: keypoints.into(),
             confidence,
             id,
             skeleton,
+            region,
         },
     )
 }

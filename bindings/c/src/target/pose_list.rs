@@ -132,6 +132,7 @@ impl List for PoseList {
             confidence: plain.confidence,
             id: known(plain.id),
             skeleton,
+            region: None,
         })
     }
 }
