@@ -4,11 +4,15 @@
 //! with its file and line or key, through [`Problems`].
 
 mod any;
+mod check;
 mod format;
 mod problems;
 mod registry;
+mod stats;
 
 pub use any::{FormatEntry, Recognition};
+pub use check::check;
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use problems::{Place, Problem, Problems};
 pub use registry::{find, formats, open, recognise};
+pub use stats::{ClassCount, DatasetStats, Spread};

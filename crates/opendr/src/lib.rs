@@ -38,4 +38,7 @@ pub use by_name::{download, learner, learner_with};
 pub use opendr_engine::*;
 pub use opendr_perception::{face_detection, object_detection_2d, pose_estimation, suppression};
 pub use registry::registry;
-pub use {opendr_inference as inference, opendr_vision as vision, opendr_zoo as zoo};
+pub use {
+    opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
+    opendr_metrics as metrics, opendr_vision as vision, opendr_zoo as zoo,
+};

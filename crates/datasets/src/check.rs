@@ -1,0 +1,126 @@
+//! Everything of a data set, read once: what is broken, whatever the format.
+
+use std::path::PathBuf;
+
+use opendr_engine::dataset::{DatasetIterator, Sample};
+use opendr_engine::target::{BoundingBox, Name, PoseList};
+use opendr_engine::{Progress, Result, Unit, Value, map_in_order};
+
+use crate::{Problem, Problems};
+
+/// Pixels by which an annotation may leave its picture: those of COCO itself do by fractions.
+const MARGIN: f32 = 1.0;
+
+/// Reads every sample on `threads` threads, data included, and tells of those that cannot be read and of annotations
+/// that cannot be right: not finite, outside the picture, of a class that there is none of.
+///
+/// # Errors
+/// The first problem, unless `problems` skips them.
+pub fn check(
+    dataset: &dyn DatasetIterator,
+    problems: &Problems,
+    threads: usize,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let classes = dataset.classes().len();
+    progress.begin("checking", Some(dataset.len() as u64), Unit::Items);
+    let indices = (0..dataset.len()).take_while(|_| !progress.stopped());
+    let mut workers = vec![(); threads.max(1)];
+    let read = |(): &mut (), at: usize| {
+        let wrong = match dataset.get(at) {
+            Ok(sample) => wrong_with(&sample, classes),
+            Err(error) => vec![(None, error.to_string())],
+        };
+        (at, wrong)
+    };
+    let done = map_in_order(&mut workers, indices, read, |(at, wrong)| {
+        progress.advance(1);
+        let file = || dataset.path(at).unwrap_or_else(|| PathBuf::from(dataset.name(at)));
+        wrong.into_iter().try_for_each(|(key, message)| {
+            problems.report(match key {
+                Some(key) => Problem::at_key(file(), key, message),
+                None => Problem::new(file(), message),
+            })
+        })
+    });
+    progress.end();
+    done
+}
+
+type Wrong = Vec<(Option<String>, String)>;
+
+fn wrong_with(sample: &Sample, classes: usize) -> Wrong {
+    let mut wrong = Wrong::new();
+    let size = sample.data.iter().find_map(|datum| match datum {
+        Value::Image(image) => Some([image.width() as f32, image.height() as f32]),
+        _ => None,
+    });
+    let mut tell = |key: String, message: Option<String>| {
+        if let Some(message) = message {
+            wrong.push((Some(key), message));
+        }
+    };
+    match &sample.target {
+        Some(Value::BoundingBoxList(list)) => {
+            for (at, found) in list.boxes.iter().enumerate() {
+                tell(format!("box {at}"), wrong_box(found, size, classes));
+            }
+        }
+        Some(Value::TrackingAnnotationList(list)) => {
+            for (at, track) in list.annotations.iter().enumerate() {
+                tell(format!("track {at}"), wrong_box(&track.bounding_box, size, classes));
+            }
+        }
+        Some(Value::PoseList(list)) => wrong_poses(list, size, &mut tell),
+        Some(Value::Category(category)) => {
+            tell("class".to_owned(), wrong_class(category.class, classes));
+        }
+        Some(Value::BoundingBox3DList(list)) => {
+            for (at, found) in list.boxes.iter().enumerate() {
+                let numbers = found.dimensions.iter().chain(&found.location).chain([&found.rotation_y]);
+                let finite = numbers.copied().all(f32::is_finite);
+                tell(format!("box {at}"), (!finite).then(|| "a number is NaN or infinite".to_owned()));
+            }
+        }
+        _ => {}
+    }
+    wrong
+}
+
+fn wrong_box(found: &BoundingBox, size: Option<[f32; 2]>, classes: usize) -> Option<String> {
+    let BoundingBox { left, top, width, height, .. } = found;
+    let [x0, y0, x1, y1] = found.corners();
+    if ![x0, y0, x1, y1].iter().all(|number| number.is_finite()) {
+        return Some("a number is NaN or infinite".to_owned());
+    }
+    let text = format!("left {left} top {top} width {width} height {height}");
+    if *width <= 0.0 || *height <= 0.0 {
+        return Some(format!("the box has no size ({text})"));
+    }
+    if let Some([across, down]) = size
+        && (x0 < -MARGIN || y0 < -MARGIN || x1 > across + MARGIN || y1 > down + MARGIN)
+    {
+        return Some(format!("the box leaves its {across}x{down} picture ({text})"));
+    }
+    match &found.name {
+        Name::Index(index) => wrong_class(*index, classes),
+        Name::Label(_) => None,
+    }
+}
+
+fn wrong_class(class: i64, classes: usize) -> Option<String> {
+    let known = classes == 0 || usize::try_from(class).is_ok_and(|class| class < classes);
+    (!known).then(|| format!("class {class} of 0 to {}", classes - 1))
+}
+
+fn wrong_poses(list: &PoseList, size: Option<[f32; 2]>, tell: &mut impl FnMut(String, Option<String>)) {
+    for (at, pose) in list.poses.iter().enumerate() {
+        for (joint, point) in pose.keypoints.iter().enumerate().filter(|(_, point)| point.is_found()) {
+            let outside = size.filter(|[across, down]| point.x > across + MARGIN || point.y > down + MARGIN);
+            tell(
+                format!("person {at} joint {joint}"),
+                outside.map(|[across, down]| format!("{point} leaves the {across}x{down} picture")),
+            );
+        }
+    }
+}

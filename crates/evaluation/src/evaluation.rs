@@ -1,0 +1,247 @@
+//! A learner over a data set.
+
+use std::path::Path;
+use std::time::Instant;
+
+use opendr_datasets::{Problem, Problems};
+use opendr_engine::dataset::DatasetIterator;
+use opendr_engine::learner::{AnyLearner, Port, Ports};
+use opendr_engine::params::ParamMap;
+use opendr_engine::{Error, Progress, Result, Silent, Unit, Value, map_in_order};
+use opendr_metrics::{AnyMetric, MetricEntry};
+use serde::{Deserialize, Serialize};
+
+use crate::journal::{Answer, Heading, Journal, Line};
+use crate::worst::Worst;
+use crate::{ClassMap, Outcome};
+
+/// The worst samples that are listed.
+const WORST: usize = 24;
+
+/// What is evaluated: journals and outcomes name it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Subject {
+    /// The learner, with its variant.
+    pub learner: String,
+    /// The model container, where it is the user's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<String>,
+    /// The learner's parameters.
+    pub params: ParamMap,
+}
+
+/// How an evaluation is done.
+pub struct Evaluation<'a> {
+    /// What is evaluated.
+    pub subject: Subject,
+    /// What the data set is called in the outcome.
+    pub dataset: String,
+    /// By what.
+    pub metric: &'static MetricEntry,
+    /// The parameters of the metric.
+    pub metric_params: ParamMap,
+    /// Where every answer is written as it comes; an evaluation that was broken off goes on from it.
+    pub journal: Option<&'a Path>,
+    /// What is broken is left out and listed, or ends the evaluation.
+    pub problems: &'a Problems,
+    /// To whom to report; asked whether to stop.
+    pub progress: &'a dyn Progress,
+}
+
+impl<'a> Evaluation<'a> {
+    /// A silent evaluation without a journal.
+    pub fn new(subject: Subject, metric: &'static MetricEntry, problems: &'a Problems) -> Self {
+        Self {
+            subject,
+            dataset: String::new(),
+            metric,
+            metric_params: ParamMap::new(),
+            journal: None,
+            problems,
+            progress: &Silent,
+        }
+    }
+
+    /// Runs loaded `learners` of one kind, whose inputs are `ports`, over the data set: as many samples at once as there
+    /// are learners, sequences by the first alone.
+    ///
+    /// When the user stops it, the outcome is of what was done, and says so.
+    ///
+    /// # Errors
+    /// `InvalidInput` when data set, learner and metric do not fit together; for a broken sample, unless problems are
+    /// skipped; `Io` when the journal cannot be written.
+    pub fn run(
+        &self,
+        learners: &mut [Box<dyn AnyLearner>],
+        ports: &'static [Port],
+        dataset: &dyn DatasetIterator,
+    ) -> Result<Outcome> {
+        let count = dataset.len();
+        let begun = Instant::now();
+        let mut tally = Tally {
+            metric: self.metric.make(&self.metric_params)?,
+            classes: ClassMap::to(dataset.classes()),
+            worst: Worst::new(WORST),
+            next: 0,
+            counted: 0,
+            dataset,
+            problems: self.problems,
+        };
+        self.progress.begin("evaluating", Some(count as u64), Unit::Items);
+        let done =
+            self.resume(&mut tally).and_then(|journal| self.answer(learners, ports, &mut tally, journal));
+        self.progress.end();
+        done?;
+        Ok(Outcome {
+            learner: self.subject.learner.clone(),
+            dataset: self.dataset.clone(),
+            metric: self.metric.name.to_owned(),
+            samples: count,
+            counted: tally.counted,
+            skipped: self.problems.count(),
+            complete: tally.next == count,
+            seconds: begun.elapsed().as_secs_f64(),
+            report: tally.metric.finish(),
+            worst: tally.worst.into_samples(),
+            problems: self.problems.list(),
+        })
+    }
+
+    /// Counts what the journal tells of.
+    fn resume(&self, tally: &mut Tally<'_>) -> Result<Option<Journal>> {
+        let Some(path) = self.journal else { return Ok(None) };
+        let dataset = tally.dataset;
+        let names = (0..dataset.len()).map(|at| dataset.name(at));
+        let heading = Heading::new(self.subject.clone(), self.dataset.clone(), names);
+        // A learner that remembers has to see a sequence from its first frame: one that was broken off is dropped.
+        let whole = match dataset.is_empty() || dataset.sequence(0).is_none() {
+            true => usize::MAX,
+            false => {
+                let mut lines = 0;
+                Journal::open(path, &heading, |_| {
+                    lines += 1;
+                    Ok(true)
+                })?;
+                whole_sequences(dataset, lines)
+            }
+        };
+        let journal = Journal::open(path, &heading, |line| {
+            if line.at >= whole.min(dataset.len()) {
+                return Ok(false);
+            }
+            tally.count(line)?;
+            self.progress.advance(1);
+            Ok(true)
+        })?;
+        if tally.next > 0 && tally.next < dataset.len() {
+            self.progress.note(&format!("going on after {} of {} samples", tally.next, dataset.len()));
+        }
+        Ok(Some(journal))
+    }
+
+    /// Infers the samples that are left.
+    fn answer(
+        &self,
+        learners: &mut [Box<dyn AnyLearner>],
+        ports: &'static [Port],
+        tally: &mut Tally<'_>,
+        mut journal: Option<Journal>,
+    ) -> Result<()> {
+        let dataset = tally.dataset;
+        let in_sequences = dataset.len() > tally.next && dataset.sequence(tally.next).is_some();
+        let workers = if in_sequences { learners.len().min(1) } else { learners.len() };
+        let wanted = self.metric.prediction;
+        let indices = (tally.next..dataset.len()).take_while(|_| !self.progress.stopped());
+        let work = |learner: &mut Box<dyn AnyLearner>, at: usize| {
+            let begins = at == 0 || !in_sequences || dataset.sequence(at) != dataset.sequence(at - 1);
+            if begins {
+                learner.reset();
+            }
+            (at, infer(learner.as_mut(), ports, dataset, at, wanted.name()))
+        };
+        map_in_order(&mut learners[..workers], indices, work, |(at, answer)| {
+            let answer = match answer {
+                Ok(value) => Answer::Prediction(Box::new(value)),
+                Err(error) => Answer::Error(error.to_string()),
+            };
+            let line = Line { at, name: dataset.name(at), answer };
+            if let Some(journal) = &mut journal {
+                journal.write(&line)?;
+            }
+            tally.count(line)?;
+            self.progress.advance(1);
+            Ok(())
+        })
+    }
+}
+
+/// How many of the first `count` samples belong to sequences that are over.
+fn whole_sequences(dataset: &dyn DatasetIterator, count: usize) -> usize {
+    let over = |at: usize| at == 0 || at >= dataset.len() || dataset.sequence(at) != dataset.sequence(at - 1);
+    (0..=count.min(dataset.len())).rev().find(|at| over(*at)).unwrap_or(0)
+}
+
+/// The learner's answer of the wanted type to one sample.
+fn infer(
+    learner: &mut dyn AnyLearner,
+    ports: &'static [Port],
+    dataset: &dyn DatasetIterator,
+    at: usize,
+    wanted: &str,
+) -> Result<Value> {
+    let sample = dataset.get(at)?;
+    let named = ports
+        .iter()
+        .zip(&sample.data)
+        .fold(Ports::default(), |named, (port, value)| named.with(port.name, value));
+    let outputs = learner.infer(&named)?;
+    let found = outputs.iter().find(|(_, value)| value.as_value_ref().value_type().name() == wanted);
+    let found = found.or_else(|| outputs.iter().next()).map(|(_, value)| value.clone());
+    found.ok_or_else(|| Error::invalid_input("the learner answers nothing"))
+}
+
+/// What was counted so far.
+struct Tally<'a> {
+    metric: Box<dyn AnyMetric>,
+    classes: ClassMap,
+    worst: Worst,
+    /// The sample that comes next.
+    next: usize,
+    counted: usize,
+    dataset: &'a dyn DatasetIterator,
+    problems: &'a Problems,
+}
+
+impl Tally<'_> {
+    fn count(&mut self, line: Line) -> Result<()> {
+        let (at, dataset) = (line.at, self.dataset);
+        self.next = at + 1;
+        match self.score(line) {
+            Ok((score, prediction)) => {
+                self.counted += 1;
+                self.worst.add(at, score, || dataset.name(at), prediction);
+            }
+            Err(message) => {
+                let file = dataset.path(at).unwrap_or_else(|| dataset.name(at).into());
+                self.problems.report(Problem::new(file, message))?;
+            }
+        }
+        let ends = at + 1 == dataset.len() || dataset.sequence(at) != dataset.sequence(at + 1);
+        if dataset.sequence(at).is_some() && ends {
+            self.metric.end_sequence();
+        }
+        Ok(())
+    }
+
+    fn score(&mut self, line: Line) -> std::result::Result<(f64, Value), String> {
+        let mut prediction = match line.answer {
+            Answer::Prediction(prediction) => *prediction,
+            Answer::Error(error) => return Err(error),
+        };
+        let truth = self.dataset.target(line.at).map_err(|error| error.to_string())?;
+        let truth = truth.ok_or("the sample has no annotation to compare with")?;
+        self.classes.apply(&mut prediction);
+        let counted = self.metric.update(line.at, (&prediction).into(), (&truth).into());
+        counted.map(|score| (score, prediction)).map_err(|error| error.to_string())
+    }
+}

@@ -1,0 +1,68 @@
+//! Figures as SVG files, without fonts or scripts of their own.
+
+mod axis;
+mod curves;
+mod matrix;
+
+use opendr_metrics::Figure;
+
+/// The figure's name and its picture as SVG text.
+pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
+    match figure {
+        Figure::Curves(curves) => (&curves.name, curves::svg(curves)),
+        Figure::Matrix(matrix) => (&matrix.name, matrix::svg(matrix)),
+        _ => ("figure", String::new()),
+    }
+}
+
+/// Text of any origin between tags.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// The beginning of a picture of `width` x `height` with a title.
+fn opening(width: f64, height: f64, title: &str) -> String {
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
+         height=\"{height}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n\
+         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+         <text x=\"{}\" y=\"22\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
+        width / 2.0,
+        escaped(title)
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opendr_metrics::{Curves, Line, Matrix};
+
+    #[test]
+    fn figures_are_well_formed_whatever_they_hold() {
+        let line =
+            |label: &str, points: &[[f64; 2]]| Line { label: label.to_owned(), points: points.to_vec() };
+        let curves = Curves {
+            name: "loss".to_owned(),
+            title: "a < b & \"c\"".to_owned(),
+            x: "step".to_owned(),
+            y: "loss".to_owned(),
+            lines: vec![
+                line("train", &[[0.0, 3.0], [5.0, f64::NAN], [10.0, 1.0]]),
+                line("flat", &[[3.0, 2.0]]),
+                line("none", &[]),
+            ],
+        };
+        let matrix = Matrix {
+            name: "confusion".to_owned(),
+            title: String::new(),
+            labels: vec!["<cat>".to_owned(), "dog".to_owned()],
+            counts: vec![3, 0, 1, 12_345],
+        };
+        for figure in [Figure::Curves(curves), Figure::Curves(Curves::default()), Figure::Matrix(matrix)] {
+            let (_, svg) = svg_from_figure(&figure);
+            assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{svg}");
+            assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("<cat>"), "{svg}");
+            assert_eq!(svg.matches("<text").count(), svg.matches("</text>").count());
+        }
+    }
+}

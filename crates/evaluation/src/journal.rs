@@ -1,0 +1,187 @@
+//! What was answered so far, on disk, so that an evaluation goes on where it ended.
+//!
+//! The first line tells what is evaluated; then a line of JSON a sample, in their order. A line that was cut off when
+//! the process died is dropped.
+
+use std::fs::{File, OpenOptions};
+use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+use opendr_engine::{Error, Result, ResultExt, Value};
+use serde::{Deserialize, Serialize};
+
+use crate::Subject;
+
+const VERSION: u32 = 1;
+
+/// The first line.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+pub struct Heading {
+    opendr_eval: u32,
+    #[serde(flatten)]
+    subject: Subject,
+    dataset: String,
+    samples: usize,
+    /// Of the names of the samples.
+    fingerprint: String,
+}
+
+impl Heading {
+    pub fn new(subject: Subject, dataset: String, names: impl ExactSizeIterator<Item = String>) -> Self {
+        let samples = names.len();
+        Self { opendr_eval: VERSION, subject, dataset, samples, fingerprint: fingerprint(names) }
+    }
+}
+
+/// FNV-1a over the names, which tells data sets apart; nobody gains by forging it.
+fn fingerprint(names: impl Iterator<Item = String>) -> String {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for name in names {
+        for byte in name.bytes().chain([0]) {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+    }
+    format!("{hash:016x}")
+}
+
+/// What became of one sample.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Line {
+    pub at: usize,
+    pub name: String,
+    #[serde(flatten)]
+    pub answer: Answer,
+}
+
+/// The answer, or why there is none.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Answer {
+    Prediction(Box<Value>),
+    Error(String),
+}
+
+/// A journal that is being written.
+pub struct Journal {
+    path: PathBuf,
+    file: File,
+}
+
+impl Journal {
+    /// Opens the journal at `path`, or begins it, and hands every sample that it tells of to `each`, in order. What `each`
+    /// answers `false` to, and all that follows, is dropped.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the journal is of another evaluation; `Format` when it is no journal; `Io`.
+    pub fn open(path: &Path, heading: &Heading, mut each: impl FnMut(Line) -> Result<bool>) -> Result<Self> {
+        let context = || format!("opening {}", path.display());
+        let mut file = OpenOptions::new().read(true).append(true).create(true).open(path).context(context)?;
+        let mut reader = BufReader::new(&file);
+        let mut first = String::new();
+        reader.read_line(&mut first).context(context)?;
+        if !first.ends_with('\n') {
+            file.set_len(0).context(context)?;
+            let mut journal = Self { path: path.to_owned(), file };
+            journal.write(heading)?;
+            return Ok(journal);
+        }
+        check_heading(path, &first, heading)?;
+        let mut end = first.len() as u64;
+        let mut text = String::new();
+        for at in 0.. {
+            text.clear();
+            reader.read_line(&mut text).context(context)?;
+            let line = serde_json::from_str::<Line>(&text).ok().filter(|line| line.at == at);
+            let Some(line) = line.filter(|_| text.ends_with('\n')) else { break };
+            if !each(line)? {
+                break;
+            }
+            end += text.len() as u64;
+        }
+        file.set_len(end).context(context)?;
+        file.seek(SeekFrom::End(0)).context(context)?;
+        Ok(Self { path: path.to_owned(), file })
+    }
+
+    /// Appends a line.
+    ///
+    /// # Errors
+    /// `Io` when the disk is full.
+    pub fn write(&mut self, line: &impl Serialize) -> Result<()> {
+        let mut text = serde_json::to_vec(line)
+            .map_err(|error| Error::internal("an answer has no JSON form").with_source(error))?;
+        text.push(b'\n');
+        self.file.write_all(&text).context(|| format!("writing {}", self.path.display()))
+    }
+}
+
+fn check_heading(path: &Path, text: &str, heading: &Heading) -> Result<()> {
+    let path = path.display();
+    let found: Heading = serde_json::from_str(text).map_err(|error| {
+        Error::format(format!("{path} is no journal of an evaluation; name another folder"))
+            .with_source(error)
+    })?;
+    if found == *heading {
+        return Ok(());
+    }
+    let differs = [
+        ("learner", found.subject.learner != heading.subject.learner),
+        ("model", found.subject.model != heading.subject.model),
+        ("parameters", found.subject.params != heading.subject.params),
+        ("data set", found.dataset != heading.dataset || found.fingerprint != heading.fingerprint),
+    ];
+    let differs: Vec<_> = differs.iter().filter(|(_, differs)| *differs).map(|(what, _)| *what).collect();
+    Err(Error::invalid_input(format!(
+        "{path} is of another evaluation ({} differs); name another folder, or delete it to begin anew",
+        differs.join(", ")
+    )))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use opendr_engine::target::Category;
+
+    fn heading(learner: &str) -> Heading {
+        let subject = Subject { learner: learner.to_owned(), ..Subject::default() };
+        Heading::new(subject, "data".to_owned(), ["a".to_owned(), "b".to_owned()].into_iter())
+    }
+
+    fn line(at: usize) -> Line {
+        let answer = Answer::Prediction(Box::new(Category::new(at as i64, None).into()));
+        Line { at, name: at.to_string(), answer }
+    }
+
+    fn read(path: &Path, heading: &Heading) -> Result<(Vec<Line>, Journal)> {
+        let mut lines = Vec::new();
+        let journal = Journal::open(path, heading, |line| {
+            lines.push(line);
+            Ok(true)
+        })?;
+        Ok((lines, journal))
+    }
+
+    #[test]
+    fn goes_on_after_a_line_that_was_cut_off() {
+        let folder = std::env::temp_dir().join(format!("opendr-journal-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let path = folder.join("predictions.jsonl");
+        let (none, mut journal) = read(&path, &heading("a")).unwrap();
+        assert!(none.is_empty());
+        let failed = Line { at: 1, name: "1".to_owned(), answer: Answer::Error("broken".to_owned()) };
+        journal.write(&line(0)).unwrap();
+        journal.write(&failed).unwrap();
+        journal.file.write_all(b"{\"at\":2,\"name\":\"2\",\"predic").unwrap();
+        drop(journal);
+        let (lines, mut journal) = read(&path, &heading("a")).unwrap();
+        assert_eq!(lines, [line(0), failed.clone()]);
+        journal.write(&line(2)).unwrap();
+        drop(journal);
+        assert_eq!(read(&path, &heading("a")).unwrap().0, [line(0), failed, line(2)]);
+        let error = read(&path, &heading("b")).err().unwrap();
+        assert!(error.to_string().contains("(learner differs)"), "{error}");
+        std::fs::write(&path, "nonsense\n").unwrap();
+        assert!(read(&path, &heading("a")).is_err());
+        std::fs::remove_dir_all(folder).unwrap();
+    }
+}

@@ -1,0 +1,19 @@
+//! `eval` of every task: a learner over a data set, counted by the task's metric.
+//!
+//! [`Evaluation`] runs it, resumes it from its journal, and ends in an [`Outcome`]: numbers, tables, figures, the worst
+//! samples. Nothing here knows a learner or a format.
+
+mod classes;
+mod evaluation;
+mod figure;
+mod journal;
+mod outcome;
+mod task;
+mod worst;
+
+pub use classes::ClassMap;
+pub use evaluation::{Evaluation, Subject};
+pub use figure::svg_from_figure;
+pub use outcome::Outcome;
+pub use task::metric_of;
+pub use worst::WorstSample;

@@ -1,0 +1,125 @@
+//! What an evaluation ends in.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use opendr_datasets::Problem;
+use opendr_engine::{Error, Result, ResultExt};
+use opendr_metrics::{Report, Table};
+use serde::Serialize;
+
+use crate::svg_from_figure;
+use crate::worst::WorstSample;
+
+/// Rows of a table that are printed; all of them are in the JSON.
+const ROWS: usize = 40;
+
+/// The numbers of an evaluation and what there is to say about them. Printed, it is a table.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// What was evaluated.
+    pub learner: String,
+    /// On what.
+    pub dataset: String,
+    /// By what.
+    pub metric: String,
+    /// Samples of the data set.
+    pub samples: usize,
+    /// Samples that were answered and counted.
+    pub counted: usize,
+    /// Samples and annotations that were left out because they are broken.
+    pub skipped: u64,
+    /// Whether every sample was reached.
+    pub complete: bool,
+    /// How long it took, seconds; of the last run where it was resumed.
+    pub seconds: f64,
+    /// The numbers, tables and figures.
+    #[serde(flatten)]
+    pub report: Report,
+    /// The samples that were answered worst, worst first.
+    pub worst: Vec<WorstSample>,
+    /// What was left out.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub problems: Vec<Problem>,
+}
+
+impl Outcome {
+    /// Writes `report.json`, and an SVG file for each figure, into a folder; what was written.
+    ///
+    /// # Errors
+    /// `Io` when a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+        let json = serde_json::to_string_pretty(self)
+            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
+        let figures = self.report.figures.iter().map(|figure| {
+            let (name, svg) = svg_from_figure(figure);
+            (format!("{name}.svg"), svg)
+        });
+        let files = std::iter::once(("report.json".to_owned(), json + "\n")).chain(figures);
+        files
+            .map(|(name, text)| {
+                let path = folder.join(name);
+                fs::write(&path, text).context(|| format!("writing {}", path.display()))?;
+                Ok(path)
+            })
+            .collect()
+    }
+}
+
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { learner, dataset, metric, samples, counted, seconds, .. } = self;
+        write!(f, "{learner} on {dataset} by {metric}: {counted} of {samples} samples")?;
+        if *seconds > 0.0 {
+            write!(f, " in {seconds:.1} s")?;
+        }
+        writeln!(f)?;
+        if !self.complete {
+            writeln!(f, "not complete: the numbers are of what was done")?;
+        }
+        if self.skipped > 0 {
+            writeln!(f, "{} left out as broken", self.skipped)?;
+        }
+        let scalars = &self.report.statistics.scalars;
+        let width = scalars.keys().map(String::len).max().unwrap_or(0);
+        let main = scalars.get_key_value(&self.report.headline);
+        let rest = scalars.iter().filter(|(key, _)| **key != self.report.headline);
+        for (key, value) in main.into_iter().chain(rest) {
+            writeln!(f, "  {key:width$}  {}", number(*value))?;
+        }
+        self.report.tables.iter().try_for_each(|table| write_table(table, f))
+    }
+}
+
+fn write_table(table: &Table, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    let labels = table.rows.iter().map(|(label, _)| label.chars().count());
+    let first = labels.chain([table.name.chars().count()]).max().unwrap_or(0);
+    let widths: Vec<_> = table.columns.iter().map(|column| column.chars().count().max(8)).collect();
+    write!(f, "\n  {:first$}", table.name)?;
+    for (column, width) in table.columns.iter().zip(&widths) {
+        write!(f, "  {column:>width$}")?;
+    }
+    writeln!(f)?;
+    for (label, numbers) in table.rows.iter().take(ROWS) {
+        write!(f, "  {label:first$}")?;
+        for (value, width) in numbers.iter().zip(&widths) {
+            let text = value.map_or("-".to_owned(), number);
+            write!(f, "  {text:>width$}")?;
+        }
+        writeln!(f)?;
+    }
+    match table.rows.len().checked_sub(ROWS) {
+        Some(more) if more > 0 => writeln!(f, "  ... {more} more in report.json"),
+        _ => Ok(()),
+    }
+}
+
+/// Counts as they are, everything else with four places.
+fn number(value: f64) -> String {
+    if value.fract() == 0.0 && value.abs() >= 2.0 && value.abs() < 1e15 {
+        format!("{value}")
+    } else {
+        format!("{value:.4}")
+    }
+}

@@ -1,0 +1,18 @@
+//! What a task is measured by.
+
+use opendr_engine::{Error, Result, Task};
+
+/// The name of a task's metric: the one that papers rank its learners by.
+///
+/// # Errors
+/// `Unsupported` for a task that has none yet.
+pub fn metric_of(task: Task) -> Result<&'static str> {
+    match task {
+        Task::ObjectDetection2d => Ok("coco_detection"),
+        Task::FaceDetection => Ok("voc_detection"),
+        Task::PoseEstimation => Ok("coco_keypoints"),
+        other => {
+            Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
+        }
+    }
+}
