@@ -1,0 +1,97 @@
+//! A value of a JSON text with its place in the file.
+
+use serde::Deserialize;
+
+use crate::{Error, Result};
+
+/// The bytes of one JSON value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct JsonPiece<'a> {
+    /// The value as it stands in the file.
+    pub bytes: &'a [u8],
+    /// Where it begins, in bytes from the start of the file.
+    pub offset: u64,
+    /// The line it begins on, from 1.
+    pub line: u64,
+}
+
+impl<'a> JsonPiece<'a> {
+    /// Reads the value.
+    ///
+    /// # Errors
+    /// `Format`, naming line, byte and key: `line 3, byte 120, key "bbox[2]": ...`.
+    pub fn parse<T: Deserialize<'a>>(&self) -> Result<T> {
+        serde_json::from_slice(self.bytes).map_err(|error| {
+            let place = self.place(&error);
+            let (offset, line) = (self.offset + place as u64, self.line + error.line().max(1) as u64 - 1);
+            let text = error.to_string();
+            let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);
+            let path = path_at(self.bytes, place);
+            let key = if path.is_empty() { path } else { format!(", key {path:?}") };
+            Error::format(format!("line {line}, byte {offset}{key}: {what}"))
+        })
+    }
+
+    /// The byte of the value that `error` is about.
+    fn place(&self, error: &serde_json::Error) -> usize {
+        let lines = self.bytes.split_inclusive(|byte| *byte == b'\n');
+        let before: usize = lines.take(error.line().max(1) - 1).map(<[u8]>::len).sum();
+        (before + error.column().saturating_sub(1)).min(self.bytes.len())
+    }
+}
+
+/// What an open bracket is at.
+enum Place {
+    Key(String),
+    Index(usize),
+}
+
+/// The keys that lead to byte `end` of a JSON text: `segmentation[0][3]`.
+fn path_at(bytes: &[u8], end: usize) -> String {
+    let (mut open, mut at) = (Vec::new(), 0);
+    while at < end {
+        match bytes[at] {
+            b'{' => open.push(Place::Key(String::new())),
+            b'[' => open.push(Place::Index(0)),
+            b'}' | b']' => {
+                open.pop();
+            }
+            b',' => match open.last_mut() {
+                Some(Place::Index(index)) => *index += 1,
+                Some(Place::Key(key)) => key.clear(),
+                None => {}
+            },
+            b'"' => {
+                let text = string(&bytes[at + 1..]);
+                if let Some(Place::Key(key)) = open.last_mut()
+                    && key.is_empty()
+                {
+                    *key = String::from_utf8_lossy(text).chars().take(40).collect();
+                }
+                at += text.len() + 1;
+            }
+            _ => {}
+        }
+        at += 1;
+    }
+    let mut path = String::new();
+    for place in &open {
+        match place {
+            Place::Key(key) if path.is_empty() || key.is_empty() => path.push_str(key),
+            Place::Key(key) => path.extend([".", key]),
+            Place::Index(index) => path.push_str(&format!("[{index}]")),
+        }
+    }
+    path
+}
+
+/// What stands before the closing quotation mark.
+fn string(text: &[u8]) -> &[u8] {
+    let mut escaped = false;
+    let length = text.iter().position(|byte| {
+        let closing = *byte == b'"' && !escaped;
+        escaped = *byte == b'\\' && !escaped;
+        closing
+    });
+    &text[..length.unwrap_or(text.len())]
+}
