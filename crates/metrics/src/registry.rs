@@ -7,8 +7,13 @@ use crate::MetricEntry;
 /// Every metric.
 #[rustfmt::skip] // One line a metric.
 pub const fn metrics() -> &'static [MetricEntry] {
-    &[
-    ]
+    const {
+        &[
+            MetricEntry::of::<crate::Classification>(),
+            MetricEntry::of::<crate::Roc>(),
+            MetricEntry::of::<crate::Verification>(),
+        ]
+    }
 }
 
 /// The metric called `name`.

@@ -1,0 +1,274 @@
+//! Classification: accuracy, top-k, precision, recall, F1, confusion matrix and calibration, equal to scikit-learn.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use opendr_engine::params::Params;
+use opendr_engine::target::Category;
+use opendr_engine::{Error, Result};
+
+use crate::{
+    Calibration, ClassCounts, ClassScores, Figure, Matrix, Metric, PrecisionRecall, Report, Table,
+    ZeroDivision,
+};
+
+/// Most classes of which a confusion matrix is drawn.
+const MATRIX_CLASSES: usize = 1000;
+
+/// Most scores of one sample: what the histogram of ranks can grow to.
+const MAX_SCORES: usize = 1 << 20;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct ClassificationParams {
+    /// Classes to average over; none: those that occur as truth or answer.
+    pub labels: Vec<i64>,
+    /// What precision, recall and F1 are where their denominator is zero.
+    pub zero_division: ZeroDivision,
+    /// How many of the best scores may hold the true class for the top-k accuracies.
+    #[param(default = vec![5], range = 1..=1_048_576)]
+    pub top_k: Vec<usize>,
+}
+
+/// Counts what was taken for what. Memory grows with the pairs of classes that occur, not with the samples.
+#[derive(Debug, Clone, Default)]
+pub struct Classification {
+    params: ClassificationParams,
+    /// What classes are called.
+    names: BTreeMap<i64, Arc<str>>,
+    /// Samples by (truth, answer).
+    pairs: BTreeMap<(i64, i64), u64>,
+    /// Samples by the rank of their class among the scores.
+    ranks: Vec<u64>,
+    calibration: Calibration,
+}
+
+impl Classification {
+    /// Counts one sample.
+    pub fn add(&mut self, truth: i64, predicted: i64) {
+        *self.pairs.entry((truth, predicted)).or_default() += 1;
+    }
+
+    /// Counts for top-k where the true class ranks among the scores of all classes, beginning with class 0. Of equal
+    /// scores the higher class number ranks first, as in scikit-learn's `top_k_accuracy_score`.
+    ///
+    /// # Errors
+    /// `InvalidInput` when `truth` has no score, a score is NaN or there are more than 2^20.
+    pub fn add_scores(&mut self, truth: i64, scores: &[f32]) -> Result<()> {
+        let rank = rank_of_class(truth, scores)?;
+        self.add_rank(rank);
+        Ok(())
+    }
+
+    fn add_rank(&mut self, rank: usize) {
+        if self.ranks.len() <= rank {
+            self.ranks.resize(rank + 1, 0);
+        }
+        self.ranks[rank] += 1;
+    }
+
+    /// Counts for the calibration how sure one answer was.
+    ///
+    /// # Errors
+    /// As [`Calibration::add`].
+    pub fn add_confidence(&mut self, correct: bool, confidence: f64) -> Result<()> {
+        self.calibration.add(correct, confidence)
+    }
+
+    /// Samples counted.
+    pub fn samples(&self) -> u64 {
+        self.pairs.values().sum()
+    }
+
+    /// The classes that occur as truth or answer, ascending.
+    pub fn labels(&self) -> Vec<i64> {
+        let labels: BTreeSet<i64> = self.pairs.keys().flat_map(|(truth, answer)| [*truth, *answer]).collect();
+        labels.into_iter().collect()
+    }
+
+    /// Share of right answers; `None` without samples.
+    pub fn accuracy(&self) -> Option<f64> {
+        let hits = self.pairs.iter().filter(|((truth, answer), _)| truth == answer);
+        ratio(hits.map(|(_, count)| count).sum(), self.samples())
+    }
+
+    /// Mean recall of the classes that have samples; `None` without samples.
+    pub fn balanced_accuracy(&self) -> Option<f64> {
+        let counts = self.counts();
+        let recalls: Vec<f64> =
+            counts.values().filter_map(|class| ratio(class.hits, class.support)).collect();
+        (!recalls.is_empty()).then(|| recalls.iter().sum::<f64>() / recalls.len() as f64)
+    }
+
+    /// Share of the samples with scores whose class is among the `k` best; `None` without scores. 1 where `k` is at
+    /// least the number of classes.
+    pub fn top_k(&self, k: usize) -> Option<f64> {
+        ratio(self.ranks.iter().take(k).sum(), self.ranks.iter().sum())
+    }
+
+    /// How well confidences meet accuracy.
+    pub fn calibration(&self) -> &Calibration {
+        &self.calibration
+    }
+
+    /// Precision, recall and F1 of the classes of [`ClassificationParams::labels`], or of those that occur.
+    pub fn scores(&self) -> ClassScores {
+        let counts = self.counts();
+        let zero = self.params.zero_division;
+        if self.params.labels.is_empty() {
+            return ClassScores::new(counts, zero);
+        }
+        let count = |label: &i64| (*label, counts.get(label).copied().unwrap_or_default());
+        ClassScores::new(self.params.labels.iter().map(count), zero)
+    }
+
+    /// Counts of truth (row) by answer (column) over `labels`, which ascend; others are left out.
+    pub fn confusion(&self, labels: &[i64]) -> Vec<u64> {
+        let side = labels.len();
+        let mut counts = vec![0; side * side];
+        for ((truth, answer), count) in &self.pairs {
+            if let (Ok(row), Ok(column)) = (labels.binary_search(truth), labels.binary_search(answer)) {
+                counts[row * side + column] = *count;
+            }
+        }
+        counts
+    }
+
+    fn counts(&self) -> BTreeMap<i64, ClassCounts> {
+        let mut counts = BTreeMap::<i64, ClassCounts>::new();
+        for ((truth, answer), count) in &self.pairs {
+            counts.entry(*answer).or_default().predicted += count;
+            let class = counts.entry(*truth).or_default();
+            class.support += count;
+            if truth == answer {
+                class.hits += count;
+            }
+        }
+        counts
+    }
+
+    fn name(&self, label: i64) -> String {
+        self.names.get(&label).map_or_else(|| label.to_string(), |name| name.to_string())
+    }
+
+    fn table(&self, scores: &ClassScores) -> Table {
+        let rows = scores.classes.iter().map(|class| {
+            let PrecisionRecall { precision, recall, f1 } = class.scores;
+            (self.name(class.label), vec![precision, recall, f1, Some(class.support as f64)])
+        });
+        let columns = ["precision", "recall", "f1", "support"].map(str::to_owned).into();
+        Table { name: "class".to_owned(), columns, rows: rows.collect() }
+    }
+}
+
+impl Metric for Classification {
+    const NAME: &'static str = "classification";
+    const ABOUT: &'static str =
+        "accuracy, top-k, precision, recall, F1 and confusion matrix as scikit-learn, calibration error";
+    type Params = ClassificationParams;
+    type Prediction = Category;
+    type Truth = Category;
+
+    fn new(params: &ClassificationParams) -> Result<Self> {
+        Ok(Self { params: params.clone(), ..Self::default() })
+    }
+
+    fn update(&mut self, _at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
+        let correct = prediction.class == truth.class;
+        let scores = &prediction.probabilities;
+        let rank = match scores.is_empty() {
+            true => None,
+            false => Some(rank_of_class(truth.class, scores)?),
+        };
+        let own = usize::try_from(prediction.class).ok().and_then(|class| scores.get(class));
+        if let Some(confidence) = prediction.confidence.or(own.copied()) {
+            self.calibration.add(correct, f64::from(confidence))?;
+        }
+        if let Some(rank) = rank {
+            self.add_rank(rank);
+        }
+        for category in [truth, prediction] {
+            if let Some(name) = &category.description {
+                self.names.entry(category.class).or_insert_with(|| name.clone());
+            }
+        }
+        self.add(truth.class, prediction.class);
+        Ok(f64::from(u8::from(correct)))
+    }
+
+    fn merge(&mut self, other: Self) {
+        for (label, name) in other.names {
+            self.names.entry(label).or_insert(name);
+        }
+        for (pair, count) in other.pairs {
+            *self.pairs.entry(pair).or_default() += count;
+        }
+        if self.ranks.len() < other.ranks.len() {
+            self.ranks.resize(other.ranks.len(), 0);
+        }
+        self.ranks.iter_mut().zip(&other.ranks).for_each(|(mine, more)| *mine += more);
+        self.calibration.merge(&other.calibration);
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("accuracy");
+        let mut set = |key: &str, value: Option<f64>| {
+            if let Some(value) = value {
+                report.statistics.set(key, value);
+            }
+        };
+        set("samples", Some(self.samples() as f64));
+        set("accuracy", self.accuracy());
+        set("balanced_accuracy", self.balanced_accuracy());
+        set("expected_calibration_error", self.calibration.expected_error());
+        set("maximum_calibration_error", self.calibration.maximum_error());
+        for k in &self.params.top_k {
+            set(&format!("top_{k}_accuracy"), self.top_k(*k));
+        }
+        let scores = self.scores();
+        for (average, row) in
+            [("micro", scores.micro), ("macro", scores.macro_), ("weighted", scores.weighted)]
+        {
+            set(&format!("precision_{average}"), row.precision);
+            set(&format!("recall_{average}"), row.recall);
+            set(&format!("f1_{average}"), row.f1);
+        }
+        report.tables.push(self.table(&scores));
+        let labels = self.labels();
+        if (1..=MATRIX_CLASSES).contains(&labels.len()) {
+            report.figures.push(Figure::Matrix(Matrix {
+                name: "confusion".to_owned(),
+                title: "Confusion matrix".to_owned(),
+                counts: self.confusion(&labels),
+                labels: labels.into_iter().map(|label| self.name(label)).collect(),
+            }));
+        }
+        report.figures.extend(self.calibration.figure());
+        report
+    }
+}
+
+/// How many classes rank before class `truth`; see [`Classification::add_scores`].
+fn rank_of_class(truth: i64, scores: &[f32]) -> Result<usize> {
+    let class =
+        usize::try_from(truth).ok().filter(|class| *class < scores.len() && scores.len() <= MAX_SCORES);
+    let Some(class) = class else {
+        let count = scores.len();
+        return Err(Error::invalid_input(format!(
+            "class {truth} has none of {count} scores; give one score per class, at most {MAX_SCORES}"
+        )));
+    };
+    if let Some(place) = scores.iter().position(|score| score.is_nan()) {
+        return Err(Error::invalid_input(format!("score of class {place} is NaN; give numbers")));
+    }
+    let own = scores[class];
+    let before = |(other, score): &(usize, &f32)| **score > own || (**score == own && *other > class);
+    Ok(scores.iter().enumerate().filter(before).count())
+}
+
+fn ratio(part: u64, whole: u64) -> Option<f64> {
+    (whole > 0).then(|| part as f64 / whole as f64)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,214 @@
+//! Verification of pairs (same face, same person or not): ROC, accuracy as LFW, TAR at FAR, equal error rate.
+
+use opendr_engine::params::Params;
+use opendr_engine::target::Category;
+use opendr_engine::{Error, Result};
+
+use crate::{Metric, Report, RocCurve, RocPoint, Table};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct VerificationParams {
+    /// Parts of the cross-validation that finds the threshold: consecutive pairs, as LFW's file has them.
+    #[param(default = 10, range = 2..=1000)]
+    pub folds: usize,
+    /// False accept rates to tell the true accept rate at.
+    #[param(default = vec![1e-1, 1e-2, 1e-3, 1e-4], range = 0.0..=1.0)]
+    pub false_accept_rates: Vec<f64>,
+}
+
+/// One pair.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pair {
+    /// Number in the data set.
+    at: usize,
+    /// How alike: a pair is taken for the same from a threshold on.
+    score: f64,
+    same: bool,
+}
+
+/// What one part of the cross-validation ended in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoldAccuracy {
+    /// The best threshold on all other parts; infinite where it is best to take no pair for the same.
+    pub threshold: f64,
+    /// Share of the part's pairs that it tells right.
+    pub accuracy: f64,
+}
+
+/// Collects scores of pairs: 24 bytes a pair.
+#[derive(Debug, Clone, Default)]
+pub struct Verification {
+    params: VerificationParams,
+    pairs: Vec<Pair>,
+}
+
+impl Verification {
+    /// Counts pair number `at` of the data set; the higher the score, the more alike.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a score that is NaN or infinite.
+    pub fn add(&mut self, at: usize, same: bool, score: f64) -> Result<()> {
+        if !score.is_finite() {
+            return Err(Error::invalid_input(format!(
+                "score {score} of pair {at} is not finite; give numbers"
+            )));
+        }
+        self.pairs.push(Pair { at, score, same });
+        Ok(())
+    }
+
+    /// The receiver operating characteristic.
+    pub fn curve(&self) -> RocCurve {
+        RocCurve::new(self.pairs.iter().map(|pair| (pair.score, pair.same)).collect())
+    }
+
+    /// Accuracy on each part with the threshold that is best on the other parts (Huang et al., Labeled Faces in the
+    /// Wild, 2007). Parts are consecutive pairs by number, the first ones one longer where they do not come out even
+    /// (scikit-learn's `KFold`). A threshold is one of the scores of the other parts, or infinite; of equally good ones
+    /// the highest. `None` for fewer pairs than parts.
+    pub fn fold_accuracies(&self) -> Option<Vec<FoldAccuracy>> {
+        let (count, folds) = (self.pairs.len(), self.params.folds);
+        let mut pairs = self.pairs.clone();
+        pairs.sort_by_key(|pair| pair.at);
+        let longer = count % folds * (count / folds + 1);
+        let fold_of = |place: usize| match place < longer {
+            true => place / (count / folds + 1),
+            false => count % folds + (place - longer) / (count / folds),
+        };
+        if count < folds {
+            return None;
+        }
+        let mut ranked: Vec<(usize, Pair)> =
+            pairs.into_iter().enumerate().map(|(place, pair)| (fold_of(place), pair)).collect();
+        ranked.sort_by(|(_, one), (_, other)| other.score.total_cmp(&one.score));
+        Some((0..folds).map(|fold| accuracy_of_fold(&ranked, fold)).collect())
+    }
+}
+
+/// `ranked`: fold and pair, highest score first.
+fn accuracy_of_fold(ranked: &[(usize, Pair)], fold: usize) -> FoldAccuracy {
+    let (mut right, mut best) = (0_i64, 0_i64);
+    let mut threshold = f64::INFINITY;
+    for tied in ranked.chunk_by(|(_, one), (_, other)| one.score == other.score) {
+        // Taking them for the same gains the same ones and loses the others.
+        let gain = |(_, pair): &(usize, Pair)| if pair.same { 1 } else { -1 };
+        right += tied.iter().filter(|(part, _)| *part != fold).map(gain).sum::<i64>();
+        if right > best {
+            (best, threshold) = (right, tied[0].1.score);
+        }
+    }
+    let tested = ranked.iter().filter(|(part, _)| *part == fold).map(|(_, pair)| pair);
+    let (mut hits, mut count) = (0, 0);
+    for pair in tested {
+        hits += u32::from((pair.score >= threshold) == pair.same);
+        count += 1;
+    }
+    FoldAccuracy { threshold, accuracy: f64::from(hits) / f64::from(count.max(1)) }
+}
+
+impl RocCurve {
+    /// The point of the highest true accept rate whose false accept rate is at most `rate`. There is no interpolation:
+    /// with fewer than `1 / rate` negatives that is a point without any false accept. `None` without positives or
+    /// negatives.
+    pub fn at_false_accept_rate(&self, rate: f64) -> Option<RocPoint> {
+        let allowed = |point: &&RocPoint| self.rates(point).is_some_and(|[accepted, _]| accepted <= rate);
+        self.points().iter().rev().find(allowed).copied()
+    }
+
+    /// The rate at which false accepts and false rejects are equally frequent, on the straight line between the two
+    /// points around it; `None` without positives or negatives.
+    pub fn equal_error_rate(&self) -> Option<f64> {
+        let rates = self.points().iter().map(|point| self.rates(point)).collect::<Option<Vec<_>>>()?;
+        let excess = |[accepted, found]: [f64; 2]| accepted - (1.0 - found);
+        let crossed = rates.iter().position(|point| excess(*point) >= 0.0)?;
+        let (before, after) = (rates[crossed.max(1) - 1], rates[crossed]);
+        let share = excess(before) / (excess(before) - excess(after));
+        Some(before[0] + share * (after[0] - before[0]))
+    }
+
+    /// The highest share of right answers that one threshold reaches, with its point, the highest of equally good ones;
+    /// `None` without samples.
+    pub fn best_accuracy(&self) -> Option<(RocPoint, f64)> {
+        let right = |point: &RocPoint| point.true_positives + (self.negatives() - point.false_positives);
+        let count = self.positives() + self.negatives();
+        let best = self.points().iter().rev().max_by_key(|point| right(point))?;
+        (count > 0).then(|| (*best, right(best) as f64 / count as f64))
+    }
+}
+
+/// A prediction's score is its confidence, whatever its class; truth is class 1 for the same, another for different.
+impl Metric for Verification {
+    const NAME: &'static str = "verification";
+    const ABOUT: &'static str = "accuracy by cross-validation as LFW, ROC, TAR at FAR and EER of pairs";
+    type Params = VerificationParams;
+    type Prediction = Category;
+    type Truth = Category;
+
+    fn new(params: &VerificationParams) -> Result<Self> {
+        Ok(Self { params: params.clone(), pairs: Vec::new() })
+    }
+
+    fn update(&mut self, at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
+        let Some(score) = prediction.confidence else {
+            return Err(Error::invalid_input(format!(
+                "pair {at} has no confidence; give how alike its two sides are"
+            )));
+        };
+        let (score, same) = (f64::from(score), truth.class == 1);
+        self.add(at, same, score)?;
+        Ok((if same { score } else { 1.0 - score }).clamp(0.0, 1.0))
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.pairs.extend(other.pairs);
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("accuracy");
+        let curve = self.curve();
+        let mut set = |key: String, value: Option<f64>| {
+            if let Some(value) = value {
+                report.statistics.set(key, value);
+            }
+        };
+        set("same".into(), Some(curve.positives() as f64));
+        set("different".into(), Some(curve.negatives() as f64));
+        set("roc_auc".into(), curve.area());
+        set("equal_error_rate".into(), curve.equal_error_rate());
+        for rate in &self.params.false_accept_rates {
+            let point = curve.at_false_accept_rate(*rate);
+            let accepted = point.and_then(|point| curve.rates(&point)).map(|[_, found]| found);
+            set(format!("tar_at_far_{rate:e}"), accepted);
+        }
+        if let Some((point, accuracy)) = curve.best_accuracy() {
+            set("best_accuracy".into(), Some(accuracy));
+            set("best_threshold".into(), Some(point.threshold));
+        }
+        if let Some(folds) = self.fold_accuracies() {
+            let count = folds.len() as f64;
+            let mean = folds.iter().map(|fold| fold.accuracy).sum::<f64>() / count;
+            let spread = folds.iter().map(|fold| (fold.accuracy - mean).powi(2)).sum::<f64>();
+            set("accuracy".into(), Some(mean));
+            set("accuracy_standard_error".into(), Some((spread / (count - 1.0) / count).sqrt()));
+            report.tables.push(table_of_folds(&folds));
+        }
+        report.figures.extend(curve.figure());
+        report
+    }
+}
+
+fn table_of_folds(folds: &[FoldAccuracy]) -> Table {
+    let finite = |number: f64| Some(number).filter(|number| number.is_finite());
+    let row = |(at, fold): (usize, &FoldAccuracy)| {
+        ((at + 1).to_string(), vec![Some(fold.accuracy), finite(fold.threshold)])
+    };
+    Table {
+        name: "fold".to_owned(),
+        columns: ["accuracy", "threshold"].map(str::to_owned).into(),
+        rows: folds.iter().enumerate().map(row).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests;
