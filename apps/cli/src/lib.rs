@@ -1,6 +1,7 @@
 //! The `opendr` command: it knows types, never learners. A library, so that the Python package has the command too.
 
 mod command;
+mod dataset_flags;
 mod exit;
 mod learner_flags;
 mod loading;

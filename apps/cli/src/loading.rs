@@ -8,6 +8,11 @@ use opendr::params::ParamMap;
 use opendr::zoo::{Zoo, ZooOptions};
 use opendr::{Device, Progress, Result, inference};
 
+/// Learners that work at once; each holds a model.
+const MAX_WORKERS: usize = 4;
+/// With fewer samples for each, loading one more learner takes longer than it spares.
+const SAMPLES_A_WORKER: u64 = 8;
+
 /// The id of the argument that names the learner.
 pub const LEARNER: &str = "learner";
 
@@ -112,4 +117,30 @@ pub fn load(
     };
     learner.load(&path)?;
     Ok(learner)
+}
+
+/// How many learners work on `samples` that have nothing to do with each other. On a processor, side by side uses the
+/// cores better than several threads on one sample do.
+///
+/// # Errors
+/// `InvalidParam` for a device or a number of threads that there is none of.
+pub fn how_many(matches: &ArgMatches, samples: Option<u64>) -> Result<usize> {
+    if inference::device(device(matches)?)? != Device::Cpu {
+        return Ok(1);
+    }
+    let worth = samples.unwrap_or(0) / SAMPLES_A_WORKER;
+    let most = inference::default_threads()?.min(MAX_WORKERS);
+    Ok(usize::try_from(worth).unwrap_or(most).clamp(1, most))
+}
+
+/// `count` loaded learners that share the threads.
+///
+/// # Errors
+/// As `load`.
+pub fn side_by_side(
+    count: usize,
+    load: impl Fn() -> Result<Box<dyn AnyLearner>>,
+) -> Result<Vec<Box<dyn AnyLearner>>> {
+    let threads = (inference::default_threads()? / count).max(1);
+    (0..count).map(|_| inference::with_threads(threads, &load)).collect()
 }

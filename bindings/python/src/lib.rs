@@ -8,9 +8,11 @@ mod array;
 mod bar;
 mod command;
 mod convert;
+mod dataset;
 mod datum;
 mod error;
 mod handle;
+mod metric;
 mod param;
 mod pixels;
 mod plugin;
@@ -29,11 +31,15 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<handle::Handle>()?;
     module.add_class::<handle::Stream>()?;
+    module.add_class::<dataset::Dataset>()?;
+    module.add_class::<metric::Metric>()?;
     module.add_class::<pixels::Pixels>()?;
     module.add_class::<array::NativeArray>()?;
     module.add_class::<source::Source>()?;
     for function in [
         wrap_pyfunction!(registry::entries, module)?,
+        wrap_pyfunction!(dataset::formats, module)?,
+        wrap_pyfunction!(metric::metrics, module)?,
         wrap_pyfunction!(plugin::register, module)?,
         wrap_pyfunction!(plugin::check_learner, module)?,
         wrap_pyfunction!(command::main, module)?,

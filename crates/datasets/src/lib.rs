@@ -5,6 +5,7 @@
 
 mod any;
 mod check;
+mod contact_sheet;
 mod format;
 mod problems;
 mod registry;
@@ -12,6 +13,7 @@ mod stats;
 
 pub use any::{FormatEntry, Recognition};
 pub use check::check;
+pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use problems::{Place, Problem, Problems};
 pub use registry::{find, formats, open, recognise};

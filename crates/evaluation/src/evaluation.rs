@@ -1,5 +1,6 @@
 //! A learner over a data set.
 
+use std::fs;
 use std::path::Path;
 use std::time::Instant;
 
@@ -7,7 +8,7 @@ use opendr_datasets::{Problem, Problems};
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{AnyLearner, Port, Ports};
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Error, Progress, Result, Silent, Unit, Value, map_in_order};
+use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value, map_in_order};
 use opendr_metrics::{AnyMetric, MetricEntry};
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,8 @@ use crate::{ClassMap, Outcome};
 
 /// The worst samples that are listed.
 const WORST: usize = 24;
+/// The file of the answers.
+const JOURNAL: &str = "predictions.jsonl";
 
 /// What is evaluated: journals and outcomes name it.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -40,8 +43,9 @@ pub struct Evaluation<'a> {
     pub metric: &'static MetricEntry,
     /// The parameters of the metric.
     pub metric_params: ParamMap,
-    /// Where every answer is written as it comes; an evaluation that was broken off goes on from it.
-    pub journal: Option<&'a Path>,
+    /// The folder where every answer is written as it comes, and in the end the report and its pictures; an evaluation
+    /// that was broken off goes on from there.
+    pub folder: Option<&'a Path>,
     /// What is broken is left out and listed, or ends the evaluation.
     pub problems: &'a Problems,
     /// To whom to report; asked whether to stop.
@@ -49,14 +53,14 @@ pub struct Evaluation<'a> {
 }
 
 impl<'a> Evaluation<'a> {
-    /// A silent evaluation without a journal.
+    /// A silent evaluation that writes nothing.
     pub fn new(subject: Subject, metric: &'static MetricEntry, problems: &'a Problems) -> Self {
         Self {
             subject,
             dataset: String::new(),
             metric,
             metric_params: ParamMap::new(),
-            journal: None,
+            folder: None,
             problems,
             progress: &Silent,
         }
@@ -92,7 +96,7 @@ impl<'a> Evaluation<'a> {
             self.resume(&mut tally).and_then(|journal| self.answer(learners, ports, &mut tally, journal));
         self.progress.end();
         done?;
-        Ok(Outcome {
+        let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
             metric: self.metric.name.to_owned(),
@@ -104,12 +108,19 @@ impl<'a> Evaluation<'a> {
             report: tally.metric.finish(),
             worst: tally.worst.into_samples(),
             problems: self.problems.list(),
-        })
+            written: Vec::new(),
+        };
+        if let Some(folder) = self.folder {
+            outcome.write(dataset, folder)?;
+        }
+        Ok(outcome)
     }
 
     /// Counts what the journal tells of.
     fn resume(&self, tally: &mut Tally<'_>) -> Result<Option<Journal>> {
-        let Some(path) = self.journal else { return Ok(None) };
+        let Some(folder) = self.folder else { return Ok(None) };
+        fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
+        let path = &folder.join(JOURNAL);
         let dataset = tally.dataset;
         let names = (0..dataset.len()).map(|at| dataset.name(at));
         let heading = Heading::new(self.subject.clone(), self.dataset.clone(), names);

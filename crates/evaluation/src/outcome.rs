@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use opendr_datasets::Problem;
+use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_metrics::{Report, Table};
 use serde::Serialize;
 
 use crate::svg_from_figure;
-use crate::worst::WorstSample;
+use crate::worst::{WorstSample, worst_sheet};
 
 /// Rows of a table that are printed; all of them are in the JSON.
 const ROWS: usize = 40;
@@ -42,28 +43,32 @@ pub struct Outcome {
     /// What was left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,
+    /// The files that were written.
+    #[serde(skip)]
+    pub written: Vec<PathBuf>,
 }
 
 impl Outcome {
-    /// Writes `report.json`, and an SVG file for each figure, into a folder; what was written.
-    ///
-    /// # Errors
-    /// `Io` when a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<Vec<PathBuf>> {
+    /// Writes `report.json`, an SVG file for each figure, and a sheet of the worst samples into a folder.
+    pub(crate) fn write(&mut self, dataset: &dyn DatasetIterator, folder: &Path) -> Result<()> {
         let json = serde_json::to_string_pretty(self)
             .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
-        let figures = self.report.figures.iter().map(|figure| {
+        let mut files = vec![("report.json".to_owned(), json + "\n")];
+        files.extend(self.report.figures.iter().map(|figure| {
             let (name, svg) = svg_from_figure(figure);
             (format!("{name}.svg"), svg)
-        });
-        let files = std::iter::once(("report.json".to_owned(), json + "\n")).chain(figures);
-        files
-            .map(|(name, text)| {
-                let path = folder.join(name);
-                fs::write(&path, text).context(|| format!("writing {}", path.display()))?;
-                Ok(path)
-            })
-            .collect()
+        }));
+        for (name, text) in files {
+            let path = folder.join(name);
+            fs::write(&path, text).context(|| format!("writing {}", path.display()))?;
+            self.written.push(path);
+        }
+        if let Some(sheet) = worst_sheet(&self.worst, dataset)? {
+            let path = folder.join("worst.png");
+            opendr_vision::save(&sheet, &path)?;
+            self.written.push(path);
+        }
+        Ok(())
     }
 }
 

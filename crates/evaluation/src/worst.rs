@@ -2,8 +2,17 @@
 
 use std::cmp::Ordering;
 
-use opendr_engine::Value;
+use opendr_datasets::picture_with_target;
+use opendr_engine::data::Image;
+use opendr_engine::dataset::{DatasetIterator, Sample};
+use opendr_engine::{Result, Value};
+use opendr_vision::draw;
 use serde::Serialize;
+
+/// Pictures in a row: pairs of truth and answer.
+const COLUMNS: usize = 6;
+/// Side of a picture, pixels.
+const SIDE: usize = 300;
 
 /// A sample and how good its answer was.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -45,6 +54,23 @@ impl Worst {
     pub fn into_samples(self) -> Vec<WorstSample> {
         self.samples
     }
+}
+
+/// The worst samples, each as it should be and as it was answered; `None` when they have no pictures.
+pub fn worst_sheet(worst: &[WorstSample], dataset: &dyn DatasetIterator) -> Result<Option<Image>> {
+    let mut pictures = Vec::new();
+    for WorstSample { index, name, score, prediction } in worst {
+        let sample = dataset.get(*index)?;
+        let answer = Sample { target: Some(prediction.clone()), ..sample.clone() };
+        if let (Some(truth), Some(answer)) = (picture_with_target(&sample), picture_with_target(&answer)) {
+            pictures.push((truth, name.clone()));
+            pictures.push((answer, format!("answered, {score:.2}")));
+        }
+    }
+    if pictures.is_empty() {
+        return Ok(None);
+    }
+    draw::contact_sheet(&pictures, COLUMNS, SIDE).map(Some)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::vision::{Frame, Source, SourceOptions};
-use opendr::{Device, Error, Progress, Result, Unit, ValueType, inference, map_in_order};
+use opendr::{Error, Progress, Result, Unit, ValueType, map_in_order};
 
 use crate::exit::Outcome;
 use crate::port_file::PortFile;
@@ -16,11 +16,6 @@ use crate::report::{Json, Report};
 use crate::timings::Timings;
 use crate::writer::Writer;
 use crate::{learner_flags, loading};
-
-/// Learners that work at once; each holds a model.
-const MAX_WORKERS: usize = 4;
-/// With fewer frames for each, loading one more learner takes longer than it spares.
-const FRAMES_A_WORKER: u64 = 8;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -91,7 +86,10 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
     };
-    let mut workers = workers(how_many(&job, &source, frames, matches)?, load)?;
+    let alone = job.sequence || !source.is_pictures();
+    let count = if alone { 1 } else { loading::how_many(matches, frames)? };
+    let learners = loading::side_by_side(count, load)?;
+    let mut workers: Vec<_> = learners.into_iter().map(|learner| Worker { learner, stream: None }).collect();
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
@@ -103,25 +101,6 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     told?;
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
-}
-
-/// How many learners work at once. On a processor, pictures that have nothing to do with each other are inferred side
-/// by side, which uses the cores better than several threads on one picture do.
-fn how_many(job: &Job, source: &Source, frames: Option<u64>, matches: &ArgMatches) -> Result<usize> {
-    let on_processor = inference::device(loading::device(matches)?)? == Device::Cpu;
-    if !on_processor || job.sequence || !source.is_pictures() {
-        return Ok(1);
-    }
-    let worth = frames.unwrap_or(0) / FRAMES_A_WORKER;
-    let most = inference::default_threads()?.min(MAX_WORKERS);
-    Ok(usize::try_from(worth).unwrap_or(most).clamp(1, most))
-}
-
-/// `count` loaded learners that share the threads.
-fn workers(count: usize, load: impl Fn() -> Result<Box<dyn AnyLearner>>) -> Result<Vec<Worker>> {
-    let threads = (inference::default_threads()? / count).max(1);
-    let learner = || inference::with_threads(threads, &load);
-    (0..count).map(|_| Ok(Worker { learner: learner()?, stream: None })).collect()
 }
 
 /// The port that pictures go into: the first.

@@ -1,8 +1,10 @@
 //! The commands, one file each.
 
 mod bench;
+mod data;
 mod demo;
 mod download;
+mod eval;
 mod infer;
 mod models;
 mod runtime;
@@ -22,7 +24,9 @@ Examples:
   opendr models                                     what there is
   opendr infer LEARNER street.jpg --out seen.png    run one on a picture
   opendr infer LEARNER dance.mp4 --json             ... on a video, as JSON lines
-  opendr infer LEARNER --help                       its parameters";
+  opendr infer LEARNER --help                       its parameters
+  opendr eval LEARNER coco/ --out evaluated/        how good one is
+  opendr data check coco/                           whether a data set is sound";
 
 /// The grammar. A command that runs a learner gets the flags of the one that `arguments` name.
 ///
@@ -31,6 +35,8 @@ Examples:
 pub fn grammar(arguments: &[OsString]) -> Result<Command> {
     let mut commands = [
         infer::grammar(),
+        eval::grammar(),
+        data::grammar(),
         models::grammar(),
         download::grammar(),
         bench::grammar(),
@@ -61,6 +67,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let Some((name, matches)) = matches.subcommand() else { return Ok(Outcome::Done) };
     loading::with_threads(matches, || match name {
         "infer" => infer::run(matches),
+        "eval" => eval::run(matches),
+        "data" => data::run(matches),
         "models" => models::run(matches),
         "download" => download::run(matches),
         "bench" => bench::run(matches),
@@ -114,7 +122,7 @@ mod tests {
     #[test]
     fn grammar_of_every_learner_is_sound() {
         for entry in opendr::registry().entries() {
-            for command in ["infer", "bench"] {
+            for command in ["infer", "bench", "eval"] {
                 grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();
             }
         }

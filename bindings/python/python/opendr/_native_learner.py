@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import warnings
 from collections.abc import Iterator
@@ -10,6 +11,7 @@ from typing import Any, ClassVar, NoReturn, Optional, Union
 from opendr import _opendr
 from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr.engine import data, target
+from opendr.engine.datasets import Dataset
 from opendr.engine.learners import BaseLearner, Learner
 
 PathLike = Union[str, "os.PathLike[str]"]
@@ -137,6 +139,48 @@ class NativeLearner(Learner):
         if mode == "images":
             return os.fspath(_sample(folder, verbose))
         raise ValueError(f"download has no mode {mode!r}; there are 'pretrained' and 'images'")
+
+    def eval(
+        self,
+        dataset: Dataset,
+        *,
+        metric: Optional[str] = None,
+        split: Optional[str] = None,
+        limit: Optional[int] = None,
+        folder: Optional[PathLike] = None,
+        skip_broken: bool = False,
+        verbose: bool = False,
+        **metric_params: Any,
+    ) -> dict[str, Any]:
+        """Measures the learner on a data set.
+
+        Args:
+            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
+                several inputs). Classes are matched by name; a data set of yours names its own in a list ``classes``.
+            metric: What to measure by (``opendr.metrics.names()``); by default the task's own.
+            split: The part of an ``ExternalDataset``.
+            limit: Only the first so many samples.
+            folder: Folder for the answers, ``report.json``, figures and a sheet of the worst samples; an evaluation that
+                was broken off goes on from there.
+            skip_broken: Whether what is broken is left out and listed, instead of ending it.
+            verbose: Whether to show progress and print the outcome.
+            metric_params: Parameters of the metric.
+
+        Returns:
+            The numbers by name (``"map"``, ``"map50"``, ...; docs/metrics.md), and under ``"report"`` all there is:
+            tables, figures, the worst samples, what was left out.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded, or the data set is not there.
+            ValueError: Data set, learner and metric do not fit together, or a sample is broken.
+        """
+        place = None if folder is None else os.fspath(folder)
+        options = (split, limit, place, skip_broken, verbose)
+        report, text = self._handle.eval(dataset, metric, metric_params, *options)
+        if verbose:
+            print(text, end="")
+        outcome = json.loads(report)
+        return {**outcome.get("scalars", {}), "report": outcome}
 
     def reset(self) -> None:
         """Forgets what was seen: the next input begins anew."""

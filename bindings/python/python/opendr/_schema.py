@@ -152,7 +152,11 @@ def _pose(pose: target.Pose) -> Fields:
         "confidence": pose.confidence,
         "skeleton": pose.skeleton,
     }
-    return fields if pose.id is None else {**fields, "id": pose.id}
+    if pose.id is not None:
+        fields["id"] = pose.id
+    if pose.region is not None:
+        fields["region"] = _box(pose.region)
+    return fields
 
 
 def _write_boxes(boxes: target.BoundingBoxList) -> Fields:
@@ -297,6 +301,7 @@ def _read_poses(fields: Fields) -> target.PoseList:
                 pose["confidence"],
                 id=pose.get("id"),
                 skeleton=pose["skeleton"],
+                region=_read_box(pose["region"], []) if "region" in pose else None,
                 keypoint_confidences=[point["confidence"] for point in points],
             )
         )

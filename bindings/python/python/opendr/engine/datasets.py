@@ -64,8 +64,8 @@ class ExternalDataset(Dataset):
 
     Args:
         path: Its folder or file.
-        dataset_type: Its format: ``"coco"``, ``"voc"``, ``"imagenet"``, ``"kitti"``, ``"mot"``, ...; upper and lower
-            case are the same.
+        dataset_type: Its format: ``"coco"``, ``"voc"``, ``"imagenet"``, ``"kitti"``, ``"mot"``, ... (``formats()``
+            lists them); upper and lower case are the same; ``"auto"`` recognises it.
 
     Raises:
         ValueError: One of them is no text.
@@ -97,8 +97,88 @@ class ExternalDataset(Dataset):
             raise ValueError(f"dataset_type should be a str, e.g. 'coco', not {dataset_type!r}")
         self._dataset_type = dataset_type
 
+    def open(
+        self, split: Optional[str] = None, target: Optional[type[BaseTarget]] = None, skip_broken: bool = False
+    ) -> OpenDataset:
+        """Opens it, to read its samples one by one; pictures are read when they are asked for.
+
+        Args:
+            split: The part, as the data set calls it: ``"val2017"``, ``"train"``, ...
+            target: The class of the targets that are wanted, where annotations can be read as several, e.g.
+                ``PoseList`` of COCO.
+            skip_broken: Whether what is broken is left out, and listed in ``problems``.
+
+        Raises:
+            FileNotFoundError: It is not there, or files are missing.
+            ValueError: It is of another format, or something is broken.
+        """
+        return OpenDataset(self, split, target, skip_broken)
+
     def __repr__(self) -> str:
         return f"ExternalDataset({self.path!r}, {self.dataset_type!r})"
+
+
+class OpenDataset(DatasetIterator):
+    """The samples of an :class:`ExternalDataset`; its method ``open`` makes it.
+
+    ``dataset[3]`` is a pair of datum and target; a tuple of data and the target where samples have several data.
+    """
+
+    def __init__(
+        self,
+        dataset: ExternalDataset,
+        split: Optional[str] = None,
+        target: Optional[type[BaseTarget]] = None,
+        skip_broken: bool = False,
+    ) -> None:
+        from opendr._opendr import Dataset as Native
+
+        kind = None if target is None else target.__name__
+        self._native = Native(dataset.path, dataset.dataset_type, split, kind, skip_broken)
+
+    def __getitem__(self, idx: int) -> Any:
+        data, target = self._native.get(self._index(idx))
+        return data[0] if len(data) == 1 else tuple(data), target
+
+    def __len__(self) -> int:
+        return len(self._native)
+
+    def target(self, idx: int) -> Optional[BaseTarget]:
+        """The target of sample number ``idx``; no picture is read where that can be spared."""
+        target: Optional[BaseTarget] = self._native.target(self._index(idx))
+        return target
+
+    def name(self, idx: int) -> str:
+        """What reports call sample number ``idx``: the path of its file within the data set, or its number."""
+        return self._native.name(self._index(idx))
+
+    def sequence(self, idx: int) -> Optional[int]:
+        """The number of the video or drive that the sample is a frame of; None when samples are no frames."""
+        return self._native.sequence(self._index(idx))
+
+    @property
+    def classes(self) -> list[str]:
+        """What class numbers in the targets mean."""
+        return self._native.classes
+
+    @property
+    def problems(self) -> list[str]:
+        """What was left out as broken, each with its file and line or key."""
+        return self._native.problems
+
+    def _index(self, idx: int) -> int:
+        index = whole(idx, "the number of a sample")
+        index += len(self) if index < 0 else 0
+        if not 0 <= index < len(self):
+            raise IndexError(f"there is no sample {idx} among {len(self)}")
+        return index
+
+
+def formats() -> list[dict[str, Any]]:
+    """The formats of data sets that there are: ``name``, ``aliases``, ``about``, ``layout``, ``targets``."""
+    from opendr import _opendr
+
+    return _opendr.formats()
 
 
 class PointCloudsDatasetIterator(DatasetIterator):

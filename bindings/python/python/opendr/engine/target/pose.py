@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Optional, SupportsIndex, Union
 from opendr.engine._arrays import array_of
 from opendr.engine._checks import Real, real, whole
 from opendr.engine.target.base_target import Target
+from opendr.engine.target.bounding_box import BoundingBox
 from opendr.engine.target.keypoint import Keypoint
 from opendr.engine.target.skeleton import JOINTS, skeleton_of
 from opendr.engine.target.target_list import TargetList
@@ -28,16 +29,18 @@ class Pose(Target):
         id: The person's track.
         skeleton: What the joints are: ``"opendr18"`` or ``"coco17"``; guessed from their number when left out.
         keypoint_confidences: Score of each joint, in [0, 1]; 0 when left out.
+        region: The person's box, where it is known: a ``CocoBoundingBox`` tells size and crowd, as COCO annotates
+            persons.
 
     Raises:
-        TypeError: Something is no number.
+        TypeError: Something is no number, or ``region`` no box.
         ValueError: The shape is another, a number is not finite, or there is no such skeleton.
     """
 
     #: OpenDR's names of its 18 joints; those of this pose are ``joints``.
     kpt_names: ClassVar[list[str]] = list(JOINTS["opendr18"])
     num_kpts: ClassVar[int] = 18
-    _fields: ClassVar[tuple[str, ...]] = ("data", "confidence", "id", "skeleton", "keypoint_confidences")
+    _fields: ClassVar[tuple[str, ...]] = ("data", "confidence", "id", "skeleton", "keypoint_confidences", "region")
 
     def __init__(
         self,
@@ -47,7 +50,10 @@ class Pose(Target):
         id: Optional[SupportsIndex] = None,
         skeleton: Optional[str] = None,
         keypoint_confidences: Optional[ArrayLike] = None,
+        region: Optional[BoundingBox] = None,
     ) -> None:
+        if region is not None and not isinstance(region, BoundingBox):
+            raise TypeError(f"region should be a BoundingBox, not {region!r:.100}")
         points = list(keypoints) if isinstance(keypoints, Iterable) else []
         joints = [point for point in points if isinstance(point, Keypoint)]
         if joints and len(joints) == len(points):
@@ -57,6 +63,7 @@ class Pose(Target):
         self.data = keypoints
         self.confidence = real(confidence, "confidence")
         self.id: Optional[int] = None if id is None else whole(id, "id")
+        self.region: Optional[BoundingBox] = region
         self.skeleton: str = skeleton_of(skeleton, len(self.data))
         self.keypoint_confidences = [0.0] * len(self.data) if keypoint_confidences is None else keypoint_confidences
 

@@ -1,0 +1,203 @@
+//! `opendr data`: data sets checked, converted, counted, looked at.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use opendr::dataset::{DatasetIterator, Subset};
+use opendr::datasets::{self, DatasetStats, OpenOptions, Problems, WriteOptions};
+use opendr::{Error, Progress, Result, inference};
+
+use crate::exit::Outcome;
+use crate::progress_bar::{Bar, interrupted};
+use crate::{dataset_flags, loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr data formats                                    what is read and written
+  opendr data check coco/                                every file read, what is broken listed
+  opendr data stats VOC2012/                             classes, sizes
+  opendr data view labelled/ --out sheet.png             a contact sheet
+  opendr data convert coco/ yolo/ --to yolo --split val2017";
+
+pub fn grammar() -> Command {
+    let reads = |name: &'static str, about: &'static str| {
+        Command::new(name)
+            .about(about)
+            .arg(dataset_flags::dataset())
+            .args(dataset_flags::flags())
+            .arg(loading::quiet())
+    };
+    let json = || Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print JSON");
+    let path = |name: &'static str| Arg::new(name).value_parser(value_parser!(PathBuf));
+    Command::new("data")
+        .about("Check, convert, count and look at data sets")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([
+            Command::new("formats")
+                .about("The formats that there are, and which files they want")
+                .arg(json()),
+            reads("check", "Read everything, and list what is broken").arg(json()),
+            reads("stats", "Count classes and sizes").arg(json()),
+            reads("view", "Draw a contact sheet of samples with their annotations").args([
+                path("out")
+                    .long("out")
+                    .short('o')
+                    .required(true)
+                    .value_name("PICTURE")
+                    .help("The file to write"),
+                Arg::new("count")
+                    .long("count")
+                    .default_value("24")
+                    .value_parser(value_parser!(u64).range(1..=400))
+                    .value_name("N")
+                    .help("How many samples, evenly over the data set"),
+            ]),
+            reads("convert", "Write a data set in another format").args([
+                path("output").required(true).value_name("OUTPUT").help("The folder to write into"),
+                Arg::new("to").long("to").required(true).value_name("FORMAT").help("The format to write"),
+                Arg::new("as")
+                    .long("as")
+                    .value_name("NAME")
+                    .help("What to call the part that is written: train, val2017, ..."),
+                Arg::new("link")
+                    .long("link")
+                    .action(ArgAction::SetTrue)
+                    .help("Link pictures instead of copying them, where the disk can"),
+            ]),
+        ])
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    match matches.subcommand() {
+        Some(("formats", matches)) => formats(matches),
+        Some(("check", matches)) => check(matches),
+        Some(("stats", matches)) => stats(matches),
+        Some(("view", matches)) => view(matches),
+        Some(("convert", matches)) => convert(matches),
+        _ => Ok(Outcome::Done),
+    }
+}
+
+fn formats(matches: &ArgMatches) -> Result<Outcome> {
+    if matches.get_flag("json") {
+        let formats: Vec<_> = datasets::formats()
+            .iter()
+            .map(|format| {
+                let targets: Vec<_> = format.targets.iter().map(|target| target.name()).collect();
+                serde_json::json!({
+                    "name": format.name, "aliases": format.aliases, "about": format.about,
+                    "layout": format.layout, "targets": targets,
+                })
+            })
+            .collect();
+        stdout::print(serde_json::Value::from(formats))?;
+        return Ok(Outcome::Done);
+    }
+    for format in datasets::formats() {
+        let aliases = match format.aliases {
+            [] => String::new(),
+            names => format!(" (also {})", names.join(", ")),
+        };
+        stdout::print(format_args!("{}{aliases}: {}", format.name, format.about))?;
+        format.layout.lines().try_for_each(|line| stdout::print(format_args!("    {line}")))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn open(matches: &ArgMatches, problems: &Problems) -> Result<Box<dyn DatasetIterator>> {
+    let options = OpenOptions { split: dataset_flags::split(matches), target: None };
+    datasets::open(&dataset_flags::external(matches), &options, problems)
+}
+
+fn outcome(problems: &Problems) -> Outcome {
+    if problems.count() == 0 { Outcome::Done } else { Outcome::SomeFailed }
+}
+
+fn check(matches: &ArgMatches) -> Result<Outcome> {
+    let bar = Bar::new(matches.get_flag("quiet"));
+    // Checking is there to list everything.
+    let problems = Problems::skipping();
+    let dataset = open(matches, &problems)?;
+    datasets::check(dataset.as_ref(), &problems, inference::default_threads()?, &bar)?;
+    let (samples, count) = (dataset.len(), problems.count());
+    if matches.get_flag("json") {
+        let list = problems.list();
+        stdout::print(serde_json::json!({"samples": samples, "problems": count, "list": list}))?;
+    } else {
+        dataset_flags::print_problems(&problems)?;
+        let end = if interrupted() { " so far" } else { "" };
+        stdout::print(format_args!("{samples} samples, {count} problems{end}"))?;
+    }
+    Ok(outcome(&problems))
+}
+
+fn stats(matches: &ArgMatches) -> Result<Outcome> {
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let problems = dataset_flags::problems(matches);
+    let dataset = open(matches, &problems)?;
+    let stats = DatasetStats::of(dataset.as_ref(), &problems, &bar)?;
+    if matches.get_flag("json") {
+        let json = serde_json::to_string(&stats)
+            .map_err(|error| Error::internal("the counts have no JSON form").with_source(error))?;
+        stdout::print(json)?;
+    } else {
+        stdout::print(stats.to_string().trim_end())?;
+        dataset_flags::print_problems(&problems)?;
+    }
+    Ok(outcome(&problems))
+}
+
+fn view(matches: &ArgMatches) -> Result<Outcome> {
+    let problems = dataset_flags::problems(matches);
+    let dataset = open(matches, &problems)?;
+    let wanted = matches.get_one::<u64>("count").copied().unwrap_or(1) as usize;
+    let wanted = wanted.min(dataset.len());
+    let indices = (0..wanted).map(|at| at * dataset.len() / wanted).collect();
+    let out = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
+    let sheet = datasets::contact_sheet(&Subset::new(dataset, indices)?, &problems)?;
+    opendr::vision::save(&sheet, &out)?;
+    dataset_flags::print_problems(&problems)?;
+    stdout::print(out.display())?;
+    Ok(outcome(&problems))
+}
+
+fn convert(matches: &ArgMatches) -> Result<Outcome> {
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let problems = dataset_flags::problems(matches);
+    let to = datasets::find(matches.get_one::<String>("to").map_or("", String::as_str))?;
+    let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
+    let external = dataset_flags::external(matches);
+    let options = OpenOptions { split: dataset_flags::split(matches), target: wanted(&external, to)? };
+    let dataset = datasets::open(&external, &options, &problems)?;
+    let options = WriteOptions { split: matches.get_one("as").cloned(), link: matches.get_flag("link") };
+    (to.write)(dataset.as_ref(), &output, &options, &problems, &bar)?;
+    dataset_flags::print_problems(&problems)?;
+    bar.note(&format!("{} samples written into {}", dataset.len(), output.display()));
+    Ok(outcome(&problems))
+}
+
+/// The first kind of annotation that both formats have.
+fn wanted(
+    from: &opendr::dataset::ExternalDataset,
+    to: &datasets::FormatEntry,
+) -> Result<Option<opendr::ValueType>> {
+    let from = match from.dataset_type() {
+        "" | "auto" => datasets::recognise(from.path())?,
+        name => datasets::find(name)?,
+    };
+    let both = from.targets.iter().find(|target| to.targets.contains(target));
+    both.map(|target| Some(*target)).ok_or_else(|| {
+        let names = |format: &datasets::FormatEntry| {
+            format.targets.iter().map(|target| target.name()).collect::<Vec<_>>().join(" or ")
+        };
+        Error::invalid_input(format!(
+            "{} has {}, {} holds {}; there is no way from one to the other",
+            from.name,
+            names(from),
+            to.name,
+            names(to)
+        ))
+    })
+}

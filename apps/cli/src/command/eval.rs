@@ -1,0 +1,122 @@
+//! `opendr eval`: a learner, or a file of its answers, over a data set.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use opendr::dataset::{DatasetIterator, Subset};
+use opendr::datasets::Problems;
+use opendr::evaluation::{self, Evaluation, Outcome as Evaluated, Subject};
+use opendr::metrics::{self, MetricEntry};
+use opendr::params::ParamMap;
+use opendr::{Error, Progress, Result};
+
+use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{dataset_flags, learner_flags, loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr eval LEARNER coco/ --split val2017 --out evaluated/   numbers, curves, the worst pictures
+  opendr eval LEARNER VOC2012/ --limit 500 --json              one object of JSON
+  opendr eval LEARNER/VARIANT labelled/ --format yolo --skip-broken
+  opendr eval LEARNER coco/ --metric-param use_classes=false
+
+An evaluation with --out that was broken off goes on from there when it is called again.";
+
+pub fn grammar() -> Command {
+    Command::new("eval")
+        .about("Measure a learner on a data set, by the metric of its task")
+        .arg(loading::learner())
+        .arg(dataset_flags::dataset())
+        .args(dataset_flags::flags())
+        .args([
+            Arg::new("metric").long("metric").value_name("NAME").help(format!(
+                "What to measure by; by default the task's own: {}",
+                metrics::metrics().iter().map(|entry| entry.name).collect::<Vec<_>>().join(", ")
+            )),
+            Arg::new("metric-param")
+                .long("metric-param")
+                .action(ArgAction::Append)
+                .value_name("NAME=VALUE")
+                .help("A parameter of the metric (docs/metrics.md)"),
+            Arg::new("limit")
+                .long("limit")
+                .value_parser(value_parser!(usize))
+                .value_name("N")
+                .help("Stop after the first N samples"),
+            Arg::new("out")
+                .long("out")
+                .short('o')
+                .value_parser(value_parser!(PathBuf))
+                .value_name("DIR")
+                .help("Write the answers, report.json, figures and the worst samples into this folder"),
+            Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+        ])
+        .args(loading::flags())
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
+    let entry = loading::entry(spec)?;
+    let metric = match matches.get_one::<String>("metric") {
+        Some(name) => metrics::find(name)?,
+        None => metrics::find(evaluation::metric_of(entry.spec.task)?)?,
+    };
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let problems = dataset_flags::problems(matches);
+    let external = dataset_flags::external(matches);
+    let dataset = evaluation::open_for(metric, &external, dataset_flags::split(matches), &problems)?;
+    let limit = matches.get_one("limit").copied().unwrap_or(usize::MAX);
+    let dataset = Subset::first(dataset, limit);
+    let params = learner_flags::params(entry, matches)?;
+    let evaluation = Evaluation {
+        subject: Subject {
+            learner: spec.to_owned(),
+            model: matches.get_one::<PathBuf>("model").map(|path| path.display().to_string()),
+            params: params.clone(),
+        },
+        dataset: external.path().display().to_string(),
+        metric_params: metric_params(metric, matches)?,
+        folder: matches.get_one::<PathBuf>("out").map(PathBuf::as_path),
+        progress: &bar,
+        ..Evaluation::new(Subject::default(), metric, &problems)
+    };
+    let count = loading::how_many(matches, Some(dataset.len() as u64))?;
+    let mut learners = loading::side_by_side(count, || loading::load(spec, &params, matches, &bar))?;
+    let outcome = evaluation.run(&mut learners, entry.ports, &dataset)?;
+    tell(&outcome, matches, &problems)?;
+    if !outcome.written.is_empty() {
+        let written: Vec<_> = outcome.written.iter().map(|path| path.display().to_string()).collect();
+        bar.note(&format!("written: {}", written.join(", ")));
+    }
+    Ok(if outcome.skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
+}
+
+/// The metric's parameters that the user set.
+fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<ParamMap> {
+    let given = matches.get_many::<String>("metric-param").into_iter().flatten();
+    given
+        .map(|text| {
+            let (name, value) = text.split_once('=').ok_or_else(|| {
+                Error::invalid_param(format!("--metric-param {text:?} should be NAME=VALUE"))
+            })?;
+            let field = metric.params.iter().find(|field| field.name == name).ok_or_else(|| {
+                let names: Vec<_> = metric.params.iter().map(|field| field.name).collect();
+                let metric = metric.name;
+                Error::invalid_param(format!("{metric} has no {name:?}; there are {}", names.join(", ")))
+            })?;
+            Ok((name.to_owned(), field.parse(value)?))
+        })
+        .collect()
+}
+
+fn tell(outcome: &Evaluated, matches: &ArgMatches, problems: &Problems) -> Result<()> {
+    if matches.get_flag("json") {
+        let json = serde_json::to_string(outcome)
+            .map_err(|error| Error::internal("the outcome has no JSON form").with_source(error))?;
+        return stdout::print(json);
+    }
+    stdout::print(outcome.to_string().trim_end())?;
+    dataset_flags::print_problems(problems)
+}

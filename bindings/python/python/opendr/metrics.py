@@ -1,0 +1,82 @@
+"""The field's metrics, beside any learner or none.
+
+    from opendr.metrics import Metric
+
+    metric = Metric("coco_detection")
+    for image, truth in dataset:
+        metric.update(detector.infer(image), truth)
+    print(metric.result()["map50"])
+
+Numbers equal those of the reference tools that docs/metrics.md names.
+"""
+
+from __future__ import annotations
+
+import json
+from typing import Any, Optional
+
+from opendr import _opendr
+from opendr.engine.target import BaseTarget
+
+__all__ = ["Metric", "names", "tables"]
+
+
+def names() -> list[str]:
+    """The metrics that there are."""
+    return [table["name"] for table in _opendr.metrics()]
+
+
+def tables() -> list[dict[str, Any]]:
+    """What there is to know of each: ``name``, ``about``, the classes of ``prediction`` and ``truth``, and ``params``,
+    each with its default and what it is."""
+    return _opendr.metrics()
+
+
+class Metric:
+    """An accumulator: answers and truths go in one after the other, numbers come out at any time.
+
+    Args:
+        name: One of ``names()``.
+        params: Its parameters.
+
+    Raises:
+        FileNotFoundError: There is no such metric.
+        ValueError: A parameter is unknown or out of range.
+    """
+
+    def __init__(self, name: str, **params: Any) -> None:
+        self._metric = _opendr.Metric(name, params)
+        self.name: str = name
+
+    def update(self, prediction: BaseTarget, truth: BaseTarget, *, at: Optional[int] = None) -> float:
+        """Counts the answer to one sample.
+
+        Args:
+            prediction: What the learner answered.
+            truth: What it should have answered.
+            at: The number of the sample, which settles ties; by default one after the other.
+
+        Returns:
+            How good the answer is: 0 (worst) to 1.
+
+        Raises:
+            ValueError: They are of other types than the metric's, or cannot be counted; nothing is counted then.
+        """
+        return self._metric.update(prediction, truth, at)
+
+    def end_sequence(self) -> None:
+        """Tells that the video or drive is over; what follows has nothing to do with it."""
+        self._metric.end_sequence()
+
+    def merge(self, other: Metric) -> None:
+        """Counts what ``other`` counted, which begins anew.
+
+        Raises:
+            ValueError: It is another metric.
+        """
+        self._metric.merge(other._metric)
+
+    def result(self) -> dict[str, Any]:
+        """The numbers by name, and under ``"report"`` all there is: tables and figures."""
+        report = json.loads(self._metric.finish())
+        return {**report.get("scalars", {}), "report": report}

@@ -1,0 +1,213 @@
+//! Data sets for Python, and data sets of Python for the toolkit.
+
+use std::path::PathBuf;
+
+use opendr::dataset::{Dataset as AnyDataset, DatasetIterator, ExternalDataset, Sample, Subset};
+use opendr::datasets::{OpenOptions, Problems};
+use opendr::evaluation::open_for;
+use opendr::learner::Port;
+use opendr::metrics::MetricEntry;
+use opendr::target::Classes;
+use opendr::{Error, Result, ValueType, datasets};
+use pyo3::exceptions::{PyIndexError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PyTuple};
+
+use crate::datum::{python_from_value, value_from_python};
+use crate::error::{ToPython, error_from_exception};
+use crate::target::target_from_python;
+
+type DataAndTarget<'py> = (Vec<Bound<'py, PyAny>>, Option<Bound<'py, PyAny>>);
+
+/// A data set on disk, open.
+#[pyclass(frozen, module = "opendr._opendr")]
+pub struct Dataset {
+    dataset: Box<dyn DatasetIterator>,
+    problems: Problems,
+}
+
+#[pymethods]
+impl Dataset {
+    #[new]
+    #[pyo3(signature = (path, dataset_type, split=None, target=None, skip_broken=false))]
+    fn new(
+        py: Python<'_>,
+        path: PathBuf,
+        dataset_type: &str,
+        split: Option<String>,
+        target: Option<&str>,
+        skip_broken: bool,
+    ) -> PyResult<Self> {
+        let problems = problems(skip_broken);
+        let target = target.map(target_type).transpose().to_python(py)?;
+        let external = ExternalDataset::new(path, dataset_type);
+        let options = OpenOptions { split, target };
+        let dataset = py.detach(|| datasets::open(&external, &options, &problems)).to_python(py)?;
+        Ok(Self { dataset, problems })
+    }
+
+    fn __len__(&self) -> usize {
+        self.dataset.len()
+    }
+
+    /// The data of a sample, and its target or `None`.
+    fn get<'py>(&self, py: Python<'py>, index: usize) -> PyResult<DataAndTarget<'py>> {
+        self.check(index)?;
+        let sample = py.detach(|| self.dataset.get(index)).to_python(py)?;
+        let data = sample.data.iter().map(|value| python_from_value(py, value.into()));
+        let target = sample.target.as_ref().map(|value| python_from_value(py, value.into()));
+        Ok((data.collect::<PyResult<_>>()?, target.transpose()?))
+    }
+
+    /// The target of a sample or `None`; no picture is read where that can be spared.
+    fn target<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.check(index)?;
+        let target = py.detach(|| self.dataset.target(index)).to_python(py)?;
+        target.as_ref().map(|value| python_from_value(py, value.into())).transpose()
+    }
+
+    /// What reports call a sample.
+    fn name(&self, index: usize) -> PyResult<String> {
+        self.check(index)?;
+        Ok(self.dataset.name(index))
+    }
+
+    /// The number of the video or drive that a sample is a frame of, or `None`.
+    fn sequence(&self, index: usize) -> PyResult<Option<usize>> {
+        self.check(index)?;
+        Ok(self.dataset.sequence(index))
+    }
+
+    #[getter]
+    fn classes(&self) -> Vec<String> {
+        self.dataset.classes().iter().map(str::to_owned).collect()
+    }
+
+    /// What was left out as broken.
+    #[getter]
+    fn problems(&self) -> Vec<String> {
+        self.problems.list().iter().map(ToString::to_string).collect()
+    }
+}
+
+impl Dataset {
+    fn check(&self, index: usize) -> PyResult<()> {
+        let count = self.dataset.len();
+        let missing = || PyIndexError::new_err(format!("there is no sample {index} among {count}"));
+        (index < count).then_some(()).ok_or_else(missing)
+    }
+}
+
+/// The formats that there are.
+#[pyfunction]
+pub fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    let tables = datasets::formats().iter().map(|format| {
+        let table = PyDict::new(py);
+        table.set_item("name", format.name)?;
+        table.set_item("aliases", format.aliases.to_vec())?;
+        table.set_item("about", format.about)?;
+        table.set_item("layout", format.layout)?;
+        table.set_item("targets", format.targets.iter().map(|target| target.name()).collect::<Vec<_>>())?;
+        Ok(table)
+    });
+    PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)
+}
+
+/// What is to be done with what is broken.
+pub fn problems(skip_broken: bool) -> Problems {
+    if skip_broken { Problems::skipping() } else { Problems::strict() }
+}
+
+fn target_type(name: &str) -> Result<ValueType> {
+    let mut targets = ValueType::ALL.iter().copied().filter(|value_type| value_type.is_target());
+    targets.find(|target| target.name() == name).ok_or_else(|| {
+        Error::invalid_param(format!("target = {name:?} is no target type, e.g. \"BoundingBoxList\""))
+    })
+}
+
+/// The data set that `eval` is given: an `ExternalDataset`, opened as the metric needs it, or any data set of Python.
+pub fn dataset_for_eval(
+    object: &Bound<'_, PyAny>,
+    metric: &MetricEntry,
+    ports: &'static [Port],
+    split: Option<String>,
+    limit: Option<usize>,
+    problems: &Problems,
+) -> PyResult<Subset<Box<dyn DatasetIterator>>> {
+    let py = object.py();
+    let external = py.import("opendr.engine.datasets")?.getattr("ExternalDataset")?;
+    let dataset: Box<dyn DatasetIterator> = if object.is_instance(&external)? {
+        let path: PathBuf = object.getattr("path")?.extract()?;
+        let dataset_type: String = object.getattr("dataset_type")?.extract()?;
+        let external = ExternalDataset::new(path, dataset_type);
+        py.detach(|| open_for(metric, &external, split, problems)).to_python(py)?
+    } else {
+        Box::new(PythonDataset::new(object, ports)?)
+    };
+    Ok(Subset::first(dataset, limit.unwrap_or(usize::MAX)))
+}
+
+/// A `DatasetIterator` of Python: `len`, and `[index]` for a pair of datum and target.
+struct PythonDataset {
+    object: Py<PyAny>,
+    ports: &'static [Port],
+    length: usize,
+    classes: Classes,
+}
+
+impl PythonDataset {
+    fn new(object: &Bound<'_, PyAny>, ports: &'static [Port]) -> PyResult<Self> {
+        if !object.hasattr("__getitem__")? || !object.hasattr("__len__")? {
+            let class = object.get_type().name()?.to_string();
+            return Err(PyTypeError::new_err(format!(
+                "dataset should be an ExternalDataset or a DatasetIterator, not {class}"
+            )));
+        }
+        let classes =
+            object.getattr("classes").ok().and_then(|classes| classes.extract::<Vec<String>>().ok());
+        let classes = classes.unwrap_or_default().into_iter().collect();
+        Ok(Self { object: object.clone().unbind(), ports, length: object.len()?, classes })
+    }
+
+    fn read(&self, py: Python<'_>, index: usize) -> PyResult<Sample> {
+        let pair = self.object.bind(py).get_item(index)?;
+        let (data, target): (Bound<'_, PyAny>, Bound<'_, PyAny>) = pair.extract().map_err(|_| {
+            PyTypeError::new_err(format!(
+                "sample {index} should be a pair of datum and target, not {pair:.200}"
+            ))
+        })?;
+        // A sample of a learner with several inputs has a tuple of data.
+        let data = match data.cast::<PyTuple>() {
+            Ok(several) => several.iter().collect(),
+            Err(_) => vec![data],
+        };
+        let values =
+            self.ports.iter().zip(&data).map(|(port, datum)| value_from_python(datum, port.value_type));
+        let target = if target.is_none() { None } else { Some(target_from_python(&target)?) };
+        Ok(Sample { data: values.collect::<PyResult<_>>()?, target })
+    }
+}
+
+impl AnyDataset for PythonDataset {}
+
+impl DatasetIterator for PythonDataset {
+    fn len(&self) -> usize {
+        self.length
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        Python::attach(|py| self.read(py, index).map_err(|raised| error_from_exception(py, raised)))
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+}
+
+/// What outcomes call a data set: its path, or its class.
+pub fn dataset_name(object: &Bound<'_, PyAny>) -> PyResult<String> {
+    match object.getattr("path").and_then(|path| path.extract::<PathBuf>()) {
+        Ok(path) => Ok(path.display().to_string()),
+        Err(_) => Ok(object.get_type().name()?.to_string()),
+    }
+}

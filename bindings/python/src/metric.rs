@@ -1,0 +1,114 @@
+//! Metrics for Python.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use opendr::Error;
+use opendr::metrics::{AnyMetric, MetricEntry, find};
+use opendr::params::ParamMap;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::error::ToPython;
+use crate::param::{params_from_python, python_from_param};
+use crate::target::target_from_python;
+
+/// An accumulator. Calls from several threads wait for each other.
+#[pyclass(frozen, module = "opendr._opendr")]
+pub struct Metric {
+    entry: &'static MetricEntry,
+    params: ParamMap,
+    state: Mutex<State>,
+}
+
+struct State {
+    metric: Box<dyn AnyMetric>,
+    /// The number of the next sample.
+    next: usize,
+}
+
+#[pymethods]
+impl Metric {
+    #[new]
+    fn new(py: Python<'_>, name: &str, params: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let params = params_from_python(params)?;
+        let made = find(name).and_then(|entry| Ok((entry, entry.make(&params)?)));
+        let (entry, metric) = made.to_python(py)?;
+        Ok(Self { entry, params, state: Mutex::new(State { metric, next: 0 }) })
+    }
+
+    /// Counts the answer to one sample; how good it is, 0 to 1.
+    #[pyo3(signature = (prediction, truth, at=None))]
+    fn update(
+        &self,
+        py: Python<'_>,
+        prediction: &Bound<'_, PyAny>,
+        truth: &Bound<'_, PyAny>,
+        at: Option<usize>,
+    ) -> PyResult<f64> {
+        let (prediction, truth) = (target_from_python(prediction)?, target_from_python(truth)?);
+        let counted = py.detach(|| {
+            let mut state = self.lock();
+            let at = at.unwrap_or(state.next);
+            let score = state.metric.update(at, (&prediction).into(), (&truth).into())?;
+            state.next = state.next.max(at + 1);
+            Ok(score)
+        });
+        counted.to_python(py)
+    }
+
+    /// The video or drive is over.
+    fn end_sequence(&self) {
+        self.lock().metric.end_sequence();
+    }
+
+    /// Counts what another of the same kind counted, which is empty then.
+    fn merge(&self, py: Python<'_>, other: &Self) -> PyResult<()> {
+        if std::ptr::eq(self, other) {
+            return Err(Error::invalid_input("a metric cannot be merged with itself")).to_python(py);
+        }
+        let merged = py.detach(|| {
+            // Not both locked at once: two threads may merge two metrics crosswise.
+            let empty = other.entry.make(&other.params)?;
+            let (counted, next) = {
+                let mut state = other.lock();
+                let next = std::mem::take(&mut state.next);
+                (std::mem::replace(&mut state.metric, empty), next)
+            };
+            let mut state = self.lock();
+            state.next = state.next.max(next);
+            state.metric.merge(counted)
+        });
+        merged.to_python(py)
+    }
+
+    /// The report as JSON.
+    fn finish(&self, py: Python<'_>) -> PyResult<String> {
+        let json = py.detach(|| serde_json::to_string(&self.lock().metric.finish()));
+        json.map_err(|error| Error::internal("the report has no JSON form").with_source(error)).to_python(py)
+    }
+}
+
+impl Metric {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The metrics that there are.
+#[pyfunction]
+pub fn metrics(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
+    let tables = opendr::metrics::metrics().iter().map(|entry| {
+        let table = PyDict::new(py);
+        table.set_item("name", entry.name)?;
+        table.set_item("about", entry.about)?;
+        table.set_item("prediction", entry.prediction.name())?;
+        table.set_item("truth", entry.truth.name())?;
+        let params = PyDict::new(py);
+        for field in entry.params {
+            params.set_item(field.name, (python_from_param(py, &field.default.value())?, field.doc))?;
+        }
+        table.set_item("params", params)?;
+        Ok(table)
+    });
+    PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)
+}
