@@ -18,6 +18,7 @@ mod statistics;
 mod task;
 mod value;
 
+pub mod assignment;
 pub mod data;
 pub mod dataset;
 pub mod environment;
