@@ -5,8 +5,6 @@
 //! Transactions on Aerospace and Electronic Systems 52(4), 2016. Among equally good pairings it picks the one that
 //! SciPy's `linear_sum_assignment` picks, because published tracking scores depend on that choice.
 
-use crate::{Error, Result};
-
 /// Beyond this magnitude a cost forbids its pair; sums of costs below it stay finite.
 const LARGEST_COST: f64 = 1e200;
 
@@ -16,29 +14,21 @@ fn is_allowed(cost: f64) -> bool {
 
 /// The cheapest pairs `(row, column)` in rising order of rows; no row and no column occurs twice.
 ///
-/// `costs` is `[rows, columns]`, last axis fastest. As many pairs are made as can be, and among all ways of making
-/// that many the cheapest is chosen. A pair whose cost is infinite, NaN or beyond 1e200 in magnitude is never made.
-/// Time grows with `min(rows, columns)² · max(rows, columns)`.
-///
-/// # Errors
-/// [`InvalidInput`](crate::ErrorKind::InvalidInput) when there are not `rows · columns` costs.
+/// `costs` holds rows of `columns` costs each, one after the other. As many pairs are made as can be, and among all
+/// ways of making that many the cheapest is chosen. A pair whose cost is infinite, NaN or beyond 1e200 in magnitude is
+/// never made. Time grows with `min(rows, columns)² · max(rows, columns)`.
 ///
 /// ```
 /// use opendr_engine::assignment::cheapest_pairs;
 ///
 /// let costs = [4.0, 1.0, f64::INFINITY, 2.0, 0.0, 5.0];
-/// assert_eq!(cheapest_pairs(&costs, 2, 3)?, [(0, 1), (1, 0)]);
-/// # Ok::<(), opendr_engine::Error>(())
+/// assert_eq!(cheapest_pairs(&costs, 3), [(0, 1), (1, 0)]);
 /// ```
-pub fn cheapest_pairs(costs: &[f64], rows: usize, columns: usize) -> Result<Vec<(usize, usize)>> {
-    if rows.checked_mul(columns) != Some(costs.len()) {
-        return Err(Error::invalid_input(format!(
-            "{} costs do not make {rows} rows of {columns}; give one cost for every pair",
-            costs.len()
-        )));
-    }
+pub fn cheapest_pairs(costs: &[f64], columns: usize) -> Vec<(usize, usize)> {
+    let rows = costs.len().checked_div(columns).unwrap_or(0);
+    debug_assert_eq!(costs.len(), rows * columns, "the last row is not whole");
     let allowed = costs.iter().filter(|cost| is_allowed(**cost)).map(|cost| cost.abs());
-    let Some(largest) = allowed.reduce(f64::max) else { return Ok(Vec::new()) };
+    let Some(largest) = allowed.reduce(f64::max) else { return Vec::new() };
 
     // One forbidden pair costs more than any set of allowed ones can save.
     let (short, long) = (rows.min(columns), rows.max(columns));
@@ -64,7 +54,7 @@ pub fn cheapest_pairs(costs: &[f64], rows: usize, columns: usize) -> Result<Vec<
         .map(|(row, column)| if is_tall { (column, row) } else { (row, column) })
         .collect();
     pairs.sort_unstable();
-    Ok(pairs)
+    pairs
 }
 
 /// A cheapest pairing of the rows added so far, with the prices (dual variables) that prove it.

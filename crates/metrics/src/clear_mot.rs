@@ -1,0 +1,297 @@
+//! CLEAR MOT: MOTA, MOTP, switches, fragmentations.
+//!
+//! K. Bernardin, R. Stiefelhagen, "Evaluating multiple object tracking performance: the CLEAR MOT metrics", EURASIP
+//! Journal on Image and Video Processing 2008; Y. Li, C. Huang, R. Nevatia, CVPR 2009 (mostly tracked and lost).
+//! Counts equal those of py-motmetrics 1.4.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use opendr_engine::Result;
+use opendr_engine::assignment::cheapest_pairs;
+use opendr_engine::params::Params;
+use opendr_engine::target::TrackingAnnotationList;
+
+use crate::{Metric, MotRules, Report, TrackingFrame};
+
+/// What [`ClearMot`] and [`Identity`](crate::Identity) are set by.
+#[derive(Debug, Clone, Params)]
+pub struct TrackMatchingParams {
+    /// Boxes match from this intersection over union on.
+    #[param(default = 0.5, range = 0.0..=1.0)]
+    pub overlap: f64,
+    /// Which rows of truth and answer count: "all", or those that a MOT Challenge counts.
+    #[param(default = MotRules::All)]
+    pub rules: MotRules,
+}
+
+impl TrackMatchingParams {
+    /// The distance of a matching pair, 1 - overlap; infinite for boxes that do not match.
+    pub(crate) fn distance(&self, overlap: f64) -> f64 {
+        match 1.0 - overlap {
+            distance if distance <= 1.0 - self.overlap => distance,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// What was counted over whole sequences.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ClearMotCounts {
+    /// Pictures.
+    pub frames: u64,
+    /// True boxes.
+    pub objects: u64,
+    /// Found boxes.
+    pub predictions: u64,
+    /// Different true objects.
+    pub unique_objects: u64,
+    /// True boxes matched with the track that the object had before, or with its first.
+    pub matches: u64,
+    /// True boxes matched with another track than the object had before.
+    pub switches: u64,
+    /// Found boxes matched with another object than the track had before.
+    pub transfers: u64,
+    /// Switches to a track that had matched nothing before.
+    pub ascends: u64,
+    /// Transfers to an object that had matched nothing before.
+    pub migrates: u64,
+    /// Found boxes that match nothing.
+    pub false_positives: u64,
+    /// True boxes that match nothing.
+    pub misses: u64,
+    /// How often an object was lost and found again.
+    pub fragmentations: u64,
+    /// Objects matched in at least 80 % of their pictures.
+    pub mostly_tracked: u64,
+    /// Objects matched in 20 to 80 % of their pictures.
+    pub partially_tracked: u64,
+    /// Objects matched in less than 20 % of their pictures.
+    pub mostly_lost: u64,
+    /// Sum of 1 - intersection over union over matched boxes.
+    pub distance: f64,
+}
+
+impl ClearMotCounts {
+    /// Multiple object tracking accuracy, 1 at best; NaN without true boxes.
+    pub fn mota(&self) -> f64 {
+        match self.objects {
+            0 => f64::NAN,
+            objects => 1.0 - (self.misses + self.switches + self.false_positives) as f64 / objects as f64,
+        }
+    }
+
+    /// Multiple object tracking precision as py-motmetrics has it: the mean distance, 1 - intersection over union, of
+    /// matched boxes, 0 at best; NaN without any.
+    pub fn motp(&self) -> f64 {
+        self.distance / (self.matches + self.switches) as f64
+    }
+
+    fn add(&mut self, other: &Self) {
+        let counts = self.named_mut().into_iter().zip(other.clone().named_mut());
+        counts.for_each(|((_, sum), (_, count))| *sum += *count);
+        self.distance += other.distance;
+    }
+
+    fn named_mut(&mut self) -> [(&'static str, &mut u64); 15] {
+        [
+            ("frames", &mut self.frames),
+            ("objects", &mut self.objects),
+            ("predictions", &mut self.predictions),
+            ("unique_objects", &mut self.unique_objects),
+            ("matches", &mut self.matches),
+            ("switches", &mut self.switches),
+            ("transfers", &mut self.transfers),
+            ("ascends", &mut self.ascends),
+            ("migrates", &mut self.migrates),
+            ("false_positives", &mut self.false_positives),
+            ("misses", &mut self.misses),
+            ("fragmentations", &mut self.fragmentations),
+            ("mostly_tracked", &mut self.mostly_tracked),
+            ("partially_tracked", &mut self.partially_tracked),
+            ("mostly_lost", &mut self.mostly_lost),
+        ]
+    }
+}
+
+/// What a sequence remembers of one true object.
+#[derive(Debug, Clone, Default)]
+struct Object {
+    seen: u64,
+    tracked: u64,
+    is_lost: bool,
+    /// Its last match.
+    track: Option<i64>,
+}
+
+#[derive(Debug, Clone, Default)]
+struct Sequence {
+    objects: BTreeMap<i64, Object>,
+    /// The object of each track when it was last matched anew.
+    owners: HashMap<i64, i64>,
+    /// Tracks that have matched something.
+    known_tracks: HashSet<i64>,
+    counts: ClearMotCounts,
+}
+
+impl Sequence {
+    /// Pairs of places (true, found) of matching boxes, after what was matched before, and counts them.
+    fn count(&mut self, frame: &TrackingFrame, params: &TrackMatchingParams) -> Vec<(usize, usize)> {
+        let (truth, found) = (frame.truth(), frame.found());
+        let distances = |(row, at)| params.distance(frame.overlap(row, at));
+        let mut matched = vec![false; truth.len()];
+        let mut taken = vec![false; found.len()];
+        let mut pairs = Vec::new();
+        for (row, id) in truth.iter().enumerate() {
+            let Some(track) = self.objects.get(id).and_then(|object| object.track) else { continue };
+            let place = found.iter().position(|other| *other == track).filter(|at| !taken[*at]);
+            if let Some(at) = place.filter(|at| distances((row, *at)).is_finite()) {
+                (matched[row], taken[at]) = (true, true);
+                self.known_tracks.insert(track);
+                self.counts.matches += 1;
+                pairs.push((row, at));
+            }
+        }
+
+        let costs: Vec<_> = (0..truth.len())
+            .flat_map(|row| (0..found.len()).map(move |at| (row, at)))
+            .map(|(row, at)| if matched[row] || taken[at] { f64::INFINITY } else { distances((row, at)) })
+            .collect();
+        for (row, at) in cheapest_pairs(&costs, found.len()) {
+            self.match_anew(truth[row], found[at]);
+            (matched[row], taken[at]) = (true, true);
+            pairs.push((row, at));
+        }
+        self.counts.distance += pairs.iter().map(|pair| distances(*pair)).sum::<f64>();
+        self.counts.frames += 1;
+        self.counts.objects += truth.len() as u64;
+        self.counts.predictions += found.len() as u64;
+        self.counts.false_positives += taken.iter().filter(|taken| !**taken).count() as u64;
+        for (id, matched) in truth.iter().zip(matched) {
+            self.see(*id, matched);
+        }
+        pairs
+    }
+
+    /// An object is matched with a track that it did not have in the picture before.
+    fn match_anew(&mut self, id: i64, track: i64) {
+        let object = self.objects.entry(id).or_default();
+        let (before, is_known_object) = (object.track.replace(track), object.tracked > 0);
+        let is_known_track = !self.known_tracks.insert(track);
+        if before.is_some_and(|before| before != track) {
+            self.counts.switches += 1;
+            self.counts.ascends += u64::from(!is_known_track);
+        } else {
+            self.counts.matches += 1;
+        }
+        if self.owners.insert(track, id).is_some_and(|owner| owner != id) {
+            self.counts.transfers += 1;
+            self.counts.migrates += u64::from(!is_known_object);
+        }
+    }
+
+    fn see(&mut self, id: i64, is_matched: bool) {
+        let object = self.objects.entry(id).or_default();
+        object.seen += 1;
+        if is_matched {
+            self.counts.fragmentations += u64::from(object.is_lost && object.tracked > 0);
+            object.tracked += 1;
+        } else {
+            self.counts.misses += 1;
+        }
+        object.is_lost = !is_matched;
+    }
+
+    /// The counts, as if the sequence were over.
+    fn counts(&self) -> ClearMotCounts {
+        let mut counts = self.counts.clone();
+        counts.unique_objects = self.objects.len() as u64;
+        for object in self.objects.values() {
+            let share = object.tracked as f64 / object.seen as f64;
+            let count = match share {
+                share if share >= 0.8 => &mut counts.mostly_tracked,
+                share if share >= 0.2 => &mut counts.partially_tracked,
+                _ => &mut counts.mostly_lost,
+            };
+            *count += 1;
+        }
+        counts
+    }
+}
+
+/// CLEAR MOT over sequences of pictures.
+#[derive(Debug, Clone)]
+pub struct ClearMot {
+    params: TrackMatchingParams,
+    finished: ClearMotCounts,
+    sequence: Sequence,
+}
+
+impl ClearMot {
+    /// Counts the next picture of the sequence; the share of its boxes that match, 0 to 1.
+    pub fn count(&mut self, frame: &TrackingFrame) -> f64 {
+        let matches = self.sequence.count(frame, &self.params).len();
+        match frame.truth().len() + frame.found().len() - matches {
+            0 => 1.0,
+            boxes => matches as f64 / boxes as f64,
+        }
+    }
+
+    /// What was counted, the open sequence included.
+    pub fn counts(&self) -> ClearMotCounts {
+        let mut counts = self.finished.clone();
+        counts.add(&self.sequence.counts());
+        counts
+    }
+}
+
+impl Metric for ClearMot {
+    const NAME: &'static str = "clear_mot";
+    const ABOUT: &'static str = "MOTA, MOTP, switches and fragmentations, as py-motmetrics 1.4";
+    type Params = TrackMatchingParams;
+    type Prediction = TrackingAnnotationList;
+    type Truth = TrackingAnnotationList;
+
+    fn new(params: &TrackMatchingParams) -> Result<Self> {
+        let params = params.clone();
+        Ok(Self { params, finished: ClearMotCounts::default(), sequence: Sequence::default() })
+    }
+
+    fn update(
+        &mut self,
+        _at: usize,
+        prediction: &TrackingAnnotationList,
+        truth: &TrackingAnnotationList,
+    ) -> Result<f64> {
+        Ok(self.count(&self.params.rules.frame(prediction, truth)?))
+    }
+
+    fn end_sequence(&mut self) {
+        self.finished = self.counts();
+        self.sequence = Sequence::default();
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.end_sequence();
+        self.finished.add(&other.counts());
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("mota");
+        let mut counts = self.counts();
+        let detections = (counts.matches + counts.switches) as f64;
+        let shares = [
+            ("mota", counts.mota()),
+            ("motp", counts.motp()),
+            ("precision", detections / counts.predictions as f64),
+            ("recall", detections / counts.objects as f64),
+        ];
+        shares.into_iter().for_each(|(key, share)| report.statistics.set(key, share));
+        for (key, count) in counts.named_mut() {
+            report.statistics.set(key, *count as f64);
+        }
+        report
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,231 @@
+//! IDF1, IDP and IDR: how long tracks carry the right identity.
+//!
+//! E. Ristani et al., "Performance measures and a data set for multi-target, multi-camera tracking", ECCV workshops
+//! 2016. Equal to py-motmetrics 1.4.
+
+use std::collections::{BTreeMap, HashMap};
+
+use opendr_engine::Result;
+use opendr_engine::assignment::cheapest_pairs;
+use opendr_engine::target::TrackingAnnotationList;
+
+use crate::clear_mot::TrackMatchingParams;
+use crate::{Metric, Report, TrackingFrame};
+
+/// Boxes counted over whole sequences, every true object given the one track that fits best overall.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct IdentityCounts {
+    /// True boxes matched by the object's track.
+    pub true_positives: u64,
+    /// Found boxes that do not match the track's object.
+    pub false_positives: u64,
+    /// True boxes not matched by the object's track.
+    pub false_negatives: u64,
+}
+
+impl IdentityCounts {
+    /// Share of found boxes with the right identity; NaN without any.
+    pub fn precision(&self) -> f64 {
+        self.true_positives as f64 / (self.true_positives + self.false_positives) as f64
+    }
+
+    /// Share of true boxes with the right identity; NaN without any.
+    pub fn recall(&self) -> f64 {
+        self.true_positives as f64 / (self.true_positives + self.false_negatives) as f64
+    }
+
+    /// Harmonic mean of the two; NaN without boxes.
+    pub fn f1(&self) -> f64 {
+        let hits = 2 * self.true_positives;
+        hits as f64 / (hits + self.false_positives + self.false_negatives) as f64
+    }
+
+    fn add(&mut self, other: Self) {
+        self.true_positives += other.true_positives;
+        self.false_positives += other.false_positives;
+        self.false_negatives += other.false_negatives;
+    }
+}
+
+#[derive(Debug, Clone, Default)]
+struct Sequence {
+    objects: u64,
+    predictions: u64,
+    /// In how many pictures an object and a track match.
+    matches: BTreeMap<(i64, i64), u64>,
+}
+
+impl Sequence {
+    /// The counts, as if the sequence were over.
+    fn counts(&self) -> IdentityCounts {
+        let mut hits = 0;
+        for group in groups(&self.matches) {
+            let (mut rows, mut columns) = (HashMap::new(), HashMap::new());
+            for ((object, track), _) in &group {
+                let (next_row, next_column) = (rows.len(), columns.len());
+                rows.entry(*object).or_insert(next_row);
+                columns.entry(*track).or_insert(next_column);
+            }
+            let mut costs = vec![0.0; rows.len() * columns.len()];
+            for ((object, track), count) in &group {
+                costs[rows[object] * columns.len() + columns[track]] = -(*count as f64);
+            }
+            let pairs = cheapest_pairs(&costs, columns.len());
+            hits += pairs.iter().map(|(row, column)| -costs[row * columns.len() + column] as u64).sum::<u64>();
+        }
+        IdentityCounts {
+            true_positives: hits,
+            false_positives: self.predictions - hits,
+            false_negatives: self.objects - hits,
+        }
+    }
+}
+
+/// Matches in groups that share neither object nor track: each is an assignment of its own, and small.
+fn groups(matches: &BTreeMap<(i64, i64), u64>) -> Vec<Vec<((i64, i64), u64)>> {
+    let mut of_object: BTreeMap<i64, Vec<(i64, u64)>> = BTreeMap::new();
+    let mut of_track: HashMap<i64, Vec<i64>> = HashMap::new();
+    for ((object, track), count) in matches {
+        of_object.entry(*object).or_default().push((*track, *count));
+        of_track.entry(*track).or_default().push(*object);
+    }
+    let mut groups = Vec::new();
+    while let Some((object, tracks)) = of_object.pop_first() {
+        let (mut group, mut open) = (Vec::new(), vec![(object, tracks)]);
+        while let Some((object, tracks)) = open.pop() {
+            for (track, count) in tracks {
+                group.push(((object, track), count));
+                for neighbour in of_track.remove(&track).unwrap_or_default() {
+                    open.extend(of_object.remove_entry(&neighbour));
+                }
+            }
+        }
+        groups.push(group);
+    }
+    groups
+}
+
+/// IDF1, IDP and IDR over sequences of pictures.
+#[derive(Debug, Clone)]
+pub struct Identity {
+    params: TrackMatchingParams,
+    finished: IdentityCounts,
+    sequence: Sequence,
+}
+
+impl Identity {
+    /// Counts the next picture of the sequence.
+    pub fn count(&mut self, frame: &TrackingFrame) {
+        self.sequence.objects += frame.truth().len() as u64;
+        self.sequence.predictions += frame.found().len() as u64;
+        let pairs = frame.truth().iter().flat_map(|id| frame.found().iter().map(move |track| (*id, *track)));
+        for (pair, overlap) in pairs.zip(frame.overlaps()) {
+            if self.params.distance(*overlap).is_finite() {
+                *self.sequence.matches.entry(pair).or_default() += 1;
+            }
+        }
+    }
+
+    /// What was counted, the open sequence included.
+    pub fn counts(&self) -> IdentityCounts {
+        let mut counts = self.finished;
+        counts.add(self.sequence.counts());
+        counts
+    }
+}
+
+impl Metric for Identity {
+    const NAME: &'static str = "identity";
+    const ABOUT: &'static str = "IDF1, IDP and IDR, as py-motmetrics 1.4";
+    type Params = TrackMatchingParams;
+    type Prediction = TrackingAnnotationList;
+    type Truth = TrackingAnnotationList;
+
+    fn new(params: &TrackMatchingParams) -> Result<Self> {
+        let params = params.clone();
+        Ok(Self { params, finished: IdentityCounts::default(), sequence: Sequence::default() })
+    }
+
+    fn update(
+        &mut self,
+        _at: usize,
+        prediction: &TrackingAnnotationList,
+        truth: &TrackingAnnotationList,
+    ) -> Result<f64> {
+        let frame = self.params.rules.frame(prediction, truth)?;
+        self.count(&frame);
+        Ok(frame.coverage())
+    }
+
+    fn end_sequence(&mut self) {
+        self.finished = self.counts();
+        self.sequence = Sequence::default();
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.end_sequence();
+        self.finished.add(other.counts());
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("idf1");
+        let counts = self.counts();
+        let numbers = [
+            ("idf1", counts.f1()),
+            ("idp", counts.precision()),
+            ("idr", counts.recall()),
+            ("idtp", counts.true_positives as f64),
+            ("idfp", counts.false_positives as f64),
+            ("idfn", counts.false_negatives as f64),
+        ];
+        numbers.into_iter().for_each(|(key, number)| report.statistics.set(key, number));
+        report
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn new() -> Identity {
+        Identity::new(&TrackMatchingParams::default()).unwrap()
+    }
+
+    fn frame(pairs: &[(i64, i64)]) -> TrackingFrame {
+        let (truth, found): (Vec<_>, Vec<_>) = pairs.iter().copied().unzip();
+        let size = truth.len();
+        let overlaps = (0..size * size).map(|at| if at / size == at % size { 0.75 } else { 0.1 }).collect();
+        TrackingFrame::new(truth, found, overlaps).unwrap()
+    }
+
+    /// Object 1 is followed by tracks 7, 7, 8; object 2 by 8, 8, 7: the best is 1-7 and 2-8 with 2 + 2 of 6 boxes.
+    #[test]
+    fn one_track_per_object() {
+        let mut metric = new();
+        for pairs in [[(1, 7), (2, 8)], [(1, 7), (2, 8)], [(1, 8), (2, 7)]] {
+            metric.count(&frame(&pairs));
+        }
+        let counts = metric.counts();
+        assert_eq!(counts, IdentityCounts { true_positives: 4, false_positives: 2, false_negatives: 2 });
+        assert_eq!(counts.f1(), 2.0 / 3.0);
+        let mut twice = metric.clone();
+        twice.merge(metric);
+        assert_eq!((twice.counts().true_positives, twice.counts().f1()), (8, 2.0 / 3.0));
+    }
+
+    /// 1-7 three times and 2-7 twice share track 7; 3-9 stands alone.
+    #[test]
+    fn groups_are_independent() {
+        let matches = [((1, 7), 3), ((2, 7), 2), ((2, 8), 1), ((3, 9), 5)].into_iter().collect();
+        let groups = groups(&matches);
+        assert_eq!(groups.iter().map(Vec::len).collect::<Vec<_>>(), [3, 1]);
+        let sequence = Sequence { objects: 12, predictions: 11, matches };
+        assert_eq!(sequence.counts().true_positives, 3 + 1 + 5);
+    }
+
+    #[test]
+    fn nothing_counted_has_no_score() {
+        let report = new().finish();
+        assert_eq!((report.statistics.get("idf1"), report.statistics.get("idtp")), (None, Some(0.0)));
+    }
+}

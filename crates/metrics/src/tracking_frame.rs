@@ -1,0 +1,186 @@
+//! One picture of a video as tracking metrics see it: who is there, who was found, and how well they overlap.
+
+use std::collections::HashSet;
+
+use opendr_engine::target::TrackingAnnotationList;
+use opendr_engine::{Error, Result};
+
+use crate::image_overlap::image_overlap;
+
+/// Pairs of one picture, so that a hostile list cannot ask for all memory.
+const MOST_PAIRS: usize = 1 << 24;
+
+/// Identities of one picture and the overlap of every pair.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct TrackingFrame {
+    truth: Vec<i64>,
+    found: Vec<i64>,
+    overlaps: Vec<f64>,
+}
+
+impl TrackingFrame {
+    /// A picture from identities and `overlaps`, `[truth, found]`, last axis fastest, each 0 (apart) to 1 (equal).
+    ///
+    /// # Errors
+    /// `InvalidInput` when an identity occurs twice in `truth` or twice in `found`, when there is not one overlap per
+    /// pair, and for an overlap outside 0..=1.
+    pub fn new(truth: Vec<i64>, found: Vec<i64>, overlaps: Vec<f64>) -> Result<Self> {
+        check_identities("the truth", &truth)?;
+        check_identities("the answer", &found)?;
+        check_pairs(truth.len(), found.len())?;
+        if overlaps.len() != truth.len() * found.len() {
+            return Err(Error::invalid_input(format!(
+                "{} overlaps for {} true and {} found objects; give one for every pair",
+                overlaps.len(),
+                truth.len(),
+                found.len()
+            )));
+        }
+        if let Some(wrong) = overlaps.iter().find(|overlap| !(0.0..=1.0).contains(*overlap)) {
+            return Err(Error::invalid_input(format!("an overlap of {wrong}; give numbers from 0 to 1")));
+        }
+        Ok(Self { truth, found, overlaps })
+    }
+
+    /// A picture from identities and corners `[x0, y0, x1, y1]`; overlap is intersection over union.
+    ///
+    /// # Errors
+    /// `InvalidInput` as [`TrackingFrame::new`], and for a box that is not finite.
+    pub fn from_boxes(truth: &[(i64, [f64; 4])], found: &[(i64, [f64; 4])]) -> Result<Self> {
+        check_boxes("the truth", truth)?;
+        check_boxes("the answer", found)?;
+        check_pairs(truth.len(), found.len())?;
+        let overlaps = truth
+            .iter()
+            .flat_map(|(_, truth)| found.iter().map(|(_, found)| image_overlap(*truth, *found)))
+            .collect();
+        let identities = |boxes: &[(i64, [f64; 4])]| boxes.iter().map(|(id, _)| *id).collect();
+        Self::new(identities(truth), identities(found), overlaps)
+    }
+
+    /// A picture from what a tracker answered and what it should have answered; classes are not looked at.
+    ///
+    /// # Errors
+    /// As [`TrackingFrame::from_boxes`].
+    pub fn from_lists(found: &TrackingAnnotationList, truth: &TrackingAnnotationList) -> Result<Self> {
+        Self::from_boxes(&boxes_from_list(truth), &boxes_from_list(found))
+    }
+
+    /// Identities that are there.
+    pub fn truth(&self) -> &[i64] {
+        &self.truth
+    }
+
+    /// Identities that were found.
+    pub fn found(&self) -> &[i64] {
+        &self.found
+    }
+
+    /// Overlaps, `[truth, found]`, last axis fastest.
+    pub fn overlaps(&self) -> &[f64] {
+        &self.overlaps
+    }
+
+    /// Overlap of object `truth` with object `found`, by their places in the picture.
+    pub(crate) fn overlap(&self, truth: usize, found: usize) -> f64 {
+        self.overlaps[truth * self.found.len() + found]
+    }
+
+    /// The picture without the objects whose places are not kept.
+    pub(crate) fn keep(&self, truth: &[bool], found: &[bool]) -> Self {
+        let kept = |mask: &[bool]| (0..mask.len()).filter(|at| mask[*at]).collect::<Vec<_>>();
+        let (truth, found) = (kept(truth), kept(found));
+        Self {
+            overlaps: truth.iter().flat_map(|row| found.iter().map(|at| self.overlap(*row, *at))).collect(),
+            truth: truth.into_iter().map(|at| self.truth[at]).collect(),
+            found: found.into_iter().map(|at| self.found[at]).collect(),
+        }
+    }
+
+    /// How well the boxes cover each other, identities aside: 0 to 1.
+    pub(crate) fn coverage(&self) -> f64 {
+        let width = self.found.len();
+        let mut best = (vec![0.0f64; self.truth.len()], vec![0.0f64; width]);
+        for (at, overlap) in self.overlaps.iter().enumerate() {
+            best.0[at / width] = best.0[at / width].max(*overlap);
+            best.1[at % width] = best.1[at % width].max(*overlap);
+        }
+        let hits = best.0.iter().sum::<f64>().min(best.1.iter().sum());
+        match (self.truth.len() + width) as f64 - hits {
+            union if union > 0.0 => hits / union,
+            _ => 1.0,
+        }
+    }
+}
+
+fn boxes_from_list(list: &TrackingAnnotationList) -> Vec<(i64, [f64; 4])> {
+    let corners = |left: f32, top: f32, width: f32, height: f32| {
+        let [left, top, width, height] = [left, top, width, height].map(f64::from);
+        [left, top, left + width, top + height]
+    };
+    list.annotations
+        .iter()
+        .map(|track| {
+            let place = &track.bounding_box;
+            (track.id, corners(place.left, place.top, place.width, place.height))
+        })
+        .collect()
+}
+
+fn check_identities(whose: &str, identities: &[i64]) -> Result<()> {
+    let mut seen = HashSet::with_capacity(identities.len());
+    match identities.iter().find(|id| !seen.insert(**id)) {
+        Some(id) => Err(Error::invalid_input(format!(
+            "two objects of {whose} have id {id} in one picture; give every object its own"
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn check_boxes(whose: &str, boxes: &[(i64, [f64; 4])]) -> Result<()> {
+    match boxes.iter().find(|(_, corners)| corners.iter().any(|corner| !corner.is_finite())) {
+        Some((id, corners)) => Err(Error::invalid_input(format!(
+            "object {id} of {whose} has corners {corners:?}; give finite numbers"
+        ))),
+        None => Ok(()),
+    }
+}
+
+fn check_pairs(truth: usize, found: usize) -> Result<()> {
+    match truth.checked_mul(found) {
+        Some(pairs) if pairs <= MOST_PAIRS => Ok(()),
+        _ => Err(Error::invalid_input(format!(
+            "{truth} true and {found} found objects in one picture make more than {MOST_PAIRS} pairs; give fewer"
+        ))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn boxes_and_coverage() {
+        let truth = [(1, [0.0, 0.0, 2.0, 2.0]), (2, [10.0, 0.0, 12.0, 2.0])];
+        let found = [(7, [0.0, 1.0, 2.0, 3.0]), (8, [10.0, 0.0, 12.0, 2.0]), (9, [50.0, 0.0, 51.0, 1.0])];
+        let frame = TrackingFrame::from_boxes(&truth, &found).unwrap();
+        assert_eq!(frame.overlaps(), [1.0 / 3.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+        let hits = 4.0 / 3.0;
+        assert_eq!(frame.coverage(), hits / (5.0 - hits));
+        let kept = frame.keep(&[false, true], &[true, true, false]);
+        assert_eq!(kept, TrackingFrame::new(vec![2], vec![7, 8], vec![0.0, 1.0]).unwrap());
+        assert_eq!(TrackingFrame::default().coverage(), 1.0);
+    }
+
+    #[test]
+    fn what_cannot_be_counted_is_refused() {
+        let here = [0.0, 0.0, 1.0, 1.0];
+        assert!(TrackingFrame::from_boxes(&[(1, here), (1, here)], &[]).is_err());
+        assert!(TrackingFrame::from_boxes(&[], &[(-1, here), (-1, here)]).is_err());
+        assert!(TrackingFrame::from_boxes(&[(1, [0.0, f64::NAN, 1.0, 1.0])], &[]).is_err());
+        assert!(TrackingFrame::new(vec![1], vec![1], vec![]).is_err());
+        assert!(TrackingFrame::new(vec![1], vec![1], vec![1.5]).is_err());
+        let many: Vec<_> = (0..5000).map(|id| (id, here)).collect();
+        assert!(TrackingFrame::from_boxes(&many, &many).unwrap_err().to_string().contains("pairs"));
+    }
+}
