@@ -86,8 +86,8 @@ impl ClearMotCounts {
         self.distance / (self.matches + self.switches) as f64
     }
 
-    fn add(&mut self, other: &Self) {
-        let counts = self.named_mut().into_iter().zip(other.clone().named_mut());
+    fn add(&mut self, mut other: Self) {
+        let counts = self.named_mut().into_iter().zip(other.named_mut());
         counts.for_each(|((_, sum), (_, count))| *sum += *count);
         self.distance += other.distance;
     }
@@ -239,7 +239,7 @@ impl ClearMot {
     /// What was counted, the open sequence included.
     pub fn counts(&self) -> ClearMotCounts {
         let mut counts = self.finished.clone();
-        counts.add(&self.sequence.counts());
+        counts.add(self.sequence.counts());
         counts
     }
 }
@@ -272,7 +272,7 @@ impl Metric for ClearMot {
 
     fn merge(&mut self, other: Self) {
         self.end_sequence();
-        self.finished.add(&other.counts());
+        self.finished.add(other.counts());
     }
 
     fn finish(&self) -> Report {

@@ -93,7 +93,8 @@ impl HotaCounts {
     /// The scores.
     pub fn scores(&self) -> HotaScores {
         let hits = self.true_positives.map(|hits| hits as f64);
-        let share = |part: &PerAlpha<f64>, of: &dyn Fn(usize) -> u64| from_fn(|at| part[at] / of(at).max(1) as f64);
+        let share =
+            |part: &PerAlpha<f64>, of: &dyn Fn(usize) -> u64| from_fn(|at| part[at] / of(at).max(1) as f64);
         let (found, missed, wrong) = (&self.true_positives, &self.false_negatives, &self.false_positives);
         let deta = share(&hits, &|at| found[at] + missed[at] + wrong[at]);
         let detre = share(&hits, &|at| found[at] + missed[at]);
@@ -170,7 +171,9 @@ impl Sequence {
         let mut overlaps = Vec::new();
         let mut sums = (vec![0.0; objects.len()], vec![0.0; tracks.len()]);
         for (row, overlaps_of_row) in frame.overlaps().chunks_exact(tracks.len().max(1)).enumerate() {
-            for (column, &overlap) in overlaps_of_row.iter().enumerate().filter(|(_, overlap)| **overlap > 0.0) {
+            for (column, &overlap) in
+                overlaps_of_row.iter().enumerate().filter(|(_, overlap)| **overlap > 0.0)
+            {
                 sums.0[row] += overlap;
                 sums.1[column] += overlap;
                 overlaps.push((row as u32, column as u32, overlap));

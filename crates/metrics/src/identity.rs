@@ -71,7 +71,8 @@ impl Sequence {
                 costs[rows[object] * columns.len() + columns[track]] = -(*count as f64);
             }
             let pairs = cheapest_pairs(&costs, columns.len());
-            hits += pairs.iter().map(|(row, column)| -costs[row * columns.len() + column] as u64).sum::<u64>();
+            hits +=
+                pairs.iter().map(|(row, column)| -costs[row * columns.len() + column] as u64).sum::<u64>();
         }
         IdentityCounts {
             true_positives: hits,

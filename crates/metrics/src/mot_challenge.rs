@@ -88,8 +88,7 @@ impl MotRules {
         let mut kept = vec![true; frame.found().len()];
         for (truth, found) in cheapest_pairs(&costs, kept.len()) {
             let class = classes[truth];
-            let distracts =
-                DISTRACTORS.contains(&class) || (self == Self::Mot20 && class == NON_MOT_VEHICLE);
+            let distracts = DISTRACTORS.contains(&class) || (self == Self::Mot20 && class == NON_MOT_VEHICLE);
             if distracts && costs[truth * kept.len() + found] < -f64::EPSILON {
                 kept[found] = false;
             }

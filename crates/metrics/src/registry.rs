@@ -10,6 +10,9 @@ pub const fn metrics() -> &'static [MetricEntry] {
     const {
         &[
             MetricEntry::of::<crate::Classification>(),
+            MetricEntry::of::<crate::ClearMot>(),
+            MetricEntry::of::<crate::Hota>(),
+            MetricEntry::of::<crate::Identity>(),
             MetricEntry::of::<crate::Roc>(),
             MetricEntry::of::<crate::Verification>(),
         ]
