@@ -6,15 +6,23 @@
 mod any;
 mod check;
 mod contact_sheet;
+mod fields;
+mod folder;
 mod format;
+mod mot;
+mod npy;
 mod problems;
 mod registry;
 mod stats;
+mod wav;
 
 pub use any::{FormatEntry, Recognition};
 pub use check::check;
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
+pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
+pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use problems::{Place, Problem, Problems};
 pub use registry::{find, formats, open, recognise};
 pub use stats::{ClassCount, DatasetStats, Spread};
+pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};

@@ -8,11 +8,14 @@ use opendr_engine::{Error, Result};
 use crate::{FormatEntry, OpenOptions, Problems, Recognition};
 
 /// Every format; of several that may be meant, the first is taken.
-#[rustfmt::skip] // One line a format.
 pub const fn formats() -> &'static [FormatEntry] {
-    &[
-    ]
+    FORMATS
 }
+
+#[rustfmt::skip] // One line a format.
+const FORMATS: &[FormatEntry] = &[
+    FormatEntry::of::<crate::Mot>(),
+];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.
 ///

@@ -1,0 +1,225 @@
+//! The MOT Challenge: videos with boxes that keep their identity, and results as its tools read them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
+use opendr_engine::target::{BoundingBoxList, Classes, TrackingAnnotationList};
+use opendr_engine::{Error, Header, Progress, Result, ResultExt, Value, ValueType};
+
+use crate::folder::{files_in, folders_in, part_folder, past_end, read_text, write_file};
+use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
+
+mod row;
+mod sequence;
+mod write;
+
+pub use row::MotRow;
+pub use sequence::MotSequence;
+
+/// Parts that have truth come first.
+const PARTS: [&str; 3] = ["val", "train", "test"];
+/// Bytes of a text file that tell whether it has rows.
+const HEAD: usize = 4096;
+
+/// A data set of the MOT Challenge, of motmetrics, or a bare `gt.txt`: a sample is a picture with its objects.
+///
+/// The samples are the pictures of one sequence after the other; the header of picture and target has the name of the
+/// sequence as frame id, and the time since its begin. Without pictures, samples have no data. In the truth, objects
+/// that are not to be considered have confidence 0; read as boxes, they are left out.
+#[derive(Debug)]
+pub struct Mot {
+    sequences: Vec<MotSequence>,
+    /// Number of the first sample of each sequence.
+    starts: Vec<usize>,
+    len: usize,
+    target: ValueType,
+    classes: Classes,
+}
+
+impl Mot {
+    /// The videos in order.
+    pub fn sequences(&self) -> &[MotSequence] {
+        &self.sequences
+    }
+
+    /// Which sequence sample `index` is of, and which picture of it, both from 0.
+    pub fn place(&self, index: usize) -> Option<(usize, usize)> {
+        let sequence = self.starts.partition_point(|start| *start <= index).checked_sub(1)?;
+        (index < self.len).then(|| (sequence, index - self.starts[sequence]))
+    }
+
+    /// What `det.txt` has found in the picture of sample `index`: the input of trackers.
+    pub fn detections(&self, index: usize) -> Option<BoundingBoxList> {
+        let (at, picture) = self.place(index)?;
+        let sequence = self.sequences.get(at)?;
+        let (frame, _) = sequence.frame(picture)?;
+        let boxes = sequence.detections(frame).iter().map(|row| row.annotation().bounding_box);
+        let header = header(sequence, frame);
+        Some(BoundingBoxList { header, classes: self.classes.clone(), ..boxes.collect::<Vec<_>>().into() })
+    }
+
+    fn of_sequences(sequences: Vec<MotSequence>, target: ValueType) -> Self {
+        let (mut starts, mut len) = (Vec::with_capacity(sequences.len()), 0);
+        for sequence in &sequences {
+            starts.push(len);
+            len += sequence.len();
+        }
+        Self { sequences, starts, len, target, classes: row::classes() }
+    }
+}
+
+impl Dataset for Mot {}
+
+impl DatasetIterator for Mot {
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let found = self.place(index).and_then(|(at, picture)| {
+            let sequence = self.sequences.get(at)?;
+            Some((sequence, sequence.frame(picture)?))
+        });
+        let (sequence, (frame, path)) = found.ok_or_else(|| past_end(index, self.len))?;
+        let header = header(sequence, frame);
+        let data = match path {
+            Some(path) => vec![Value::Image(opendr_vision::open(path)?.with_header(header.clone()))],
+            None => Vec::new(),
+        };
+        let annotations = sequence.truth(frame).iter().map(MotRow::annotation).collect();
+        let tracks =
+            TrackingAnnotationList { header, annotations, classes: self.classes.clone(), action: None };
+        let target = match self.target {
+            ValueType::BoundingBoxList => {
+                let mut boxes = tracks.bounding_box_list();
+                boxes.boxes.retain(|found| found.confidence != 0.0);
+                Value::BoundingBoxList(boxes)
+            }
+            _ => Value::TrackingAnnotationList(tracks),
+        };
+        Ok(Sample { data, target: Some(target) })
+    }
+}
+
+fn header(sequence: &MotSequence, frame: i64) -> Header {
+    let stamp_ns = ((frame - 1) as f64 / sequence.frame_rate() * 1e9).round();
+    Header::new(stamp_ns as i64, Arc::from(sequence.name()))
+}
+
+impl Format for Mot {
+    const NAME: &'static str = "mot";
+    const ALIASES: &'static [&'static str] = &["mot15", "mot16", "mot17", "mot20", "motchallenge"];
+    const ABOUT: &'static str = "MOT Challenge: videos with boxes that keep their identity";
+    const LAYOUT: &'static str = "[PART/]SEQUENCE/ with img1/000001.jpg, gt/gt.txt, det/det.txt and seqinfo.ini, as far as they are there; or \
+                                  SEQUENCE/gt.txt; or SEQUENCE.txt files";
+    const TARGETS: &'static [ValueType] = &[ValueType::TrackingAnnotationList, ValueType::BoundingBoxList];
+
+    fn recognise(path: &Path) -> Recognition {
+        let folders = candidates(path);
+        if folders.iter().any(|folder| is_sequence(folder)) {
+            return Recognition::Certain;
+        }
+        match bare_files(path).is_empty() {
+            true => Recognition::No("a folder with gt/gt.txt or det/det.txt, or a text of its rows".into()),
+            false => Recognition::Possible,
+        }
+    }
+
+    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        let target = match options.target {
+            None => ValueType::TrackingAnnotationList,
+            Some(target) if Self::TARGETS.contains(&target) => target,
+            Some(other) => {
+                let message = format!("MOT has tracks and boxes, no {}; ask for one of these", other.name());
+                return Err(Error::unsupported(message));
+            }
+        };
+        let part = part_folder(path, options.split.as_deref(), &PARTS)?;
+        let root = part.as_deref().unwrap_or(path);
+        let folders: Vec<_> = candidates(root).into_iter().filter(|folder| is_sequence(folder)).collect();
+        let sequences: Result<Vec<_>> = match folders.is_empty() {
+            true => bare_files(root).iter().map(|file| MotSequence::open_file(file, problems)).collect(),
+            false => folders.iter().map(|folder| MotSequence::open_folder(folder, problems)).collect(),
+        };
+        let sequences = sequences?;
+        if sequences.is_empty() {
+            let message = format!("no sequence in {}; it should have {}", root.display(), Self::LAYOUT);
+            return Err(Error::not_found(message));
+        }
+        Ok(Self::of_sequences(sequences, target))
+    }
+
+    fn write(
+        dataset: &dyn DatasetIterator,
+        path: &Path,
+        options: &WriteOptions,
+        problems: &Problems,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        write::write(dataset, path, options, problems, progress)
+    }
+}
+
+/// Folders that may be sequences: `path`, those in it, and those in its usual parts.
+fn candidates(path: &Path) -> Vec<PathBuf> {
+    let mut found = vec![path.to_owned()];
+    let within =
+        |folder: &Path| folders_in(folder).into_iter().map(|name| folder.join(name)).collect::<Vec<_>>();
+    found.extend(within(path));
+    found.extend(PARTS.iter().flat_map(|part| within(&path.join(part))));
+    found
+}
+
+fn is_sequence(folder: &Path) -> bool {
+    ["gt/gt.txt", "det/det.txt", "gt.txt", "seqinfo.ini"].iter().any(|name| folder.join(name).is_file())
+}
+
+/// Texts of rows: `path` itself, or the files in it, when the first has rows.
+fn bare_files(path: &Path) -> Vec<PathBuf> {
+    let files = match path.is_dir() {
+        true => files_in(path, &["txt"]).into_iter().map(|name| path.join(name)).collect(),
+        false => vec![path.to_owned()],
+    };
+    let has_rows = |file: &PathBuf| {
+        use std::io::Read;
+        let mut head = Vec::new();
+        let opened = std::fs::File::open(file).ok()?;
+        opened.take(HEAD as u64).read_to_end(&mut head).ok()?;
+        let line = String::from_utf8_lossy(&head).lines().next()?.to_owned();
+        let fields =
+            line.split(',').map(|field| field.trim().parse::<f64>()).collect::<Result<Vec<_>, _>>().ok()?;
+        (6..=10).contains(&fields.len()).then_some(())
+    };
+    if files.first().is_some_and(|file| has_rows(file).is_some()) { files } else { Vec::new() }
+}
+
+/// Reads a file of results, or of truth without class and visibility, as one list over all pictures.
+///
+/// # Errors
+/// `NotFound` or `Io` when it cannot be read; `Format` with the number of the line.
+pub fn open_mot_results(path: impl AsRef<Path>) -> Result<TrackingAnnotationList> {
+    let path = path.as_ref();
+    let text = read_text(path)?;
+    TrackingAnnotationList::from_mot_text(&text).context(|| path.display().to_string())
+}
+
+/// Writes the tracks of one video as motmetrics and TrackEval read them: ten fields a line.
+///
+/// # Errors
+/// `InvalidInput` for a track without picture number or identity, or with a number that is not finite; `Io`.
+pub fn write_mot_results(path: impl AsRef<Path>, tracks: &TrackingAnnotationList) -> Result<()> {
+    for (index, track) in tracks.annotations.iter().enumerate() {
+        let numbers = track.mot();
+        if track.frame.is_none_or(|frame| frame < 1) || track.id < 0 || !numbers.iter().all(|n| n.is_finite())
+        {
+            return Err(Error::invalid_input(format!(
+                "track {index} is {numbers:?}; give a picture number from 1, an identity from 0 and finite numbers"
+            )));
+        }
+    }
+    write_file(path.as_ref(), tracks.mot_text().as_bytes())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,191 @@
+//! Arrays in NumPy's `.npy` files, read part by part: a data set of gigabytes is opened by its header alone.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use opendr_engine::{Error, Result, ResultExt};
+
+mod header;
+
+pub use header::{NpyHeader, NpyType};
+
+/// The largest part that is read at once.
+const MAX_PART_BYTES: u64 = 1 << 30;
+
+/// An `.npy` file of which parts along the first axis are read on demand; several threads may do so.
+#[derive(Debug, Clone)]
+pub struct NpyFile {
+    path: PathBuf,
+    header: NpyHeader,
+}
+
+impl NpyFile {
+    /// Reads the header of the file at `path`, and compares what it promises with the file's size.
+    ///
+    /// # Errors
+    /// `NotFound` or `Io` when it cannot be read; `Format` when it is no `.npy` file or is cut off; `Unsupported` for
+    /// arrays of Python objects or of structures. All name the path.
+    pub fn open(path: impl Into<PathBuf>) -> Result<Self> {
+        let path = path.into();
+        let read = || -> Result<NpyHeader> {
+            let file = File::open(&path)?;
+            let size = file.metadata()?.len();
+            let mut head = Vec::new();
+            file.take(header::MAX_BYTES).read_to_end(&mut head)?;
+            let header = NpyHeader::parse(&head)?;
+            header.check_size(size)?;
+            Ok(header)
+        };
+        let header = read().context(|| format!("opening {}", path.display()))?;
+        Ok(Self { path, header })
+    }
+
+    /// Where it lies.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// What it holds.
+    pub fn header(&self) -> &NpyHeader {
+        &self.header
+    }
+
+    /// Size of each axis.
+    pub fn shape(&self) -> &[usize] {
+        self.header.shape()
+    }
+
+    /// The numbers at `index` of the first axis, the other axes in order, last fastest.
+    ///
+    /// # Errors
+    /// `NotFound` past the end, `Unsupported` for Fortran order with several axes (no part lies together),
+    /// `InvalidInput` for a part over a gigabyte, `Io`.
+    pub fn part(&self, index: usize) -> Result<Vec<f64>> {
+        let shape = self.shape();
+        let Some((count, rest)) = shape.split_first().filter(|(count, _)| index < **count) else {
+            return Err(Error::not_found(format!(
+                "no part {index} in {} of shape {shape:?}",
+                self.path.display()
+            )));
+        };
+        let side: usize = rest.iter().product();
+        if self.header.fortran_order() && *count > 1 && side > 1 {
+            return Err(Error::unsupported(format!(
+                "{} is in Fortran order; save numpy.ascontiguousarray of it",
+                self.path.display()
+            )));
+        }
+        self.read(index * side, side)
+    }
+
+    /// All numbers, last axis fastest.
+    ///
+    /// # Errors
+    /// `InvalidInput` for over a gigabyte, `Io`.
+    pub fn all(&self) -> Result<Vec<f64>> {
+        let numbers = self.read(0, self.shape().iter().product())?;
+        if self.header.fortran_order() {
+            return Ok(c_from_fortran(&numbers, self.shape()));
+        }
+        Ok(numbers)
+    }
+
+    /// `count` numbers from number `first` on, as they lie. The header has been checked, so nothing overflows.
+    fn read(&self, first: usize, count: usize) -> Result<Vec<f64>> {
+        let width = self.header.number().bytes();
+        let (offset, bytes) = ((first * width) as u64, (count * width) as u64);
+        let read = || {
+            if bytes > MAX_PART_BYTES {
+                return Err(Error::invalid_input(format!(
+                    "a part of {bytes} bytes; save it in pieces of a gigabyte at most"
+                )));
+            }
+            let mut file = File::open(&self.path)?;
+            file.seek(SeekFrom::Start(self.header.data_offset() as u64 + offset))?;
+            let mut data = Vec::with_capacity(bytes as usize);
+            file.take(bytes).read_to_end(&mut data)?;
+            if data.len() as u64 != bytes {
+                return Err(Error::format(format!("{} bytes of {bytes}; the file is cut off", data.len())));
+            }
+            Ok(self.header.number().numbers(&data))
+        };
+        read().context(|| format!("reading {}", self.path.display()))
+    }
+}
+
+/// The array in the bytes of an `.npy` file: its shape, and its numbers with the last axis fastest.
+///
+/// # Errors
+/// As [`NpyFile::open`].
+pub fn array_from_npy(bytes: &[u8]) -> Result<(Vec<usize>, Vec<f64>)> {
+    let header = NpyHeader::parse(bytes)?;
+    header.check_size(bytes.len() as u64)?;
+    let count: usize = header.shape().iter().product();
+    let data = bytes.get(header.data_offset()..).unwrap_or_default();
+    let data = data.get(..count * header.number().bytes()).unwrap_or_default();
+    let numbers = header.number().numbers(data);
+    let numbers = if header.fortran_order() { c_from_fortran(&numbers, header.shape()) } else { numbers };
+    Ok((header.shape().to_vec(), numbers))
+}
+
+/// The bytes of an `.npy` file (version 1.0) of 32-bit floats, last axis fastest.
+///
+/// # Errors
+/// `InvalidInput` when `shape` does not ask for exactly as many numbers.
+pub fn npy_from_f32(numbers: &[f32], shape: &[usize]) -> Result<Vec<u8>> {
+    let mut bytes = header_bytes("<f4", numbers.len(), shape)?;
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    Ok(bytes)
+}
+
+/// The bytes of an `.npy` file (version 1.0) of 64-bit integers, last axis fastest.
+///
+/// # Errors
+/// `InvalidInput` when `shape` does not ask for exactly as many numbers.
+pub fn npy_from_i64(numbers: &[i64], shape: &[usize]) -> Result<Vec<u8>> {
+    let mut bytes = header_bytes("<i8", numbers.len(), shape)?;
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    Ok(bytes)
+}
+
+/// Magic, version and dictionary, filled up with blanks to a multiple of 64 bytes.
+fn header_bytes(number: &str, count: usize, shape: &[usize]) -> Result<Vec<u8>> {
+    if shape.iter().try_fold(1usize, |product, side| product.checked_mul(*side)) != Some(count) {
+        return Err(Error::invalid_input(format!(
+            "an array of shape {shape:?} cannot have {count} numbers; give one per place"
+        )));
+    }
+    let sides: String = shape.iter().map(|side| format!("{side}, ")).collect();
+    let sides = if shape.len() == 1 { sides.trim_end() } else { sides.trim_end_matches(", ") };
+    let text = format!("{{'descr': '{number}', 'fortran_order': False, 'shape': ({sides}), }}");
+    let padded = (10 + text.len() + 1).next_multiple_of(64) - 10;
+    let length = u16::try_from(padded).map_err(|_| {
+        Error::invalid_input(format!("{} axes do not fit the header; give fewer", shape.len()))
+    })?;
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend(length.to_le_bytes());
+    bytes.extend(format!("{text:<width$}\n", width = padded - 1).into_bytes());
+    Ok(bytes)
+}
+
+/// The numbers of an array whose first axis ran fastest, now with the last axis fastest.
+fn c_from_fortran(numbers: &[f64], shape: &[usize]) -> Vec<f64> {
+    let mut at = vec![0usize; shape.len()];
+    let mut ordered = Vec::with_capacity(numbers.len());
+    for _ in 0..numbers.len() {
+        let place = at.iter().zip(shape).rev().fold(0, |place, (index, side)| place * side + index);
+        ordered.extend(numbers.get(place));
+        for (index, side) in at.iter_mut().zip(shape).rev() {
+            *index += 1;
+            if *index < *side {
+                break;
+            }
+            *index = 0;
+        }
+    }
+    ordered
+}
+
+#[cfg(test)]
+mod tests;
