@@ -7,6 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Category;
 use opendr_engine::{Error, Result};
 
+use crate::average::{mean, ratio};
 use crate::{
     Calibration, ClassCounts, ClassScores, Figure, Matrix, Metric, PrecisionRecall, Report, Table,
     ZeroDivision,
@@ -95,9 +96,7 @@ impl Classification {
     /// Mean recall of the classes that have samples; `None` without samples.
     pub fn balanced_accuracy(&self) -> Option<f64> {
         let counts = self.counts();
-        let recalls: Vec<f64> =
-            counts.values().filter_map(|class| ratio(class.hits, class.support)).collect();
-        (!recalls.is_empty()).then(|| recalls.iter().sum::<f64>() / recalls.len() as f64)
+        mean(counts.values().filter_map(|class| ratio(class.hits, class.support)))
     }
 
     /// Share of the samples with scores whose class is among the `k` best; `None` without scores. 1 where `k` is at
@@ -212,11 +211,7 @@ impl Metric for Classification {
 
     fn finish(&self) -> Report {
         let mut report = Report::new("accuracy");
-        let mut set = |key: &str, value: Option<f64>| {
-            if let Some(value) = value {
-                report.statistics.set(key, value);
-            }
-        };
+        let mut set = |key: &str, value: Option<f64>| report.statistics.set(key, value.unwrap_or(f64::NAN));
         set("samples", Some(self.samples() as f64));
         set("accuracy", self.accuracy());
         set("balanced_accuracy", self.balanced_accuracy());
@@ -264,10 +259,6 @@ fn rank_of_class(truth: i64, scores: &[f32]) -> Result<usize> {
     let own = scores[class];
     let before = |(other, score): &(usize, &f32)| **score > own || (**score == own && *other > class);
     Ok(scores.iter().enumerate().filter(before).count())
-}
-
-fn ratio(part: u64, whole: u64) -> Option<f64> {
-    (whole > 0).then(|| part as f64 / whole as f64)
 }
 
 #[cfg(test)]

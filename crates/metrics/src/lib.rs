@@ -5,9 +5,12 @@
 //! papers cite; each file names its own.
 
 mod any;
+mod average;
 mod calibration;
 mod classification;
 mod clear_mot;
+mod edit_distance;
+mod generated;
 mod hota;
 mod identity;
 mod image_overlap;
@@ -17,13 +20,16 @@ mod precision_recall;
 mod registry;
 mod report;
 mod roc;
+mod segmentation;
 mod tracking_frame;
+mod transcription;
 mod verification;
 
 pub use any::{AnyMetric, MetricEntry};
 pub use calibration::{Calibration, CalibrationBin};
 pub use classification::{Classification, ClassificationParams};
 pub use clear_mot::{ClearMot, ClearMotCounts, TrackMatchingParams};
+pub use edit_distance::EditCounts;
 pub use hota::{Hota, HotaCounts, HotaParams, HotaScores};
 pub use identity::{Identity, IdentityCounts};
 pub use image_overlap::{image_cover, image_overlap};
@@ -33,5 +39,7 @@ pub use precision_recall::{ClassCounts, ClassScore, ClassScores, PrecisionRecall
 pub use registry::{find, metrics};
 pub use report::{Curves, Figure, Line, Matrix, Report, Table};
 pub use roc::{Roc, RocCurve, RocParams, RocPoint};
+pub use segmentation::{ClassPixels, Segmentation, SegmentationParams, SegmentationScores};
 pub use tracking_frame::TrackingFrame;
+pub use transcription::{Transcription, TranscriptionParams, words_of_text};
 pub use verification::{FoldAccuracy, Verification, VerificationParams};

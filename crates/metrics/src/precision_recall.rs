@@ -1,5 +1,7 @@
 //! Precision, recall and F1 of classes and their averages, as scikit-learn's `precision_recall_fscore_support`.
 
+use crate::average;
+
 opendr_engine::choices! {
     /// What precision, recall and F1 are where their denominator is zero (scikit-learn's `zero_division`).
     pub enum ZeroDivision {
@@ -63,8 +65,7 @@ impl PrecisionRecall {
             if total > 0.0 {
                 return Some(defined().map(|(value, weight)| value * weight).sum::<f64>() / total);
             }
-            let count = defined().count();
-            (count > 0).then(|| defined().map(|(value, _)| value).sum::<f64>() / count as f64)
+            average::mean(defined().map(|(value, _)| value))
         };
         Self { precision: mean(|scores| scores.precision), recall: mean(|s| s.recall), f1: mean(|s| s.f1) }
     }

@@ -14,6 +14,8 @@ pub const fn metrics() -> &'static [MetricEntry] {
             MetricEntry::of::<crate::Hota>(),
             MetricEntry::of::<crate::Identity>(),
             MetricEntry::of::<crate::Roc>(),
+            MetricEntry::of::<crate::Segmentation>(),
+            MetricEntry::of::<crate::Transcription>(),
             MetricEntry::of::<crate::Verification>(),
         ]
     }

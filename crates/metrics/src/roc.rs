@@ -235,12 +235,8 @@ impl Metric for Roc {
         let curve = self.curve();
         report.statistics.set("positives", curve.positives() as f64);
         report.statistics.set("negatives", curve.negatives() as f64);
-        if let Some(area) = curve.area() {
-            report.statistics.set("roc_auc", area);
-        }
-        if let Some(precision) = curve.average_precision() {
-            report.statistics.set("average_precision", precision);
-        }
+        report.statistics.set("roc_auc", curve.area().unwrap_or(f64::NAN));
+        report.statistics.set("average_precision", curve.average_precision().unwrap_or(f64::NAN));
         if let Some((point, f1)) = curve.best_f1() {
             report.statistics.set("best_f1", f1);
             report.statistics.set("best_f1_threshold", point.threshold);

@@ -167,11 +167,7 @@ impl Metric for Verification {
     fn finish(&self) -> Report {
         let mut report = Report::new("accuracy");
         let curve = self.curve();
-        let mut set = |key: String, value: Option<f64>| {
-            if let Some(value) = value {
-                report.statistics.set(key, value);
-            }
-        };
+        let mut set = |key: String, value: Option<f64>| report.statistics.set(key, value.unwrap_or(f64::NAN));
         set("same".into(), Some(curve.positives() as f64));
         set("different".into(), Some(curve.negatives() as f64));
         set("roc_auc".into(), curve.area());

@@ -1,0 +1,116 @@
+use opendr_engine::Random;
+
+use super::*;
+
+fn map(labels: &[u32]) -> Heatmap {
+    Heatmap::from_labels(labels.to_vec(), &[1, labels.len()]).unwrap()
+}
+
+fn ignoring(ignore: Option<u32>) -> Segmentation {
+    Segmentation::new(&SegmentationParams { ignore }).unwrap()
+}
+
+/// The definition, pixel by pixel.
+fn by_hand(ignore: Option<u32>, truth: &[u32], predicted: &[u32], class: u32) -> ClassPixels {
+    let mut pixels = ClassPixels::default();
+    for (truth, predicted) in truth.iter().zip(predicted).filter(|(truth, _)| Some(**truth) != ignore) {
+        pixels.truth += u64::from(*truth == class);
+        pixels.predicted += u64::from(*predicted == class && Some(class) != ignore);
+        pixels.hits += u64::from(*truth == class && *predicted == class);
+    }
+    pixels
+}
+
+#[test]
+fn numbers_by_hand() {
+    let mut segmentation = Segmentation::default();
+    let scores = segmentation.add(&[0, 0, 1, 1, 255, 3], &[0, 1, 1, 255, 0, 3]).unwrap();
+    let ious: Vec<_> = scores.classes.iter().map(ClassPixels::iou).collect();
+    assert_eq!(ious, [Some(0.5), Some(1.0 / 3.0), None, Some(1.0)]);
+    assert_eq!(scores.mean_iou(), Some((0.5 + 1.0 / 3.0 + 1.0) / 3.0));
+    assert_eq!(scores.pixel_accuracy(), Some(0.6));
+    assert_eq!(scores.mean_accuracy(), Some(2.0 / 3.0));
+    assert!((scores.frequency_weighted_iou().unwrap() - (1.0 + 2.0 / 3.0 + 1.0) / 5.0).abs() < 1e-12);
+}
+
+#[test]
+fn random_maps_equal_the_definition() {
+    let mut random = Random::new(7);
+    for ignore in [None, Some(0), Some(2), Some(255), Some(u32::MAX)] {
+        let mut segmentation = ignoring(ignore);
+        let (mut truths, mut answers) = (Vec::new(), Vec::new());
+        for size in [1, 15, 16, 17, 400] {
+            let classes = 1 + random.below(9);
+            let mut draw = |void: Option<u32>| {
+                // Runs of a label, as in pictures, that do not end where those of the other map do.
+                let mut labels = Vec::new();
+                while labels.len() < size {
+                    let label = random.below(classes + 1) as u32;
+                    let label = if label as usize == classes { void.unwrap_or(0) } else { label };
+                    labels.extend(vec![label; 1 + random.below(40)]);
+                }
+                labels.truncate(size);
+                labels
+            };
+            let (truth, answer) = (draw(ignore), draw(ignore));
+            segmentation.add(&truth, &answer).unwrap();
+            truths.extend(truth);
+            answers.extend(answer);
+        }
+        for (class, pixels) in segmentation.scores().classes.into_iter().enumerate() {
+            assert_eq!(pixels, by_hand(ignore, &truths, &answers, class as u32), "{class} {ignore:?}");
+        }
+    }
+}
+
+#[test]
+fn parts_merge_to_the_whole() {
+    let pictures = [(vec![0, 1, 255], vec![0, 0, 1]), (vec![5, 5, 2], vec![5, 255, 2]), (vec![1], vec![3])];
+    let [mut whole, mut first, mut second] = [(); 3].map(|()| Segmentation::default());
+    for (at, (truth, answer)) in pictures.iter().enumerate() {
+        whole.update(at, &map(answer), &map(truth)).unwrap();
+        let part = if at == 1 { &mut first } else { &mut second };
+        part.update(at, &map(answer), &map(truth)).unwrap();
+    }
+    second.merge(first);
+    assert_eq!(second.finish(), whole.finish());
+    let mut empty = Segmentation::default();
+    empty.merge(whole.clone());
+    empty.merge(Segmentation::default());
+    assert_eq!(empty.finish(), whole.finish());
+}
+
+#[test]
+fn maps_that_do_not_fit_are_refused() {
+    let mut segmentation = Segmentation::default();
+    let mut refused =
+        |answer: &Heatmap, truth: &Heatmap| segmentation.update(0, answer, truth).unwrap_err().to_string();
+    assert!(refused(&map(&[0]), &map(&[0, 0])).contains("cannot answer one of [1, 2]"));
+    assert!(refused(&map(&[0]), &map(&[1024])).contains("label 1024 is no class number below 1024"));
+    assert!(refused(&map(&[u32::MAX]), &map(&[0])).contains("4294967295"));
+    let scores = Heatmap::from_scores(vec![f32::NAN; 2], &[2, 1, 1]).unwrap();
+    assert!(refused(&scores, &map(&[0])).contains("NaN"));
+    assert!(refused(&map(&[0]), &scores).contains("map of labels"));
+    assert!(
+        refused(&Heatmap::from_scores(vec![], &[0, 1, 1]).unwrap(), &map(&[0])).contains("without scores")
+    );
+    assert_eq!(segmentation.finish(), Segmentation::default().finish());
+}
+
+#[test]
+fn highest_score_is_the_answer() {
+    let scores = Heatmap::from_scores(vec![0.5, 0.0, 0.5, 0.25, 0.0, 1.0], &[3, 1, 2]).unwrap();
+    let (labels, shape) = labels_of(&scores).unwrap();
+    assert_eq!((&labels[..], shape), (&[0, 2][..], &[1, 2][..]));
+    let mut segmentation = Segmentation::default();
+    assert_eq!(segmentation.update(0, &scores, &map(&[0, 2])).unwrap(), 1.0);
+}
+
+#[test]
+fn only_ignored_pixels() {
+    let mut segmentation = Segmentation::default();
+    assert_eq!(segmentation.update(0, &map(&[3]), &map(&[255])).unwrap(), 1.0);
+    let report = segmentation.finish();
+    assert_eq!(report.statistics.get("miou"), None);
+    assert!(report.tables[0].rows.is_empty() && report.figures.is_empty());
+}
