@@ -4,10 +4,14 @@ use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Component, Path, PathBuf};
 
+use opendr_engine::data::Image;
 use opendr_engine::{Error, Result, ResultExt};
+use opendr_vision::Encoder;
 
 use crate::Problem;
 
+/// At which a picture that is written anew loses next to nothing.
+const JPEG_QUALITY: u8 = 95;
 /// The longest text that is read whole: lists and labels, not bulk data.
 const MAX_TEXT_BYTES: u64 = 256 << 20;
 /// Names a folder may have before it is refused: ImageNet's training part has 1.3 million pictures in all.
@@ -124,6 +128,25 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
         fs::rename(&unfinished, path)
     };
     write().context(|| format!("writing {}", path.display()))
+}
+
+/// Puts a picture at `to`: a copy of the file `from` (a hard link, if wished) where that is of the same format, else
+/// `image`, encoded well.
+///
+/// # Errors
+/// `Io` when it cannot be written.
+pub(crate) fn write_picture(from: Option<&Path>, image: &Image, to: &Path, link: bool) -> Result<()> {
+    let extension = |path: &Path| path.extension().map(|extension| extension.to_ascii_lowercase());
+    let same = from.filter(|from| extension(from) == extension(to));
+    if let Some(folder) = to.parent() {
+        fs::create_dir_all(folder).context(|| format!("writing {}", to.display()))?;
+    }
+    let Some(from) = same else { return Encoder { jpeg_quality: JPEG_QUALITY }.save(image, to) };
+    if link && fs::hard_link(from, to).is_ok() {
+        return Ok(());
+    }
+    fs::copy(from, to).context(|| format!("copying {} to {}", from.display(), to.display()))?;
+    Ok(())
 }
 
 /// The last part of a path, for names and messages.

@@ -9,6 +9,7 @@ mod contact_sheet;
 mod fields;
 mod folder;
 mod format;
+mod kitti;
 mod mot;
 mod npy;
 mod problems;
@@ -20,6 +21,10 @@ pub use any::{FormatEntry, Recognition};
 pub use check::check;
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
+pub use kitti::{
+    Kitti, KittiTracking, calibration_from_kitti, kitti_from_calibration, open_kitti_calibration,
+    open_velodyne, velodyne_from_cloud,
+};
 pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use problems::{Place, Problem, Problems};

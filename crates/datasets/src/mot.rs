@@ -59,6 +59,15 @@ impl Mot {
         Some(BoundingBoxList { header, classes: self.classes.clone(), ..boxes.collect::<Vec<_>>().into() })
     }
 
+    /// Sequence, picture number and picture of sample `index`.
+    fn frame(&self, index: usize) -> Result<(&MotSequence, i64, Option<&Path>)> {
+        let found = self.place(index).and_then(|(at, picture)| {
+            let sequence = self.sequences.get(at)?;
+            sequence.frame(picture).map(|(frame, path)| (sequence, frame, path))
+        });
+        found.ok_or_else(|| past_end(index, self.len))
+    }
+
     fn of_sequences(sequences: Vec<MotSequence>, target: ValueType) -> Self {
         let (mut starts, mut len) = (Vec::with_capacity(sequences.len()), 0);
         for sequence in &sequences {
@@ -77,28 +86,49 @@ impl DatasetIterator for Mot {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let found = self.place(index).and_then(|(at, picture)| {
-            let sequence = self.sequences.get(at)?;
-            Some((sequence, sequence.frame(picture)?))
-        });
-        let (sequence, (frame, path)) = found.ok_or_else(|| past_end(index, self.len))?;
-        let header = header(sequence, frame);
-        let data = match path {
-            Some(path) => vec![Value::Image(opendr_vision::open(path)?.with_header(header.clone()))],
-            None => Vec::new(),
-        };
+        let (sequence, frame, path) = self.frame(index)?;
+        let image = path.map(opendr_vision::open).transpose()?;
+        let image = image.map(|image| Value::Image(image.with_header(header(sequence, frame))));
+        let data = image.into_iter().collect();
+        Ok(Sample { data, target: self.target(index)? })
+    }
+
+    fn target(&self, index: usize) -> Result<Option<Value>> {
+        let (sequence, frame, _) = self.frame(index)?;
+        let (header, classes) = (header(sequence, frame), self.classes.clone());
         let annotations = sequence.truth(frame).iter().map(MotRow::annotation).collect();
-        let tracks =
-            TrackingAnnotationList { header, annotations, classes: self.classes.clone(), action: None };
-        let target = match self.target {
+        let tracks = TrackingAnnotationList { header, annotations, classes, action: None };
+        Ok(Some(match self.target {
             ValueType::BoundingBoxList => {
                 let mut boxes = tracks.bounding_box_list();
                 boxes.boxes.retain(|found| found.confidence != 0.0);
                 Value::BoundingBoxList(boxes)
             }
             _ => Value::TrackingAnnotationList(tracks),
-        };
-        Ok(Sample { data, target: Some(target) })
+        }))
+    }
+
+    fn name(&self, index: usize) -> String {
+        match self.frame(index) {
+            Ok((sequence, frame, _)) => format!("{}/{frame:06}", sequence.name()),
+            Err(_) => index.to_string(),
+        }
+    }
+
+    fn path(&self, index: usize) -> Option<PathBuf> {
+        self.frame(index).ok()?.2.map(Path::to_owned)
+    }
+
+    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.sequences.get(self.place(index)?.0)?.image_size()
+    }
+
+    fn sequence(&self, index: usize) -> Option<usize> {
+        self.place(index).map(|(sequence, _)| sequence)
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
     }
 }
 

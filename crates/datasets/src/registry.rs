@@ -15,6 +15,8 @@ pub const fn formats() -> &'static [FormatEntry] {
 #[rustfmt::skip] // One line a format.
 const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::Mot>(),
+    FormatEntry::of::<crate::Kitti>(),
+    FormatEntry::of::<crate::KittiTracking>(),
 ];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.

@@ -51,6 +51,9 @@ fn sequences_follow_one_another() {
     assert!(mot.get(2).unwrap().data.is_empty());
     assert_eq!(tracks(&mot, 4).annotations[0].id, 4);
     assert_eq!(mot.detections(0).unwrap().boxes[0].confidence, 0.875);
+    assert_eq!([0, 1, 2].map(|index| mot.sequence(index)), [Some(0), Some(0), Some(1)]);
+    assert_eq!((mot.name(1), mot.picture_size(1)), ("A/000002".to_owned(), Some([4, 3])));
+    assert!(mot.path(1).unwrap().ends_with("train/A/img1/000002.jpg") && mot.path(2).is_none());
     assert!(mot.get(5).is_err() && mot.detections(5).is_none());
 }
 

@@ -6,14 +6,10 @@ use std::path::{Path, PathBuf};
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Error, Progress, Result, Unit, Value};
-use opendr_vision::Encoder;
 
-use crate::folder::{path_inside, write_file};
+use crate::folder::{path_inside, write_file, write_picture};
 use crate::mot::row::{CLASSES, PEDESTRIAN};
 use crate::{Problem, Problems, WriteOptions};
-
-/// Pictures are written as JPEG, as the challenge has them.
-const JPEG_QUALITY: u8 = 95;
 
 /// One sequence, as far as it is written.
 #[derive(Default)]
@@ -25,7 +21,7 @@ struct Unfinished {
     image_size: Option<[usize; 2]>,
 }
 
-/// A sequence goes on as long as the frame id of the header stays; pictures are numbered anew from 1.
+/// Pictures are numbered anew from 1.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,
@@ -36,45 +32,28 @@ pub(super) fn write(
     let part =
         path_inside(path, options.split.as_deref().unwrap_or("train")).map_err(Error::invalid_param)?;
     progress.begin("writing MOT", Some(dataset.len() as u64), Unit::Items);
-    let mut sequence: Option<Unfinished> = None;
+    let mut current: Option<Unfinished> = None;
     for index in 0..dataset.len() {
         if progress.stopped() {
             break;
         }
-        let written = dataset.get(index).and_then(|sample| add(&mut sequence, &part, sample));
+        if index == 0 || dataset.sequence(index) != dataset.sequence(index - 1) {
+            current.take().map_or(Ok(()), Unfinished::finish)?;
+        }
+        let written = dataset.get(index).and_then(|sample| {
+            let sequence = match &mut current {
+                Some(sequence) => sequence,
+                None => current.insert(Unfinished::begin(&part, dataset, index, &sample)?),
+            };
+            sequence.add(dataset, index, &sample, options.link)
+        });
         if let Err(error) = written {
             problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?;
         }
         progress.advance(1);
     }
     progress.end();
-    sequence.map_or(Ok(()), Unfinished::finish)
-}
-
-fn add(sequence: &mut Option<Unfinished>, part: &Path, sample: Sample) -> Result<()> {
-    let tracks = match sample.target {
-        Some(Value::TrackingAnnotationList(tracks)) => tracks,
-        _ => return Err(Error::invalid_input("no tracks; MOT holds a TrackingAnnotationList a sample")),
-    };
-    let name = tracks.header.frame_id.as_deref().unwrap_or("sequence");
-    if sequence.as_ref().is_none_or(|current| current.name != name) {
-        let folder = path_inside(part, name).map_err(Error::invalid_input)?;
-        let begun = Unfinished { folder, name: name.to_owned(), ..Unfinished::default() };
-        if let Some(done) = sequence.replace(begun) {
-            done.finish()?;
-        }
-    }
-    let Some(current) = sequence else { return Ok(()) };
-    let truth = truth_text(&tracks, current.pictures + 1)?;
-    if let Some(Value::Image(image)) = sample.data.first() {
-        let file = current.folder.join(format!("img1/{:06}.jpg", current.pictures + 1));
-        std::fs::create_dir_all(current.folder.join("img1"))?;
-        Encoder { jpeg_quality: JPEG_QUALITY }.save(image, file)?;
-        current.image_size = Some([image.width(), image.height()]);
-    }
-    current.pictures += 1;
-    current.truth += &truth;
-    Ok(())
+    current.map_or(Ok(()), Unfinished::finish)
 }
 
 /// Lines of nine fields; what is seen of an object is not known, hence 1.
@@ -99,6 +78,36 @@ fn truth_text(tracks: &TrackingAnnotationList, frame: i64) -> Result<String> {
 }
 
 impl Unfinished {
+    /// A sequence with the name that the header of its first target has.
+    fn begin(part: &Path, dataset: &dyn DatasetIterator, index: usize, sample: &Sample) -> Result<Self> {
+        let named = sample.target.as_ref().and_then(|target| target.header().frame_id.clone());
+        let number = dataset.sequence(index).unwrap_or(0);
+        let name = named.map_or_else(|| format!("{number:04}"), |name| name.to_string());
+        let folder = path_inside(part, &name).map_err(Error::invalid_input)?;
+        Ok(Self { folder, name, ..Self::default() })
+    }
+
+    fn add(
+        &mut self,
+        dataset: &dyn DatasetIterator,
+        index: usize,
+        sample: &Sample,
+        link: bool,
+    ) -> Result<()> {
+        let Some(Value::TrackingAnnotationList(tracks)) = &sample.target else {
+            return Err(Error::invalid_input("no tracks; MOT holds a TrackingAnnotationList a sample"));
+        };
+        let truth = truth_text(tracks, self.pictures + 1)?;
+        if let Some(Value::Image(image)) = sample.data.first() {
+            let file = self.folder.join(format!("img1/{:06}.jpg", self.pictures + 1));
+            write_picture(dataset.path(index).as_deref(), image, &file, link)?;
+            self.image_size = Some([image.width(), image.height()]);
+        }
+        self.pictures += 1;
+        self.truth += &truth;
+        Ok(())
+    }
+
     fn finish(self) -> Result<()> {
         let mut info = format!(
             "[Sequence]\nname={}\nimDir=img1\nframeRate=30\nseqLength={}\n",

@@ -1,0 +1,117 @@
+//! KITTI's benchmarks: boxes in space over lidar and pictures, of single scenes and of recordings.
+
+use std::path::{Path, PathBuf};
+
+use opendr_engine::data::{PointCloud, PointCloudWithCalibration};
+use opendr_engine::{Error, Header, Result, Value, ValueType};
+
+use crate::folder::folders_in;
+
+mod calibration;
+mod labels;
+mod object;
+mod tracking;
+mod velodyne;
+mod write;
+
+pub use calibration::{calibration_from_kitti, kitti_from_calibration, open_kitti_calibration};
+pub use object::Kitti;
+pub use tracking::KittiTracking;
+pub use velodyne::{open_velodyne, velodyne_from_cloud};
+
+/// Parts with labels come first.
+const PARTS: [&str; 2] = ["training", "testing"];
+
+/// What lies in KITTI's folders for one instant.
+#[derive(Debug, Clone, Default)]
+struct Scene {
+    picture: Option<PathBuf>,
+    cloud: Option<PathBuf>,
+    calibration: Option<PathBuf>,
+}
+
+impl Scene {
+    /// The data that go with `target`: for boxes in space the cloud (with its calibration, when there is one), for
+    /// boxes in the picture that picture; the other where there is only that.
+    fn data(&self, target: ValueType, header: &Header) -> Result<Vec<Value>> {
+        Ok(match (&self.cloud, &self.picture) {
+            (Some(cloud), picture) if !is_flat(target) || picture.is_none() => {
+                let cloud = open_velodyne(cloud)?.with_header(header.clone());
+                vec![self.with_calibration(cloud)?]
+            }
+            (_, Some(picture)) => {
+                vec![Value::Image(opendr_vision::open(picture)?.with_header(header.clone()))]
+            }
+            (_, None) => Vec::new(),
+        })
+    }
+
+    /// The file of the datum that goes with `target`.
+    fn path(&self, target: ValueType) -> Option<PathBuf> {
+        match is_flat(target) {
+            true => self.picture.clone().or_else(|| self.cloud.clone()),
+            false => self.cloud.clone().or_else(|| self.picture.clone()),
+        }
+    }
+
+    fn with_calibration(&self, cloud: PointCloud) -> Result<Value> {
+        let Some(path) = &self.calibration else { return Ok(Value::PointCloud(cloud)) };
+        let calibration = open_kitti_calibration(path)?;
+        let image_shape = self.picture.as_deref().and_then(png_shape);
+        Ok(Value::PointCloudWithCalibration(PointCloudWithCalibration::new(cloud, calibration, image_shape)))
+    }
+}
+
+/// Whether the target lies in the picture.
+fn is_flat(target: ValueType) -> bool {
+    matches!(target, ValueType::BoundingBoxList | ValueType::TrackingAnnotationList)
+}
+
+/// `[height, width]` of a PNG picture by its first bytes.
+fn png_shape(path: &Path) -> Option<[usize; 2]> {
+    use std::io::Read;
+    let mut head = [0; 24];
+    std::fs::File::open(path).ok()?.read_exact(&mut head).ok()?;
+    head.starts_with(b"\x89PNG\r\n\x1a\n").then_some(())?;
+    let side = |at: usize| Some(u32::from_be_bytes(*head.get(at..)?.first_chunk()?) as usize);
+    Some([side(20)?, side(16)?])
+}
+
+/// The target asked for, which must be one of `targets`.
+fn wanted_target(wanted: Option<ValueType>, targets: &[ValueType]) -> Result<ValueType> {
+    let first = targets.first().copied().unwrap_or(ValueType::BoundingBox3DList);
+    match wanted {
+        None => Ok(first),
+        Some(target) if targets.contains(&target) => Ok(target),
+        Some(other) => {
+            let names: Vec<_> = targets.iter().map(|target| target.name()).collect();
+            let (other, names) = (other.name(), names.join(" and "));
+            Err(Error::unsupported(format!("these labels can be read as {names}, not as {other}")))
+        }
+    }
+}
+
+/// The folder that has `folders`: `path` itself or its part.
+fn folder_with(path: &Path, wanted: Option<&str>, folders: &[&str]) -> Result<Option<PathBuf>> {
+    let has = |folder: &Path| folders.iter().any(|name| folder.join(name).is_dir());
+    let wanted = match wanted {
+        Some("train" | "val" | "trainval") => Some("training"),
+        Some("test") => Some("testing"),
+        other => other,
+    };
+    match wanted {
+        _ if has(path) => Ok(Some(path.to_owned())),
+        Some(part) if PARTS.contains(&part) && !path.join(part).is_dir() => {
+            let there = folders_in(path).join(", ");
+            Err(Error::not_found(format!("no part {part} in {}; there are {there}", path.display())))
+        }
+        Some(part) if PARTS.contains(&part) => Ok(Some(path.join(part)).filter(|folder| has(folder))),
+        Some(part) => {
+            Err(Error::not_found(format!("KITTI has training, testing, train and val, no part {part:.40?}")))
+        }
+        None => Ok(PARTS.iter().map(|part| path.join(part)).find(|folder| has(folder))),
+    }
+}
+
+#[cfg(test)]
+mod tests;
