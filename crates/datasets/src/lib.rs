@@ -5,6 +5,8 @@
 
 mod any;
 mod check;
+mod class_table;
+mod coco;
 mod contact_sheet;
 mod fields;
 mod folder;
@@ -12,6 +14,8 @@ mod format;
 mod kitti;
 mod mot;
 mod npy;
+mod picture_box;
+mod picture_files;
 mod problems;
 mod registry;
 mod stats;
@@ -19,6 +23,7 @@ mod wav;
 
 pub use any::{FormatEntry, Recognition};
 pub use check::check;
+pub use coco::Coco;
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use kitti::{

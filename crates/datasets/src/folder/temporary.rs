@@ -25,6 +25,22 @@ impl TemporaryFolder {
         self
     }
 
+    /// Writes a file and the folders above it; where it lies.
+    pub(crate) fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.join(name);
+        super::write_file(&path, bytes.as_ref()).unwrap();
+        path
+    }
+
+    /// Writes a picture, its pixels told apart by their place; where it lies.
+    pub(crate) fn picture(&self, name: &str, width: usize, height: usize) -> PathBuf {
+        let path = self.write(name, "");
+        let samples = (0..width * height * 3).map(|at| (at % 251) as u8).collect();
+        let image = opendr_engine::data::Image::from_rgb8(samples, width, height).unwrap();
+        opendr_vision::save(&image, &path).unwrap();
+        path
+    }
+
     /// Writes a small picture.
     pub(crate) fn with_picture(self, name: &str) -> Self {
         let image = opendr_engine::data::Image::from_rgb8(vec![200; 4 * 3 * 3], 4, 3).unwrap();

@@ -76,6 +76,17 @@ pub trait DatasetIterator: Dataset {
     fn classes(&self) -> Classes {
         Classes::default()
     }
+
+    /// The number that the data set's own files give each class, e.g. COCO's category ids; empty when they are the class
+    /// numbers.
+    fn class_ids(&self) -> Vec<i64> {
+        Vec::new()
+    }
+
+    /// The number that the data set's own files give sample number `index`, e.g. COCO's picture id.
+    fn id(&self, _index: usize) -> Option<i64> {
+        None
+    }
 }
 
 /// A data set as `fit` and `eval` take it.
@@ -120,6 +131,14 @@ macro_rules! forward {
 
         fn classes(&$self) -> $crate::target::Classes {
             $inner.classes()
+        }
+
+        fn class_ids(&$self) -> Vec<i64> {
+            $inner.class_ids()
+        }
+
+        fn id(&$self, $index: usize) -> Option<i64> {
+            $inner.id($at)
         }
     };
 }

@@ -75,7 +75,7 @@ impl Decoder {
         upright(stored, orientation)
     }
 
-    fn read(&self, path: &Path) -> Result<Vec<u8>> {
+    pub(super) fn read(&self, path: &Path) -> Result<Vec<u8>> {
         let limit = self.max_bytes();
         let mut file = File::open(path)?;
         let metadata = file.metadata()?;

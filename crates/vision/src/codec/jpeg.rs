@@ -39,6 +39,15 @@ pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(Image, Orientati
     Ok((image, orientation.unwrap_or(Orientation::NoTransforms)))
 }
 
+/// Width and height as stored, and how the picture is to be turned.
+pub(super) fn size(bytes: &[u8]) -> Result<([u32; 2], Orientation)> {
+    let mut decoder = JpegDecoder::new(ZCursor::new(bytes));
+    decoder.decode_headers().map_err(damaged)?;
+    let (width, height) = decoder.dimensions().unwrap_or_default();
+    let orientation = decoder.exif().and_then(|exif| Orientation::from_exif_chunk(exif));
+    Ok(([width as u32, height as u32], orientation.unwrap_or(Orientation::NoTransforms)))
+}
+
 /// Whether an end marker follows the start of the first scan. The segments before it are walked, because an
 /// embedded preview has markers of its own.
 fn has_end(bytes: &[u8]) -> bool {

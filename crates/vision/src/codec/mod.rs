@@ -8,6 +8,7 @@ mod encode;
 mod finding;
 mod jpeg;
 mod orientation;
+mod size;
 
 pub use decode::{Decoder, decode, open};
 pub use encode::{Encoder, save};

@@ -1,0 +1,82 @@
+//! Classes of a data set that is written, as they come up.
+
+use std::collections::HashMap;
+
+use opendr_engine::target::{Classes, Name};
+use opendr_engine::{Error, Result};
+
+/// More classes than any data set has: a number above is a mistake.
+const MOST: usize = 1 << 16;
+
+/// The names of classes by number; labels that no class is called are given the next number.
+#[derive(Debug, Default)]
+pub(crate) struct ClassTable {
+    names: Vec<String>,
+    numbers: HashMap<String, usize>,
+    /// Whether the data set names its classes, so that other numbers are mistakes.
+    named: bool,
+}
+
+impl ClassTable {
+    /// Begins with the classes that a data set names.
+    pub fn new(classes: &Classes) -> Self {
+        let mut table = Self { named: !classes.is_empty(), ..Self::default() };
+        classes.iter().for_each(|name| table.push(name));
+        table
+    }
+
+    /// The number of a class.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a number that is no class.
+    pub fn number(&mut self, name: &Name) -> Result<usize> {
+        match name {
+            Name::Label(label) => {
+                if !self.numbers.contains_key(&**label) {
+                    self.push(label);
+                }
+                Ok(self.numbers[&**label])
+            }
+            Name::Index(index) => {
+                let most = if self.named { self.names.len() } else { MOST };
+                let number = usize::try_from(*index).ok().filter(|number| *number < most);
+                let number = number.ok_or_else(|| {
+                    Error::invalid_input(format!(
+                        "class {index} is none of the {most} classes, numbered from 0"
+                    ))
+                })?;
+                while self.names.len() <= number {
+                    self.push(&self.names.len().to_string());
+                }
+                Ok(number)
+            }
+        }
+    }
+
+    /// The names in the order of their numbers.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    fn push(&mut self, name: &str) {
+        self.numbers.entry(name.to_owned()).or_insert(self.names.len());
+        self.names.push(name.to_owned());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_are_added_and_wrong_numbers_refused() {
+        let mut table = ClassTable::new(&["cat", "dog"].into_iter().collect());
+        assert_eq!(table.number(&Name::from("dog")).unwrap(), 1);
+        assert_eq!(table.number(&Name::from("cow")).unwrap(), 2);
+        assert_eq!(table.number(&Name::from(0)).unwrap(), 0);
+        assert!(table.number(&Name::from(3)).is_err() && table.number(&Name::from(-1)).is_err());
+        let mut nameless = ClassTable::new(&Classes::default());
+        assert_eq!(nameless.number(&Name::from(2)).unwrap(), 2);
+        assert_eq!(nameless.names(), ["0", "1", "2"]);
+    }
+}
