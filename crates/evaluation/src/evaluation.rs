@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::journal::{Answer, Heading, Journal, Line};
 use crate::worst::Worst;
-use crate::{ClassMap, Outcome};
+use crate::{Answers, ClassMap, Outcome};
 
 /// The worst samples that are listed.
 const WORST: usize = 24;
@@ -80,9 +80,41 @@ impl<'a> Evaluation<'a> {
         ports: &'static [Port],
         dataset: &dyn DatasetIterator,
     ) -> Result<Outcome> {
-        let count = dataset.len();
         let begun = Instant::now();
-        let mut tally = Tally {
+        let mut tally = self.begin(dataset)?;
+        let done =
+            self.resume(&mut tally).and_then(|journal| self.answer(learners, ports, &mut tally, journal));
+        self.progress.end();
+        done?;
+        self.finish(tally, begun)
+    }
+
+    /// Counts answers that somebody wrote down.
+    ///
+    /// # Errors
+    /// As [`Evaluation::run`].
+    pub fn score(&self, answers: &Answers, dataset: &dyn DatasetIterator) -> Result<Outcome> {
+        let begun = Instant::now();
+        let mut tally = self.begin(dataset)?;
+        let done = (0..dataset.len()).take_while(|_| !self.progress.stopped()).try_for_each(|at| {
+            let answer = answers.get(at, self.metric.prediction);
+            self.progress.advance(1);
+            tally.count(Line { at, name: dataset.name(at), answer: Answer::from(answer) })
+        });
+        self.progress.end();
+        done?;
+        if let Some(folder) = self.folder {
+            fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
+        }
+        self.finish(tally, begun)
+    }
+
+    fn begin<'d>(&self, dataset: &'d dyn DatasetIterator) -> Result<Tally<'d>>
+    where
+        'a: 'd,
+    {
+        self.progress.begin("evaluating", Some(dataset.len() as u64), Unit::Items);
+        Ok(Tally {
             metric: self.metric.make(&self.metric_params)?,
             classes: ClassMap::to(dataset.classes()),
             worst: Worst::new(WORST),
@@ -90,20 +122,18 @@ impl<'a> Evaluation<'a> {
             counted: 0,
             dataset,
             problems: self.problems,
-        };
-        self.progress.begin("evaluating", Some(count as u64), Unit::Items);
-        let done =
-            self.resume(&mut tally).and_then(|journal| self.answer(learners, ports, &mut tally, journal));
-        self.progress.end();
-        done?;
+        })
+    }
+
+    fn finish(&self, tally: Tally<'_>, begun: Instant) -> Result<Outcome> {
         let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
             metric: self.metric.name.to_owned(),
-            samples: count,
+            samples: tally.dataset.len(),
             counted: tally.counted,
             skipped: self.problems.count(),
-            complete: tally.next == count,
+            complete: tally.next == tally.dataset.len(),
             seconds: begun.elapsed().as_secs_f64(),
             report: tally.metric.finish(),
             worst: tally.worst.into_samples(),
@@ -111,7 +141,7 @@ impl<'a> Evaluation<'a> {
             written: Vec::new(),
         };
         if let Some(folder) = self.folder {
-            outcome.write(dataset, folder)?;
+            outcome.write(tally.dataset, folder)?;
         }
         Ok(outcome)
     }
@@ -171,11 +201,7 @@ impl<'a> Evaluation<'a> {
             (at, infer(learner.as_mut(), ports, dataset, at, wanted.name()))
         };
         map_in_order(&mut learners[..workers], indices, work, |(at, answer)| {
-            let answer = match answer {
-                Ok(value) => Answer::Prediction(Box::new(value)),
-                Err(error) => Answer::Error(error.to_string()),
-            };
-            let line = Line { at, name: dataset.name(at), answer };
+            let line = Line { at, name: dataset.name(at), answer: Answer::from(answer) };
             if let Some(journal) = &mut journal {
                 journal.write(&line)?;
             }

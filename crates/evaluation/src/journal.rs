@@ -61,6 +61,15 @@ pub enum Answer {
     Error(String),
 }
 
+impl From<Result<Value>> for Answer {
+    fn from(answer: Result<Value>) -> Self {
+        match answer {
+            Ok(value) => Self::Prediction(Box::new(value)),
+            Err(error) => Self::Error(error.to_string()),
+        }
+    }
+}
+
 /// A journal that is being written.
 pub struct Journal {
     path: PathBuf,

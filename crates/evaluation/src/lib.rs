@@ -1,17 +1,20 @@
 //! `eval` of every task: a learner over a data set, counted by the task's metric.
 //!
 //! [`Evaluation`] runs it, resumes it from its journal, and ends in an [`Outcome`]: numbers, tables, figures, the worst
-//! samples. Nothing here knows a learner or a format.
+//! samples. It takes a learner's [`Answers`] from files as well. Nothing here knows a learner or a format.
 
+mod answers;
 mod classes;
 mod evaluation;
 mod figure;
 mod journal;
 mod open;
 mod outcome;
+mod sample_names;
 mod task;
 mod worst;
 
+pub use answers::{Answers, Lines};
 pub use classes::ClassMap;
 pub use evaluation::{Evaluation, Subject};
 pub use figure::svg_from_figure;

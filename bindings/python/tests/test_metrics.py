@@ -1,0 +1,161 @@
+"""Metrics beside any learner, and `eval` of learners."""
+
+from __future__ import annotations
+
+import json
+import os
+import threading
+
+import numpy as np
+import opendr
+import pytest
+from opendr.engine.data import Image
+from opendr.engine.datasets import DatasetIterator, ExternalDataset
+from opendr.engine.target import BoundingBox, BoundingBoxList, Category
+from opendr.metrics import Metric, names, tables
+
+
+def test_tables_name_defaults_and_types():
+    assert {"classification", "coco_detection", "coco_keypoints", "voc_detection"} <= set(names())
+    table = next(table for table in tables() if table["name"] == "coco_detection")
+    assert (table["prediction"], table["truth"]) == ("BoundingBoxList", "BoundingBoxList")
+
+
+def box(name, left, score=0.0):
+    return BoundingBox(name=name, left=left, top=0, width=10, height=10, score=score)
+
+
+def test_metric_counts_merges_and_tells():
+    truth, wrong = BoundingBoxList([box(0, 0)]), BoundingBoxList([box(0, 50, 0.9)])
+    right = BoundingBoxList([box(0, 0, 0.8)])
+    whole = Metric("coco_detection")
+    assert whole.update(right, truth) > whole.update(wrong, truth)
+    one, other = Metric("coco_detection"), Metric("coco_detection")
+    one.update(right, truth, at=0)
+    other.update(wrong, truth, at=1)
+    one.merge(other)
+    assert one.result() == whole.result()
+    assert whole.result()["map50"] == pytest.approx(0.2525, abs=1e-3)
+
+
+def test_wrong_use_is_refused():
+    with pytest.raises(opendr.NotFound, match="coco_detection"):
+        Metric("coco")
+    with pytest.raises(opendr.InvalidParam):
+        Metric("classification", nonsense=3)
+    metric = Metric("classification")
+    with pytest.raises(opendr.InvalidInput, match="Category"):
+        metric.update(BoundingBoxList([]), Category(1))
+    with pytest.raises(opendr.InvalidInput):
+        metric.merge(metric)
+    with pytest.raises(opendr.InvalidInput):
+        metric.merge(Metric("coco_detection"))
+
+
+def test_threads_may_share_a_metric():
+    metric = Metric("classification")
+
+    def count(offset):
+        for at in range(100):
+            metric.update(Category(at % 2, confidence=1.0), Category(at % 4 // 2), at=offset + at)
+
+    threads = [threading.Thread(target=count, args=(100 * at,)) for at in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert metric.result()["accuracy"] == 0.5
+
+
+class Astronauts(DatasetIterator):
+    """One picture again and again; its second sample says something wrong."""
+
+    classes = ["cat", "human"]
+
+    def __init__(self, picture):
+        self.picture = picture
+
+    def __len__(self):
+        return 3
+
+    def __getitem__(self, idx):
+        person = BoundingBox(name=1, left=20, top=10, width=450, height=500, score=0)
+        cat = BoundingBox(name=0, left=0, top=0, width=20, height=20, score=0)
+        return self.picture, BoundingBoxList([cat if idx == 1 else person])
+
+
+@pytest.fixture(scope="module")
+def detector():
+    if not os.environ.get("OPENDR_TEST_DATA"):
+        pytest.skip("skipped: no OPENDR_TEST_DATA")
+    learner = opendr.learner("centernet")
+    return learner
+
+
+@pytest.fixture(scope="module")
+def picture(detector):
+    from opendr import _opendr
+
+    return Image.open(_opendr.sample("astronaut", False))
+
+
+def test_eval_of_a_python_data_set_resumes(detector, picture, tmp_path):
+    dataset = Astronauts(picture)
+    outcome = detector.eval(dataset, folder=tmp_path)
+    report = outcome["report"]
+    assert (report["samples"], report["counted"], report["complete"], report["skipped"]) == (3, 3, True, 0)
+    # "person" is the data set's "human"; classes that it does not have do not count.
+    assert outcome["map50"] == report["scalars"]["map50"] > 0.2
+    assert report["worst"][0]["index"] == 1
+    assert {"predictions.jsonl", "report.json", "worst.png"} <= {path.name for path in tmp_path.iterdir()}
+    assert any(path.suffix == ".svg" for path in tmp_path.iterdir())
+    lines = (tmp_path / "predictions.jsonl").read_text().splitlines(keepends=True)
+    assert len(lines) == 4
+
+    class Watched(Astronauts):
+        read: list[int] = []
+
+        def __getitem__(self, idx):
+            self.read.append(idx)
+            return super().__getitem__(idx)
+
+    # Broken off within the third sample.
+    (tmp_path / "predictions.jsonl").write_text("".join(lines[:3]) + lines[3][:20])
+    again = Watched(picture)
+    Watched.__name__ = "Astronauts"
+    resumed = detector.eval(again, folder=tmp_path)
+    assert {key: value for key, value in resumed.items() if key != "report"} == {
+        key: value for key, value in outcome.items() if key != "report"
+    }
+    with pytest.raises(opendr.InvalidInput, match="another evaluation .parameters"):
+        detector.threshold = 0.5
+        detector.eval(again, folder=tmp_path)
+    detector.threshold = 0.3
+    assert json.loads((tmp_path / "report.json").read_text())["counted"] == 3
+
+
+def test_eval_leaves_out_what_is_broken(detector, picture):
+    class Broken(Astronauts):
+        def __getitem__(self, idx):
+            if idx == 2:
+                raise OSError("the disk is on fire")
+            return super().__getitem__(idx)
+
+    with pytest.raises(ValueError, match="2: OSError: the disk is on fire"):
+        detector.eval(Broken(picture))
+    report = detector.eval(Broken(picture), skip_broken=True)["report"]
+    assert (report["counted"], report["skipped"]) == (2, 1)
+    assert "on fire" in report["problems"][0]["message"]
+
+
+def test_eval_refuses_what_does_not_fit(detector, tmp_path):
+    with pytest.raises(TypeError, match="ExternalDataset"):
+        detector.eval("coco")
+    with pytest.raises(FileNotFoundError):
+        detector.eval(ExternalDataset(tmp_path / "none", "coco"))
+    with pytest.raises(FileNotFoundError):
+        detector.eval(ExternalDataset(tmp_path, "no such format"))
+    with pytest.raises(ValueError):
+        detector.eval(ExternalDataset(tmp_path, "auto"))
+    with pytest.raises(opendr.InvalidInput):
+        detector.eval([(Image(np.zeros((3, 8, 8), np.uint8)), Category(1))])
