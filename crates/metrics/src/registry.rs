@@ -11,8 +11,12 @@ pub const fn metrics() -> &'static [MetricEntry] {
         &[
             MetricEntry::of::<crate::Classification>(),
             MetricEntry::of::<crate::ClearMot>(),
+            MetricEntry::of::<crate::Depth>(),
             MetricEntry::of::<crate::Hota>(),
             MetricEntry::of::<crate::Identity>(),
+            MetricEntry::of::<crate::Keypoints>(),
+            MetricEntry::of::<crate::Regression>(),
+            MetricEntry::of::<crate::Reidentification>(),
             MetricEntry::of::<crate::Roc>(),
             MetricEntry::of::<crate::Segmentation>(),
             MetricEntry::of::<crate::Transcription>(),

@@ -1,0 +1,311 @@
+//! Depth and stereo: relative and squared errors, share of pixels within a factor, share of bad pixels.
+
+use std::collections::BTreeMap;
+
+use opendr_engine::params::Params;
+use opendr_engine::target::{Heatmap, HeatmapValues};
+use opendr_engine::{Error, Result};
+
+use crate::average::ratio;
+use crate::{Metric, Report};
+
+opendr_engine::choices! {
+    /// What a map tells of each pixel.
+    pub enum DepthQuantity {
+        /// Distance in metres.
+        Depth = "depth",
+        /// Shift between the two pictures of a stereo camera, in pixels.
+        Disparity = "disparity",
+    }
+}
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct DepthParams {
+    /// What the maps tell.
+    pub quantity: DepthQuantity,
+    /// Smaller depths do not count as truth; predicted ones are raised to it.
+    #[param(default = 1e-3, range = 1e-9..=1e6, unit = "m")]
+    pub min_depth: f64,
+    /// Larger depths do not count as truth; predicted ones are lowered to it.
+    #[param(range = 1e-9..=1e9, unit = "m")]
+    pub max_depth: Option<f64>,
+}
+
+/// Errors of depth, each a mean over pixels (Eigen et al., 2014).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DepthErrors {
+    /// Distance from the truth as a share of it.
+    pub absolute_relative: f64,
+    /// Squared distance from the truth over it, metres.
+    pub squared_relative: f64,
+    /// Root of the mean squared distance, metres.
+    pub rmse: f64,
+    /// Root of the mean squared distance of the natural logarithms.
+    pub rmse_log: f64,
+    /// Standard deviation of the distance of the natural logarithms: [`DepthErrors::rmse_log`] at the best scale.
+    pub scale_invariant_log: f64,
+    /// Shares of the pixels whose ratio to the truth is within 1.25, 1.25² and 1.25³ (below it, either way).
+    pub within: [f64; 3],
+}
+
+impl DepthErrors {
+    /// Over the pixels of one picture whose truth is finite and within `range`, metres; `None` where there is none.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the maps differ in size or an answer to such a pixel is NaN.
+    pub fn of(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<Option<Self>> {
+        let (mut count, mut sums, mut within) = (0_u64, [0.0; 5], [0_u64; 3]);
+        for (truth, predicted) in pairs(truth, predicted, range)? {
+            let predicted = predicted.clamp(range[0], range[1]);
+            let (error, log) = (predicted - truth, (predicted / truth).ln());
+            let terms = [error.abs() / truth, error * error / truth, error * error, log * log, log];
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            let factor = (predicted / truth).max(truth / predicted);
+            for (count, bound) in within.iter_mut().zip([1.25, 1.25 * 1.25, 1.25 * 1.25 * 1.25]) {
+                *count += u64::from(factor < bound);
+            }
+            count += 1;
+        }
+        let [absolute_relative, squared_relative, squared, log_squared, log] =
+            sums.map(|sum| sum / count as f64);
+        Ok((count > 0).then(|| Self {
+            absolute_relative,
+            squared_relative,
+            rmse: squared.sqrt(),
+            rmse_log: log_squared.sqrt(),
+            scale_invariant_log: (log_squared - log * log).max(0.0).sqrt(),
+            within: within.map(|within| within as f64 / count as f64),
+        }))
+    }
+
+    /// All of them under the keys of the report.
+    pub fn numbers(&self) -> [(&'static str, f64); 8] {
+        let [first, second, third] = self.within;
+        [
+            ("abs_rel", self.absolute_relative),
+            ("sq_rel", self.squared_relative),
+            ("rmse", self.rmse),
+            ("rmse_log", self.rmse_log),
+            ("silog", self.scale_invariant_log),
+            ("delta1", first),
+            ("delta2", second),
+            ("delta3", third),
+        ]
+    }
+}
+
+/// Errors of disparity, counted over pixels.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DisparityErrors {
+    /// Pixels with a truth.
+    pub pixels: u64,
+    /// Sum of the distances from the truth, pixels.
+    pub distance: f64,
+    /// Pixels more than 1, 2 and 3 pixels off.
+    pub bad: [u64; 3],
+    /// Pixels more than 3 pixels and more than 5 % off: KITTI's outliers, D1.
+    pub outliers: u64,
+}
+
+impl DisparityErrors {
+    /// Over the pixels of one picture whose truth is finite and above 0.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the maps differ in size or an answer to such a pixel is NaN or infinite.
+    pub fn of(truth: &[f32], predicted: &[f32]) -> Result<Self> {
+        let mut errors = Self::default();
+        for (truth, predicted) in pairs(truth, predicted, [f64::MIN_POSITIVE, f64::MAX])? {
+            let distance = (predicted - truth).abs();
+            if !distance.is_finite() {
+                return Err(Error::invalid_input(
+                    "a disparity is infinite; give numbers, or 0 for what is far",
+                ));
+            }
+            errors.pixels += 1;
+            errors.distance += distance;
+            for (bad, bound) in errors.bad.iter_mut().zip([1.0, 2.0, 3.0]) {
+                *bad += u64::from(distance > bound);
+            }
+            errors.outliers += u64::from(distance > 3.0 && distance / truth > 0.05);
+        }
+        Ok(errors)
+    }
+
+    fn add(&mut self, other: &Self) {
+        self.pixels += other.pixels;
+        self.distance += other.distance;
+        self.outliers += other.outliers;
+        self.bad.iter_mut().zip(other.bad).for_each(|(mine, more)| *mine += more);
+    }
+}
+
+/// Truth and answer of the pixels that have a truth within `range`; none of them is NaN.
+fn pairs(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<impl Iterator<Item = (f64, f64)>> {
+    if truth.len() != predicted.len() {
+        let (wanted, given) = (truth.len(), predicted.len());
+        return Err(Error::invalid_input(format!(
+            "a map of {given} pixels cannot answer one of {wanted}; give maps of the same size"
+        )));
+    }
+    let all =
+        truth.iter().zip(predicted).map(|(truth, predicted)| (f64::from(*truth), f64::from(*predicted)));
+    let valid = all.filter(move |(truth, _)| (range[0]..=range[1]).contains(truth) && truth.is_finite());
+    match valid.clone().any(|(_, predicted)| predicted.is_nan()) {
+        true => Err(Error::invalid_input("the answer to a pixel that has a truth is NaN; give numbers")),
+        false => Ok(valid),
+    }
+}
+
+/// Adds up errors of pictures. Those of depth are means over pictures, as benchmarks have them; those of disparity are
+/// over all pixels.
+#[derive(Debug, Clone, Default)]
+pub struct Depth {
+    params: DepthParams,
+    pictures: u64,
+    /// Of the errors of each picture, by key.
+    depth: BTreeMap<&'static str, f64>,
+    disparity: DisparityErrors,
+}
+
+impl Depth {
+    fn add(&mut self, numbers: impl IntoIterator<Item = (&'static str, f64)>) {
+        for (key, number) in numbers {
+            *self.depth.entry(key).or_default() += number;
+        }
+    }
+}
+
+/// Maps of scores `[height, width]`; where the truth is 0, NaN or infinite, there is none.
+impl Metric for Depth {
+    const NAME: &'static str = "depth";
+    const ABOUT: &'static str =
+        "relative and root errors and delta of depth; end-point error, bad pixels and D1 of disparity";
+    type Params = DepthParams;
+    type Prediction = Heatmap;
+    type Truth = Heatmap;
+
+    fn new(params: &DepthParams) -> Result<Self> {
+        let (min, max) = (params.min_depth, params.max_depth);
+        if max.is_some_and(|max| max < min) {
+            return Err(Error::invalid_param(format!("max_depth = {max:?} is below min_depth = {min}")));
+        }
+        Ok(Self { params: params.clone(), ..Self::default() })
+    }
+
+    fn update(&mut self, _at: usize, prediction: &Heatmap, truth: &Heatmap) -> Result<f64> {
+        let (HeatmapValues::Scores(given), HeatmapValues::Scores(wanted)) =
+            (prediction.values(), truth.values())
+        else {
+            return Err(Error::invalid_input("depth is a map of scores, not of labels"));
+        };
+        if prediction.shape() != truth.shape() {
+            let (given, wanted) = (prediction.shape(), truth.shape());
+            return Err(Error::invalid_input(format!(
+                "a map of shape {given:?} cannot answer one of {wanted:?}; resize the prediction to the truth"
+            )));
+        }
+        if self.params.quantity == DepthQuantity::Disparity {
+            let errors = DisparityErrors::of(wanted, given)?;
+            self.disparity.add(&errors);
+            self.pictures += u64::from(errors.pixels > 0);
+            return Ok(1.0 - ratio(errors.outliers, errors.pixels).unwrap_or(0.0));
+        }
+        let range = [self.params.min_depth, self.params.max_depth.unwrap_or(f64::MAX)];
+        let Some(errors) = DepthErrors::of(wanted, given, range)? else { return Ok(1.0) };
+        self.add(errors.numbers());
+        self.pictures += 1;
+        Ok(errors.within[0])
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.pictures += other.pictures;
+        self.add(other.depth);
+        self.disparity.add(&other.disparity);
+    }
+
+    fn finish(&self) -> Report {
+        let disparity = self.params.quantity == DepthQuantity::Disparity;
+        let mut report = Report::new(if disparity { "d1" } else { "abs_rel" });
+        report.statistics.set("pictures", self.pictures as f64);
+        if disparity {
+            let DisparityErrors { pixels, distance, bad, outliers } = self.disparity;
+            report.statistics.set("end_point_error", distance / pixels as f64);
+            for (key, count) in
+                ["bad_1", "bad_2", "bad_3", "d1"].into_iter().zip(bad.into_iter().chain([outliers]))
+            {
+                report.statistics.set(key, count as f64 / pixels as f64);
+            }
+        } else {
+            for (key, sum) in &self.depth {
+                report.statistics.set(*key, sum / self.pictures as f64);
+            }
+        }
+        report
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [f64; 2] = [1e-3, f64::MAX];
+
+    fn map(depths: &[f32]) -> Heatmap {
+        Heatmap::from_scores(depths.to_vec(), &[1, depths.len()]).unwrap()
+    }
+
+    #[test]
+    fn depths_by_hand() {
+        let truth = [2.0, 4.0, 0.0, f32::NAN, f32::INFINITY];
+        let errors = DepthErrors::of(&truth, &[2.0, 5.0, 9.0, 9.0, f32::NAN], ALL).unwrap().unwrap();
+        assert_eq!(errors.absolute_relative, 0.125);
+        assert_eq!(errors.squared_relative, 0.125);
+        assert_eq!(errors.rmse, 0.5_f64.sqrt());
+        // 1.25 itself is not within 1.25.
+        assert_eq!(errors.within, [0.5, 1.0, 1.0]);
+        let log = 1.25_f64.ln();
+        assert!((errors.rmse_log - (log * log / 2.0).sqrt()).abs() < 1e-12);
+        assert!((errors.scale_invariant_log - log / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn answers_out_of_range_are_moved_to_its_ends() {
+        let errors = DepthErrors::of(&[10.0, 90.0], &[100.0, 1.0], [1.0, 80.0]).unwrap().unwrap();
+        assert_eq!(errors.absolute_relative, 7.0);
+        assert_eq!(DepthErrors::of(&[90.0], &[1.0], [1.0, 80.0]).unwrap(), None);
+    }
+
+    #[test]
+    fn outliers_are_far_in_pixels_and_in_share() {
+        let truth = [10.0, 10.0, 100.0, 100.0, 0.0];
+        let errors = DisparityErrors::of(&truth, &[13.0, 14.0, 104.0, 106.0, 50.0]).unwrap();
+        assert_eq!((errors.pixels, errors.outliers, errors.bad), (4, 2, [4, 4, 3]));
+        assert_eq!(errors.distance, 17.0);
+    }
+
+    #[test]
+    fn pictures_have_equal_weight() {
+        let mut depth = Depth::default();
+        depth.update(0, &map(&[2.0]), &map(&[1.0])).unwrap();
+        let mut other = Depth::default();
+        assert_eq!(other.update(1, &map(&[2.0, 4.0, 1.0]), &map(&[2.0, 4.0, 0.0])).unwrap(), 1.0);
+        other.update(2, &map(&[1.0]), &map(&[0.0])).unwrap();
+        depth.merge(other);
+        let report = depth.finish();
+        assert_eq!(report.statistics.get("abs_rel"), Some(0.5));
+        assert_eq!(report.statistics.get("pictures"), Some(2.0));
+        assert_eq!(Depth::default().finish().statistics.get("rmse"), None);
+    }
+
+    #[test]
+    fn maps_that_do_not_fit_are_refused() {
+        let mut depth = Depth::default();
+        assert!(depth.update(0, &map(&[1.0]), &map(&[1.0, 1.0])).is_err());
+        assert!(depth.update(0, &map(&[f32::NAN]), &map(&[1.0])).is_err());
+        assert!(depth.update(0, &Heatmap::from_labels(vec![1], &[1, 1]).unwrap(), &map(&[1.0])).is_err());
+        assert!(DisparityErrors::of(&[1.0], &[f32::INFINITY]).is_err());
+        let params = DepthParams { min_depth: 2.0, max_depth: Some(1.0), ..DepthParams::default() };
+        assert!(Depth::new(&params).is_err());
+    }
+}

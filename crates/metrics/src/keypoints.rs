@@ -1,0 +1,277 @@
+//! Key points: share of correct ones (PCK, PCKh) and its area, normalised mean error (NME), end-point error (EPE), equal
+//! to MMPose.
+
+mod matching;
+mod size;
+
+use opendr_engine::params::Params;
+use opendr_engine::target::{Pose, PoseList};
+use opendr_engine::{Error, Result};
+
+pub use size::PoseSize;
+
+use crate::average::{mean, ratio};
+use crate::{Curves, Figure, Line, Metric, Report, Table};
+
+/// Most joints of a pose.
+const MAX_JOINTS: usize = 4096;
+
+/// Thresholds of the area under the curve: 0, 0.05, .. 0.95, as MMPose.
+const STEPS: usize = 20;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct KeypointsParams {
+    /// What distances are measured in.
+    pub normalize: PoseSize,
+    /// For `joints`: an even number of joints. The size of a pose is the distance between the middle of the first half
+    /// and that of the second: the outer corners of the eyes (300-W: 36, 45), the points around each eye.
+    pub joints: Vec<usize>,
+    /// A joint is correct when it is less than this off, in sizes of the pose.
+    #[param(default = 0.2, range = 0.0..=10.0)]
+    pub threshold: f64,
+}
+
+/// What was counted of one joint.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Joint {
+    /// Poses in which it is annotated.
+    count: u64,
+    correct: u64,
+    within: [u64; STEPS],
+    /// Of the annotated ones, those that were answered.
+    found: u64,
+    /// Sum of the distances of those, pixels.
+    distance: f64,
+    /// The same in sizes of the poses.
+    normalized: f64,
+}
+
+/// Counts joints over poses; bounded memory.
+#[derive(Debug, Clone, Default)]
+pub struct Keypoints {
+    params: KeypointsParams,
+    joints: Vec<Joint>,
+    names: &'static [&'static str],
+    poses: u64,
+    /// Poses that have no size: not counted.
+    without_size: u64,
+}
+
+impl Keypoints {
+    /// Counts one pose of `size` pixels and gives its share of correct joints; `None` where no joint is annotated.
+    /// Joints that are not annotated are `None` in `truth`; those not found are `None` in `predicted`, count as wrong,
+    /// and have no distance.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the numbers of joints differ or are above 4096, a place is NaN or infinite, or the size is
+    /// not a positive number.
+    pub fn add(
+        &mut self,
+        truth: &[Option<[f64; 2]>],
+        predicted: &[Option<[f64; 2]>],
+        size: f64,
+    ) -> Result<Option<f64>> {
+        if truth.len() != predicted.len() || truth.len() > MAX_JOINTS {
+            let (wanted, given) = (truth.len(), predicted.len());
+            return Err(Error::invalid_input(format!(
+                "a pose of {given} joints cannot answer one of {wanted}; give poses of the same joints, at most {MAX_JOINTS}"
+            )));
+        }
+        let places = truth.iter().chain(predicted).flatten().flatten();
+        if let Some(place) = places.into_iter().chain([&size]).find(|number| !number.is_finite()) {
+            return Err(Error::invalid_input(format!(
+                "a place or size of a pose is {place}; give finite numbers"
+            )));
+        }
+        if size <= 0.0 {
+            return Err(Error::invalid_input(format!(
+                "a pose of size {size} measures nothing; give more than 0"
+            )));
+        }
+        if self.joints.len() < truth.len() {
+            self.joints.resize(truth.len(), Joint::default());
+        }
+        self.poses += 1;
+        let (mut count, mut correct) = (0, 0);
+        for (joint, (truth, predicted)) in self.joints.iter_mut().zip(truth.iter().zip(predicted)) {
+            let Some(truth) = truth else { continue };
+            joint.count += 1;
+            count += 1;
+            let Some(predicted) = predicted else { continue };
+            let distance = (predicted[0] - truth[0]).hypot(predicted[1] - truth[1]);
+            joint.found += 1;
+            joint.distance += distance;
+            joint.normalized += distance / size;
+            let right = self.params.is_correct(distance / size);
+            joint.correct += u64::from(right);
+            correct += u64::from(right);
+            for (step, within) in joint.within.iter_mut().enumerate() {
+                *within += u64::from(distance / size < step as f64 / STEPS as f64);
+            }
+        }
+        Ok(ratio(correct, count))
+    }
+
+    /// Share of correct joints: the mean over joints that are annotated somewhere.
+    pub fn pck(&self) -> Option<f64> {
+        mean(self.joints.iter().filter_map(|joint| ratio(joint.correct, joint.count)))
+    }
+
+    /// Share of correct joints over all that are annotated: the mean of the MPII benchmark (PCKh).
+    pub fn pooled_pck(&self) -> Option<f64> {
+        ratio(self.total(|joint| joint.correct), self.total(|joint| joint.count))
+    }
+
+    /// [`Keypoints::pck`] at each threshold of the area under the curve.
+    fn curve(&self) -> [Option<f64>; STEPS] {
+        std::array::from_fn(|at| {
+            mean(self.joints.iter().filter_map(|joint| ratio(joint.within[at], joint.count)))
+        })
+    }
+
+    /// Mean of [`Keypoints::pck`] at the thresholds 0, 0.05, .. 0.95.
+    pub fn area(&self) -> Option<f64> {
+        mean(self.curve().into_iter().flatten())
+    }
+
+    /// Mean distance of the joints found, in sizes of the poses.
+    pub fn normalized_mean_error(&self) -> Option<f64> {
+        self.mean_of_found(|joint| joint.normalized)
+    }
+
+    /// Mean distance of the joints found, pixels.
+    pub fn end_point_error(&self) -> Option<f64> {
+        self.mean_of_found(|joint| joint.distance)
+    }
+
+    fn mean_of_found(&self, sum: fn(&Joint) -> f64) -> Option<f64> {
+        let found = self.total(|joint| joint.found);
+        (found > 0).then(|| self.joints.iter().map(sum).sum::<f64>() / found as f64)
+    }
+
+    fn total(&self, number: fn(&Joint) -> u64) -> u64 {
+        self.joints.iter().map(number).sum()
+    }
+
+    fn add_pose(&mut self, truth: &Pose, predicted: Option<&Pose>, size: f64) -> Result<Option<f64>> {
+        let places = |pose: &Pose| pose.keypoints.iter().map(place_of).collect::<Vec<_>>();
+        let truth = places(truth);
+        let predicted = predicted.map_or_else(|| vec![None; truth.len()], places);
+        self.add(&truth, &predicted, size)
+    }
+
+    fn table(&self) -> Table {
+        let row = |(at, joint): (usize, &Joint)| {
+            let found = |sum: f64| (joint.found > 0).then(|| sum / joint.found as f64);
+            let name = self.names.get(at).map_or_else(|| at.to_string(), |name| (*name).to_owned());
+            let pck = ratio(joint.correct, joint.count);
+            (name, vec![pck, found(joint.normalized), found(joint.distance), Some(joint.count as f64)])
+        };
+        Table {
+            name: "joint".to_owned(),
+            columns: ["pck", "nme", "epe", "count"].map(str::to_owned).into(),
+            rows: self.joints.iter().enumerate().map(row).collect(),
+        }
+    }
+}
+
+/// Where a joint is; `None` where it is not annotated or was not found.
+fn place_of(keypoint: &opendr_engine::target::Keypoint) -> Option<[f64; 2]> {
+    // NaN is neither found nor missing: it is passed on and refused.
+    let missing = keypoint.x < 0.0 || keypoint.y < 0.0;
+    (!missing).then(|| [f64::from(keypoint.x), f64::from(keypoint.y)])
+}
+
+/// Each pose of the truth is answered by the nearest one that answers no other; what is left over does not count.
+impl Metric for Keypoints {
+    const NAME: &'static str = "keypoints";
+    const ABOUT: &'static str = "PCK, PCKh and their area, NME and EPE of key points, as MMPose";
+    type Params = KeypointsParams;
+    type Prediction = PoseList;
+    type Truth = PoseList;
+
+    fn new(params: &KeypointsParams) -> Result<Self> {
+        if params.normalize == PoseSize::Joints
+            && (params.joints.is_empty() || !params.joints.len().is_multiple_of(2))
+        {
+            return Err(Error::invalid_param(format!(
+                "joints = {:?}: give an even number of joints to normalize by",
+                params.joints
+            )));
+        }
+        Ok(Self { params: params.clone(), ..Self::default() })
+    }
+
+    fn update(&mut self, _at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
+        let mut picture = Self { params: self.params.clone(), ..Self::default() };
+        let sizes: Vec<Option<f64>> = truth.poses.iter().map(|pose| self.params.size_of_pose(pose)).collect();
+        let answers = matching::nearest(&truth.poses, &prediction.poses)?;
+        for ((pose, size), answer) in truth.poses.iter().zip(sizes).zip(answers) {
+            let answer = answer.and_then(|at| prediction.poses.get(at));
+            match size {
+                Some(size) => picture.add_pose(pose, answer, size)?,
+                None => {
+                    picture.without_size += 1;
+                    None
+                }
+            };
+            picture.names = pose.skeleton.joints();
+        }
+        let score = picture.pooled_pck().unwrap_or(1.0);
+        self.merge(picture);
+        Ok(score)
+    }
+
+    fn merge(&mut self, other: Self) {
+        if self.joints.len() < other.joints.len() {
+            self.joints.resize(other.joints.len(), Joint::default());
+        }
+        for (joint, more) in self.joints.iter_mut().zip(&other.joints) {
+            joint.count += more.count;
+            joint.correct += more.correct;
+            joint.found += more.found;
+            joint.distance += more.distance;
+            joint.normalized += more.normalized;
+            joint.within.iter_mut().zip(more.within).for_each(|(mine, more)| *mine += more);
+        }
+        if self.names.len() < other.names.len() {
+            self.names = other.names;
+        }
+        self.poses += other.poses;
+        self.without_size += other.without_size;
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("pck");
+        let numbers = [
+            ("poses", Some(self.poses as f64)),
+            ("poses_without_size", Some(self.without_size as f64)),
+            ("pck", self.pck()),
+            ("pck_pooled", self.pooled_pck()),
+            ("auc", self.area()),
+            ("nme", self.normalized_mean_error()),
+            ("epe", self.end_point_error()),
+        ];
+        for (key, value) in numbers {
+            report.statistics.set(key, value.unwrap_or(f64::NAN));
+        }
+        report.tables.push(self.table());
+        let points = self.curve().into_iter().enumerate();
+        let points =
+            points.filter_map(|(at, pck)| Some([at as f64 / STEPS as f64, pck?])).collect::<Vec<_>>();
+        if !points.is_empty() {
+            report.figures.push(Figure::Curves(Curves {
+                name: "pck".to_owned(),
+                title: "Share of correct key points".to_owned(),
+                x: "threshold in sizes of the pose".to_owned(),
+                y: "PCK".to_owned(),
+                lines: vec![Line { label: "all joints".to_owned(), points }],
+            }));
+        }
+        report
+    }
+}
+
+#[cfg(test)]
+mod tests;

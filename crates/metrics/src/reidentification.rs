@@ -1,0 +1,307 @@
+//! Re-identification: mean average precision and cumulative match characteristic (CMC) as on Market-1501 (Zheng et al.,
+//! Scalable Person Re-identification, 2015).
+
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use opendr_engine::data::Vector;
+use opendr_engine::params::Params;
+use opendr_engine::target::Category;
+use opendr_engine::{Error, Result, ValueRef};
+
+use crate::average::ratio;
+use crate::{Curves, Figure, Line, Metric, Regression, Report};
+
+/// The identity of pictures that show nobody worth finding: they are passed over.
+const JUNK: i64 = -1;
+
+/// Ranks that are drawn.
+const DRAWN_RANKS: usize = 50;
+
+opendr_engine::choices! {
+    /// How far two vectors are apart.
+    pub enum VectorDistance {
+        /// One minus the cosine of the angle between them.
+        Cosine = "cosine",
+        /// The length of the straight line between them.
+        Euclidean = "euclidean",
+    }
+}
+
+impl VectorDistance {
+    /// Between vectors of the same length; a vector of zeros is at cosine distance 1 of every other.
+    pub fn between(self, one: &[f32], other: &[f32]) -> f64 {
+        let pairs = || one.iter().zip(other).map(|(one, other)| (f64::from(*one), f64::from(*other)));
+        match self {
+            Self::Euclidean => pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt(),
+            Self::Cosine => {
+                let [product, first, second] =
+                    pairs().fold([0.0; 3], |[product, first, second], (one, other)| {
+                        [product + one * other, first + one * one, second + other * other]
+                    });
+                let lengths = (first * second).sqrt();
+                1.0 - if lengths > 0.0 { product / lengths } else { 0.0 }
+            }
+        }
+    }
+}
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct ReidentificationParams {
+    /// How many samples at the beginning of the data set are searched for among all others; 0: each is searched for
+    /// among all others.
+    pub queries: usize,
+    /// How far two vectors are apart.
+    pub distance: VectorDistance,
+    /// Ranks to tell the share of queries of that find a match so early.
+    #[param(default = vec![1, 5, 10], range = 1..=1_000_000)]
+    pub ranks: Vec<usize>,
+}
+
+/// Whom a picture shows, and which camera took it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Subject {
+    /// Number of the person or thing; -1 is passed over, as on Market-1501.
+    pub identity: i64,
+    /// Pictures of the same subject by the same camera are passed over; `None` where cameras are not told apart.
+    pub camera: Option<Arc<str>>,
+}
+
+impl Subject {
+    fn is_passed_over(&self, query: &Self) -> bool {
+        let same_camera = self.camera.is_some() && self.camera == query.camera;
+        self.identity == JUNK || (self.identity == query.identity && same_camera)
+    }
+}
+
+/// Adds up the outcome of queries.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Retrieval {
+    /// Queries by the rank of their first match.
+    first: Vec<u64>,
+    precision: f64,
+    without_match: u64,
+}
+
+impl Retrieval {
+    /// Counts one query, given the pictures that it was searched for in and how far each is off. Of equally far ones
+    /// the first ranks first. A query that has no match at all does not count.
+    ///
+    /// # Errors
+    /// `InvalidInput` when a distance is NaN or the numbers of pictures and distances differ.
+    pub fn add(&mut self, query: &Subject, gallery: &[Subject], distances: &[f64]) -> Result<()> {
+        if gallery.len() != distances.len() || distances.iter().any(|distance| distance.is_nan()) {
+            let (pictures, given) = (gallery.len(), distances.len());
+            return Err(Error::invalid_input(format!(
+                "{given} distances for {pictures} pictures; give one for each, and no NaN"
+            )));
+        }
+        let searched = gallery.iter().zip(distances).filter(|(subject, _)| !subject.is_passed_over(query));
+        let mut ranked: Vec<(f64, bool)> =
+            searched.map(|(subject, distance)| (*distance, subject.identity == query.identity)).collect();
+        ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let matches = ranked.iter().enumerate().filter(|(_, (_, same))| *same).map(|(rank, _)| rank);
+        let Some(first) = matches.clone().next() else {
+            self.without_match += 1;
+            return Ok(());
+        };
+        if self.first.len() <= first {
+            self.first.resize(first + 1, 0);
+        }
+        self.first[first] += 1;
+        let count = matches.clone().count() as f64;
+        self.precision +=
+            matches.zip(1_u32..).map(|(rank, found)| f64::from(found) / (rank + 1) as f64).sum::<f64>()
+                / count;
+        Ok(())
+    }
+
+    /// Queries that have a match.
+    pub fn queries(&self) -> u64 {
+        self.first.iter().sum()
+    }
+
+    /// Mean of the average precisions of the queries.
+    pub fn mean_average_precision(&self) -> Option<f64> {
+        let queries = self.queries();
+        (queries > 0).then(|| self.precision / queries as f64)
+    }
+
+    /// Share of the queries whose first match is among the `rank` nearest (rank-1, rank-5, ..).
+    pub fn match_rate(&self, rank: usize) -> Option<f64> {
+        ratio(self.first.iter().take(rank).sum(), self.queries())
+    }
+}
+
+#[derive(Debug, Clone)]
+struct Picture {
+    at: usize,
+    subject: Subject,
+    vector: Vector,
+}
+
+/// Collects vectors; their distances are measured at the end.
+#[derive(Debug, Clone, Default)]
+pub struct Reidentification {
+    params: ReidentificationParams,
+    pictures: Vec<Picture>,
+}
+
+impl Reidentification {
+    /// The outcome of all queries.
+    pub fn retrieval(&self) -> Retrieval {
+        let mut pictures: Vec<&Picture> = self.pictures.iter().collect();
+        pictures.sort_by_key(|picture| picture.at);
+        let queries = self.params.queries;
+        let mut retrieval = Retrieval::default();
+        for query in pictures.iter().filter(|picture| queries == 0 || picture.at < queries) {
+            let searched = pictures.iter().filter(|picture| match queries {
+                0 => picture.at != query.at,
+                _ => picture.at >= queries,
+            });
+            let (gallery, distances): (Vec<Subject>, Vec<f64>) = searched
+                .map(|picture| {
+                    let distance =
+                        self.params.distance.between(query.vector.as_slice(), picture.vector.as_slice());
+                    (picture.subject.clone(), distance)
+                })
+                .unzip();
+            if query.subject.identity != JUNK {
+                // Vectors are finite, hence no distance is NaN.
+                retrieval.add(&query.subject, &gallery, &distances).ok();
+            }
+        }
+        retrieval
+    }
+}
+
+/// A prediction is the vector of a picture; the truth's class is the identity, its frame id the camera.
+impl Metric for Reidentification {
+    const NAME: &'static str = "reidentification";
+    const ABOUT: &'static str = "mAP and CMC of retrieval as on Market-1501";
+    type Params = ReidentificationParams;
+    type Prediction = Vector;
+    type Truth = Category;
+
+    fn new(params: &ReidentificationParams) -> Result<Self> {
+        Ok(Self { params: params.clone(), pictures: Vec::new() })
+    }
+
+    /// A picture alone is neither found nor missed: its score is 1.
+    fn update(&mut self, at: usize, prediction: &Vector, truth: &Category) -> Result<f64> {
+        let (length, numbers) = (prediction.as_slice().len(), prediction.as_slice());
+        let expected = self.pictures.first().map_or(length, |picture| picture.vector.as_slice().len());
+        if length != expected || numbers.iter().any(|number| !number.is_finite()) {
+            return Err(Error::invalid_input(format!(
+                "picture {at} has a vector of {length} numbers where {expected} finite ones are expected"
+            )));
+        }
+        let subject = Subject { identity: truth.class, camera: truth.header.frame_id.clone() };
+        self.pictures.push(Picture { at, subject, vector: prediction.clone() });
+        Ok(1.0)
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.pictures.extend(other.pictures);
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("map");
+        let retrieval = self.retrieval();
+        report.statistics.set("queries", retrieval.queries() as f64);
+        report.statistics.set("queries_without_match", retrieval.without_match as f64);
+        report.statistics.set("map", retrieval.mean_average_precision().unwrap_or(f64::NAN));
+        for rank in &self.params.ranks {
+            report.statistics.set(format!("rank_{rank}"), retrieval.match_rate(*rank).unwrap_or(f64::NAN));
+        }
+        let points = (1..=DRAWN_RANKS).filter_map(|rank| Some([rank as f64, retrieval.match_rate(rank)?]));
+        let points: Vec<[f64; 2]> = points.collect();
+        if !points.is_empty() {
+            report.figures.push(Figure::Curves(Curves {
+                name: "cmc".to_owned(),
+                title: "Cumulative match characteristic".to_owned(),
+                x: "rank".to_owned(),
+                y: "share of queries with a match".to_owned(),
+                lines: vec![Line { label: "queries".to_owned(), points }],
+            }));
+        }
+        report
+    }
+
+    fn prediction(value: ValueRef<'_>) -> Option<Cow<'_, Vector>> {
+        Regression::prediction(value)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::Header;
+
+    use super::*;
+
+    fn subject(identity: i64, camera: &str) -> Subject {
+        Subject { identity, camera: Some(camera.into()) }
+    }
+
+    #[test]
+    fn protocol_by_hand() {
+        let gallery = [
+            subject(7, "a"),
+            subject(1, "b"),
+            subject(7, "b"),
+            subject(-1, "b"),
+            subject(7, "c"),
+            subject(2, "a"),
+        ];
+        let mut retrieval = Retrieval::default();
+        // Ranked: 7 of the same camera and -1 are passed over, 1 is wrong, then 7, 2, 7.
+        retrieval.add(&subject(7, "a"), &gallery, &[0.0, 0.2, 0.3, 0.1, 0.5, 0.4]).unwrap();
+        assert_eq!(retrieval.mean_average_precision(), Some((1.0 / 2.0 + 2.0 / 4.0) / 2.0));
+        assert_eq!([1, 2, 9].map(|rank| retrieval.match_rate(rank)), [0.0, 1.0, 1.0].map(Some));
+        // Only the same camera has this one.
+        retrieval.add(&subject(2, "a"), &gallery, &[0.0; 6]).unwrap();
+        assert_eq!((retrieval.queries(), retrieval.without_match), (1, 1));
+        assert!(retrieval.add(&subject(2, "a"), &gallery, &[0.0; 5]).is_err());
+        assert!(retrieval.add(&subject(2, "a"), &gallery, &[f64::NAN; 6]).is_err());
+    }
+
+    #[test]
+    fn distances() {
+        assert_eq!(VectorDistance::Euclidean.between(&[0.0, 3.0], &[4.0, 0.0]), 5.0);
+        assert_eq!(VectorDistance::Cosine.between(&[0.0, 3.0], &[4.0, 0.0]), 1.0);
+        assert_eq!(VectorDistance::Cosine.between(&[2.0, 0.0], &[4.0, 0.0]), 0.0);
+        assert_eq!(VectorDistance::Cosine.between(&[0.0, 0.0], &[4.0, 0.0]), 1.0);
+    }
+
+    #[test]
+    fn queries_come_first() {
+        let params = ReidentificationParams { queries: 1, ..ReidentificationParams::default() };
+        let samples = [([1.0, 0.0], 3), ([0.0, 1.0], 3), ([1.0, 0.1], 4), ([0.5, 0.5], 3)];
+        let mut whole = Reidentification::new(&params).unwrap();
+        for (at, (vector, identity)) in samples.iter().enumerate().rev() {
+            let mut truth = Category::new(*identity, None);
+            truth.header = Header::new(0, format!("camera {at}"));
+            whole.update(at, &Vector::from_data(vector.to_vec()).unwrap(), &truth).unwrap();
+        }
+        let report = whole.finish();
+        assert_eq!(report.statistics.get("map"), Some((1.0 / 2.0 + 2.0 / 3.0) / 2.0));
+        assert_eq!(
+            (report.statistics.get("rank_1"), report.statistics.get("rank_5")),
+            (Some(0.0), Some(1.0))
+        );
+        let all = Reidentification { params: ReidentificationParams::default(), ..whole };
+        assert_eq!(all.finish().statistics.get("queries"), Some(3.0));
+    }
+
+    #[test]
+    fn vectors_that_do_not_fit_are_refused() {
+        let mut reidentification = Reidentification::default();
+        let vector = |numbers: &[f32]| Vector::from_data(numbers.to_vec()).unwrap();
+        let truth = Category::new(1, None);
+        assert!(reidentification.update(0, &vector(&[f32::INFINITY]), &truth).is_err());
+        reidentification.update(0, &vector(&[1.0]), &truth).unwrap();
+        assert!(reidentification.update(1, &vector(&[1.0, 2.0]), &truth).is_err());
+        assert_eq!(reidentification.pictures.len(), 1);
+    }
+}
