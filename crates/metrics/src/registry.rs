@@ -17,6 +17,7 @@ pub const fn metrics() -> &'static [MetricEntry] {
             MetricEntry::of::<crate::Keypoints>(),
             MetricEntry::of::<crate::Regression>(),
             MetricEntry::of::<crate::Reidentification>(),
+            MetricEntry::of::<crate::Kitti>(),
             MetricEntry::of::<crate::Roc>(),
             MetricEntry::of::<crate::Segmentation>(),
             MetricEntry::of::<crate::Transcription>(),

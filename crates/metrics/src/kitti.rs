@@ -1,0 +1,132 @@
+//! KITTI's object detection: average precision of boxes in the picture, from above and in space, and of orientation.
+//!
+//! A. Geiger, P. Lenz, R. Urtasun, "Are we ready for autonomous driving? The KITTI vision benchmark suite", CVPR 2012;
+//! 40 recall points: A. Simonelli et al., "Disentangling monocular 3D object detection", ICCV 2019. The rules are those
+//! of the development kit (`evaluate_object_3d.cpp`).
+
+mod average_precision;
+mod frame;
+mod object;
+mod rules;
+
+use std::collections::BTreeMap;
+
+use opendr_engine::Result;
+use opendr_engine::params::NoParams;
+use opendr_engine::target::BoundingBox3DList;
+
+use crate::{Metric, Report, Table};
+
+pub use average_precision::KittiScore;
+pub use object::KittiObject;
+pub use rules::{KittiClass, KittiDifficulty, KittiOverlap};
+
+use average_precision::curves;
+use frame::Frame;
+use rules::Rules;
+
+/// KITTI's object detection over pictures.
+///
+/// Keeps what the rules look at of every box, as the thresholds of the scores depend on all of them.
+#[derive(Debug, Clone, Default)]
+pub struct Kitti {
+    frames: Vec<Frame>,
+}
+
+impl Kitti {
+    /// Counts picture number `at`; how well boxes of the same class cover each other in space, 0 to 1.
+    ///
+    /// # Errors
+    /// `InvalidInput` for more than 4096 boxes, and for one whose numbers are not finite.
+    pub fn count(&mut self, at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<f64> {
+        let frame = Frame::new(at, found, truth)?;
+        let coverage = frame.coverage;
+        self.frames.push(frame);
+        Ok(coverage)
+    }
+
+    /// The scores: of every class, kind of overlap and difficulty for which there is truth that counts.
+    ///
+    /// That of orientation is there unless a found box has no `alpha` (-10).
+    pub fn scores(&self) -> Vec<KittiScore> {
+        let mut frames: Vec<_> = self.frames.iter().collect();
+        frames.sort_by_key(|frame| frame.at);
+        let with_orientation = frames.iter().all(|frame| frame.has_orientations);
+        Rules::all().filter_map(|rules| curves(&frames, &rules, with_orientation)).collect()
+    }
+}
+
+impl Metric for Kitti {
+    const NAME: &'static str = "kitti_detection";
+    const ABOUT: &'static str =
+        "KITTI's AP of boxes in picture, from above and in space, and AOS, as its development kit";
+    type Params = NoParams;
+    type Prediction = BoundingBox3DList;
+    type Truth = BoundingBox3DList;
+
+    fn new(_params: &NoParams) -> Result<Self> {
+        Ok(Self::default())
+    }
+
+    fn update(
+        &mut self,
+        at: usize,
+        prediction: &BoundingBox3DList,
+        truth: &BoundingBox3DList,
+    ) -> Result<f64> {
+        self.count(at, &object::objects_from_list(prediction)?, &object::objects_from_list(truth)?)
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.frames.extend(other.frames);
+    }
+
+    fn finish(&self) -> Report {
+        let mut report = Report::new("map_3d_moderate_r40");
+        let scores = self.scores();
+        let mut means = BTreeMap::<String, Vec<f64>>::new();
+        for score in &scores {
+            for (kind, r11, r40) in score.numbers() {
+                for (points, value) in [("r11", r11), ("r40", r40)] {
+                    let key = format!("{kind}_{}_{points}{}", score.difficulty.name(), score.suffix());
+                    report.statistics.set(format!("{}_{key}", score.class.name()), value);
+                    means.entry(format!("map_{key}")).or_default().push(value);
+                }
+            }
+        }
+        for (key, values) in means {
+            report.statistics.set(key, values.iter().sum::<f64>() / values.len() as f64);
+        }
+        report.tables.push(table(&scores));
+        report
+    }
+}
+
+/// Rows of class, kind and overlap; a column per difficulty and number of recall points.
+fn table(scores: &[KittiScore]) -> Table {
+    let mut table = Table { name: "class".to_owned(), ..Table::default() };
+    for points in ["R40", "R11"] {
+        table
+            .columns
+            .extend(KittiDifficulty::ALL.map(|difficulty| format!("{} {points}", difficulty.name())));
+    }
+    for score in scores {
+        let column = score.difficulty as usize;
+        for (kind, r11, r40) in score.numbers() {
+            let label = format!("{} {kind} @{:.2}", score.class.name(), score.least_overlap);
+            let row = match table.rows.iter().position(|(other, _)| *other == label) {
+                Some(row) => row,
+                None => {
+                    table.rows.push((label, vec![None; 6]));
+                    table.rows.len() - 1
+                }
+            };
+            table.rows[row].1[column] = Some(r40);
+            table.rows[row].1[column + 3] = Some(r11);
+        }
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests;

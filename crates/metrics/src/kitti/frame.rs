@@ -1,0 +1,210 @@
+//! What is kept of one picture, and its matching.
+
+use opendr_engine::{Error, Result};
+
+use super::object::KittiObject;
+use super::rules::{KittiOverlap, ObjectKind, Role, Rules, SMALLEST_LEAST_OVERLAP, Traits};
+use crate::{StandingBox, image_cover, image_overlap};
+
+/// Boxes of one picture: more are a mistake, and their overlaps would fill the memory.
+const MOST_BOXES: usize = 4096;
+
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    traits: Traits,
+    score: f64,
+    alpha: f64,
+    /// Its largest share in a `DontCare` region.
+    in_dont_care: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Truth {
+    traits: Traits,
+    alpha: f64,
+}
+
+/// A pair that some rule may take, by places in the lists.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    truth: u32,
+    found: u32,
+    overlap: f64,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Frame {
+    pub at: usize,
+    /// How well boxes of the same class cover each other in space, 0 to 1.
+    pub coverage: f64,
+    pub has_orientations: bool,
+    truth: Vec<Truth>,
+    found: Vec<Found>,
+    /// By kind of overlap; truth in its order, and found of each in theirs.
+    candidates: [Vec<Candidate>; 3],
+}
+
+/// What matching counts in one picture.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Matched {
+    pub true_positives: u64,
+    pub false_positives: u64,
+    /// Sum over true positives of how well orientations agree, 0 to 1 each.
+    pub similarity: f64,
+}
+
+impl Frame {
+    pub fn new(at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<Self> {
+        if found.len().max(truth.len()) > MOST_BOXES {
+            return Err(Error::invalid_input(format!(
+                "{} found and {} true boxes in one picture; give at most {MOST_BOXES}",
+                found.len(),
+                truth.len()
+            )));
+        }
+        found.iter().chain(truth).try_for_each(KittiObject::check)?;
+        let mut frame = Self {
+            at,
+            coverage: 1.0,
+            has_orientations: found.iter().all(|object| object.alpha != -10.0),
+            truth: truth.iter().map(|object| Truth { traits: object.into(), alpha: object.alpha }).collect(),
+            found: found.iter().map(|object| found_from_object(object, truth)).collect(),
+            candidates: [Vec::new(), Vec::new(), Vec::new()],
+        };
+        frame.fill_overlaps(found, truth);
+        Ok(frame)
+    }
+
+    fn fill_overlaps(&mut self, found: &[KittiObject], truth: &[KittiObject]) {
+        let standing: Vec<StandingBox> = found.iter().map(KittiObject::standing_box).collect();
+        let mut best_of_truth = vec![0.0f64; truth.len()];
+        let mut best_of_found = vec![0.0f64; found.len()];
+        for (row, object) in truth.iter().enumerate() {
+            if matches!(self.truth[row].traits.kind, ObjectKind::Other | ObjectKind::DontCare) {
+                continue;
+            }
+            let here = object.standing_box();
+            for (column, other) in found.iter().enumerate() {
+                let shared = here.floor.shared_area(&standing[column].floor);
+                let on_ground = match here.floor.area() + standing[column].floor.area() - shared {
+                    union if shared > 0.0 => shared / union,
+                    _ => 0.0,
+                };
+                let in_space = here.overlap_with_shared_floor(&standing[column], shared);
+                let overlaps = [image_overlap(object.in_image, other.in_image), on_ground, in_space];
+                for (candidates, overlap) in self.candidates.iter_mut().zip(overlaps) {
+                    if overlap > SMALLEST_LEAST_OVERLAP {
+                        candidates.push(Candidate { truth: row as u32, found: column as u32, overlap });
+                    }
+                }
+                if self.truth[row].traits.kind == self.found[column].traits.kind {
+                    best_of_truth[row] = best_of_truth[row].max(in_space);
+                    best_of_found[column] = best_of_found[column].max(in_space);
+                }
+            }
+        }
+        let hits = best_of_truth.iter().sum::<f64>().min(best_of_found.iter().sum());
+        let counts = |kind: ObjectKind| matches!(kind, ObjectKind::Class(_));
+        let boxes = self.truth.iter().map(|object| object.traits.kind);
+        let boxes = boxes.chain(self.found.iter().map(|object| object.traits.kind));
+        let union = boxes.filter(|kind| counts(*kind)).count() as f64 - hits;
+        self.coverage = if union > 0.0 { (hits / union).min(1.0) } else { 1.0 };
+    }
+
+    pub fn asked_for(&self, rules: &Rules) -> usize {
+        self.truth.iter().filter(|object| rules.role_of_truth(&object.traits) == Role::Counts).count()
+    }
+
+    /// Scores of the answers that are right when all are taken: every truth gets the best scored one.
+    pub fn true_scores(&self, rules: &Rules, scores: &mut Vec<f64>) {
+        let mut taken = vec![false; self.found.len()];
+        for (truth, pairs) in self.candidates_by_truth(rules) {
+            let mut best: Option<usize> = None;
+            for pair in pairs {
+                let at = pair.found as usize;
+                let is_better = best.is_none_or(|best| self.found[at].score > self.found[best].score);
+                let is_open = !taken[at] && rules.role_of_found(&self.found[at].traits) != Role::Absent;
+                if pair.overlap > rules.least_overlap() && is_open && is_better {
+                    best = Some(at);
+                }
+            }
+            let Some(best) = best else { continue };
+            taken[best] = true;
+            if self.both_count(rules, truth, best) {
+                scores.push(self.found[best].score);
+            }
+        }
+    }
+
+    /// Matches the answers that score at least `threshold`: every truth gets the one that overlaps most.
+    pub fn matched(&self, rules: &Rules, threshold: f64) -> Matched {
+        let mut matched = Matched::default();
+        let mut taken = vec![false; self.found.len()];
+        for (truth, pairs) in self.candidates_by_truth(rules) {
+            let Some(best) = self.largest_overlap(rules, threshold, pairs, &taken) else { continue };
+            taken[best] = true;
+            if self.both_count(rules, truth, best) {
+                matched.true_positives += 1;
+                let turn = self.truth[truth].alpha - self.found[best].alpha;
+                matched.similarity += (1.0 + turn.cos()) / 2.0;
+            }
+        }
+        let wrong = self.found.iter().zip(taken).filter(|(found, taken)| {
+            let may_count = !taken && found.score >= threshold;
+            let is_free = rules.overlap == KittiOverlap::Image && found.in_dont_care > rules.least_overlap();
+            may_count && !is_free && rules.role_of_found(&found.traits) == Role::Counts
+        });
+        matched.false_positives = wrong.count() as u64;
+        matched
+    }
+
+    /// The answer that counts and overlaps most, or else the first ignored one.
+    fn largest_overlap(
+        &self,
+        rules: &Rules,
+        threshold: f64,
+        pairs: &[Candidate],
+        taken: &[bool],
+    ) -> Option<usize> {
+        let mut best: Option<(usize, f64)> = None;
+        let mut ignored = None;
+        for pair in pairs {
+            let at = pair.found as usize;
+            if taken[at] || self.found[at].score < threshold || pair.overlap <= rules.least_overlap() {
+                continue;
+            }
+            match rules.role_of_found(&self.found[at].traits) {
+                Role::Counts if best.is_none_or(|(_, most)| pair.overlap > most) => {
+                    best = Some((at, pair.overlap));
+                }
+                Role::Ignored if ignored.is_none() => ignored = Some(at),
+                _ => {}
+            }
+        }
+        best.map(|(at, _)| at).or(ignored)
+    }
+
+    fn both_count(&self, rules: &Rules, truth: usize, found: usize) -> bool {
+        rules.role_of_truth(&self.truth[truth].traits) == Role::Counts
+            && rules.role_of_found(&self.found[found].traits) == Role::Counts
+    }
+
+    /// Truth that takes part, each with its candidates.
+    fn candidates_by_truth(&self, rules: &Rules) -> impl Iterator<Item = (usize, &[Candidate])> {
+        self.candidates[rules.overlap as usize].chunk_by(|a, b| a.truth == b.truth).filter_map(|pairs| {
+            let truth = pairs.first()?.truth as usize;
+            (rules.role_of_truth(&self.truth[truth].traits) != Role::Absent).then_some((truth, pairs))
+        })
+    }
+}
+
+fn found_from_object(object: &KittiObject, truth: &[KittiObject]) -> Found {
+    let regions = truth.iter().filter(|other| other.kind() == ObjectKind::DontCare);
+    let covers = regions.map(|region| image_cover(object.in_image, region.in_image));
+    Found {
+        traits: object.into(),
+        score: object.score,
+        alpha: object.alpha,
+        in_dont_care: covers.fold(0.0, f64::max),
+    }
+}

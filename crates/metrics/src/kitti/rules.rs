@@ -1,0 +1,205 @@
+//! Which objects count.
+
+use super::object::KittiObject;
+
+/// The classes that are evaluated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KittiClass {
+    /// Cars; vans are neither asked for nor wrong.
+    Car,
+    /// Pedestrians; sitting persons are neither asked for nor wrong.
+    Pedestrian,
+    /// Cyclists.
+    Cyclist,
+}
+
+/// What overlaps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KittiOverlap {
+    /// Boxes in the picture.
+    Image,
+    /// Turned boxes on the ground, seen from above.
+    Ground,
+    /// Boxes in space.
+    Space,
+}
+
+/// What truth is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum KittiDifficulty {
+    /// Visible, at most 15 % outside the picture, more than 40 pixels high.
+    Easy,
+    /// At most partly hidden, at most 30 % outside the picture, more than 25 pixels high.
+    Moderate,
+    /// At most largely hidden, at most 50 % outside the picture, more than 25 pixels high.
+    Hard,
+}
+
+impl KittiClass {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Car, Self::Pedestrian, Self::Cyclist];
+
+    /// As in keys, e.g. `"car"`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Car => "car",
+            Self::Pedestrian => "pedestrian",
+            Self::Cyclist => "cyclist",
+        }
+    }
+}
+
+impl KittiOverlap {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Image, Self::Ground, Self::Space];
+
+    /// As in keys: `"2d"`, `"bev"` or `"3d"`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Image => "2d",
+            Self::Ground => "bev",
+            Self::Space => "3d",
+        }
+    }
+}
+
+impl KittiDifficulty {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Easy, Self::Moderate, Self::Hard];
+
+    /// As in keys, e.g. `"moderate"`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Easy => "easy",
+            Self::Moderate => "moderate",
+            Self::Hard => "hard",
+        }
+    }
+
+    /// Pixels.
+    const fn least_height(self) -> f64 {
+        match self {
+            Self::Easy => 40.0,
+            Self::Moderate | Self::Hard => 25.0,
+        }
+    }
+
+    fn asks_for(self, truth: &Traits) -> bool {
+        let (occluded, truncated) = match self {
+            Self::Easy => (0, 0.15),
+            Self::Moderate => (1, 0.3),
+            Self::Hard => (2, 0.5),
+        };
+        truth.occluded <= occluded && truth.truncated <= truncated && truth.height > self.least_height()
+    }
+}
+
+/// The types that the rules tell apart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum ObjectKind {
+    Class(KittiClass),
+    Van,
+    PersonSitting,
+    DontCare,
+    Other,
+}
+
+impl ObjectKind {
+    pub(super) fn from_name(name: &str) -> Self {
+        let kinds = [
+            ("car", Self::Class(KittiClass::Car)),
+            ("pedestrian", Self::Class(KittiClass::Pedestrian)),
+            ("cyclist", Self::Class(KittiClass::Cyclist)),
+            ("van", Self::Van),
+            ("person_sitting", Self::PersonSitting),
+            ("dontcare", Self::DontCare),
+        ];
+        kinds
+            .into_iter()
+            .find(|(label, _)| label.eq_ignore_ascii_case(name))
+            .map_or(Self::Other, |(_, kind)| kind)
+    }
+
+    fn is_neighbour_of(self, class: KittiClass) -> bool {
+        matches!((self, class), (Self::Van, KittiClass::Car) | (Self::PersonSitting, KittiClass::Pedestrian))
+    }
+}
+
+/// What the rules look at of one object.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Traits {
+    pub kind: ObjectKind,
+    /// In the picture, pixels.
+    pub height: f64,
+    pub truncated: f64,
+    pub occluded: i32,
+}
+
+impl From<&KittiObject> for Traits {
+    fn from(object: &KittiObject) -> Self {
+        let KittiObject { truncated, occluded, .. } = *object;
+        Self { kind: object.kind(), height: object.height_in_image(), truncated, occluded }
+    }
+}
+
+/// How an object is treated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Role {
+    /// Truth that is asked for, answers that may be right or wrong.
+    Counts,
+    /// Takes part in matching, but neither it nor its partner counts.
+    Ignored,
+    /// Of another class.
+    Absent,
+}
+
+/// One row and column of KITTI's tables.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rules {
+    pub class: KittiClass,
+    pub overlap: KittiOverlap,
+    pub difficulty: KittiDifficulty,
+    /// The smaller limits that are usual for boxes on the ground and in space.
+    pub is_loose: bool,
+}
+
+impl Rules {
+    /// Every row and column.
+    pub fn all() -> impl Iterator<Item = Self> {
+        KittiClass::ALL.into_iter().flat_map(|class| {
+            KittiOverlap::ALL.into_iter().flat_map(move |overlap| {
+                let looseness = if overlap == KittiOverlap::Image { &[false][..] } else { &[false, true] };
+                looseness.iter().flat_map(move |&is_loose| {
+                    KittiDifficulty::ALL.map(|difficulty| Self { class, overlap, difficulty, is_loose })
+                })
+            })
+        })
+    }
+
+    /// Boxes match that overlap by more than this.
+    pub fn least_overlap(&self) -> f64 {
+        match (self.class, self.is_loose) {
+            (KittiClass::Car, false) => 0.7,
+            (KittiClass::Car, true) | (_, false) => 0.5,
+            (_, true) => SMALLEST_LEAST_OVERLAP,
+        }
+    }
+
+    pub fn role_of_truth(&self, truth: &Traits) -> Role {
+        if truth.kind == ObjectKind::Class(self.class) {
+            return if self.difficulty.asks_for(truth) { Role::Counts } else { Role::Ignored };
+        }
+        if truth.kind.is_neighbour_of(self.class) { Role::Ignored } else { Role::Absent }
+    }
+
+    /// Small answers of every class are ignored, even where they match: so does KITTI.
+    pub fn role_of_found(&self, found: &Traits) -> Role {
+        if found.height.abs() < self.difficulty.least_height() {
+            return Role::Ignored;
+        }
+        if found.kind == ObjectKind::Class(self.class) { Role::Counts } else { Role::Absent }
+    }
+}
+
+/// No rule takes boxes that overlap less.
+pub(super) const SMALLEST_LEAST_OVERLAP: f64 = 0.25;

@@ -1,0 +1,145 @@
+//! Overlap of turned rectangles on a plane, and of boxes that stand on it.
+
+/// A rectangle on a plane, turned about its middle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RotatedRectangle {
+    /// The middle.
+    pub center: [f64; 2],
+    /// Length and width: the sides along its own first and second axis.
+    pub size: [f64; 2],
+    /// Turn from the plane's first axis towards its second, radians.
+    pub angle: f64,
+}
+
+impl RotatedRectangle {
+    /// Length times width; 0 when a side is not positive.
+    pub fn area(&self) -> f64 {
+        let [length, width] = self.size;
+        if length > 0.0 && width > 0.0 { length * width } else { 0.0 }
+    }
+
+    /// The area that it shares with `other`, exact but for rounding.
+    ///
+    /// In the frame of `self` it is upright, so `other` is clipped by four axis-parallel lines (I. E. Sutherland,
+    /// G. W. Hodgman, "Reentrant polygon clipping", Communications of the ACM 17, 1974).
+    pub fn shared_area(&self, other: &Self) -> f64 {
+        if self.area() == 0.0 || other.area() == 0.0 || self.is_apart(other) {
+            return 0.0;
+        }
+        let (sin, cos) = self.angle.sin_cos();
+        let offset = [other.center[0] - self.center[0], other.center[1] - self.center[1]];
+        let center = [cos * offset[0] + sin * offset[1], cos * offset[1] - sin * offset[0]];
+        let in_own_frame = Self { center, size: other.size, angle: other.angle - self.angle };
+        let mut polygon = Polygon::new(in_own_frame.corners());
+        for axis in 0..2 {
+            let limit = self.size[axis] / 2.0;
+            polygon = polygon.below(axis, limit, 1.0).below(axis, limit, -1.0);
+        }
+        polygon.area()
+    }
+
+    /// Intersection over union; 0 for a rectangle without area.
+    pub fn overlap(&self, other: &Self) -> f64 {
+        let shared = self.shared_area(other);
+        if shared > 0.0 { shared / (self.area() + other.area() - shared) } else { 0.0 }
+    }
+
+    /// The corners, counter-clockwise where the second axis is a quarter turn from the first.
+    fn corners(&self) -> [[f64; 2]; 4] {
+        let (sin, cos) = self.angle.sin_cos();
+        [[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]].map(|[along, across]| {
+            let (along, across) = (along * self.size[0], across * self.size[1]);
+            [self.center[0] + cos * along - sin * across, self.center[1] + sin * along + cos * across]
+        })
+    }
+
+    /// Whether the circles about the two do not meet.
+    fn is_apart(&self, other: &Self) -> bool {
+        let reach = |size: [f64; 2]| size[0].hypot(size[1]) / 2.0;
+        let distance = (other.center[0] - self.center[0]).hypot(other.center[1] - self.center[1]);
+        distance > reach(self.size) + reach(other.size)
+    }
+}
+
+/// A box that stands upright on a plane, free to turn about the vertical axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StandingBox {
+    /// Its floor.
+    pub floor: RotatedRectangle,
+    /// Where it begins and ends along the vertical axis.
+    pub vertical: [f64; 2],
+}
+
+impl StandingBox {
+    /// Area of the floor times height; 0 when a side is not positive.
+    pub fn volume(&self) -> f64 {
+        self.floor.area() * (self.vertical[1] - self.vertical[0]).max(0.0)
+    }
+
+    /// Intersection over union of the volumes, given the area that the floors share; 0 for a box without volume.
+    pub fn overlap_with_shared_floor(&self, other: &Self, shared_floor: f64) -> f64 {
+        let ([low, high], [other_low, other_high]) = (self.vertical, other.vertical);
+        let shared = shared_floor * (high.min(other_high) - low.max(other_low)).max(0.0);
+        if shared > 0.0 { shared / (self.volume() + other.volume() - shared) } else { 0.0 }
+    }
+
+    /// Intersection over union of the volumes; 0 for a box without volume.
+    pub fn overlap(&self, other: &Self) -> f64 {
+        self.overlap_with_shared_floor(other, self.floor.shared_area(&other.floor))
+    }
+}
+
+/// A convex polygon of at most eight corners: four, and one more for every line that clips it.
+#[derive(Debug, Clone, Copy)]
+struct Polygon {
+    corners: [[f64; 2]; 8],
+    len: usize,
+}
+
+impl Polygon {
+    fn new(rectangle: [[f64; 2]; 4]) -> Self {
+        let mut corners = [[0.0; 2]; 8];
+        corners[..4].copy_from_slice(&rectangle);
+        Self { corners, len: 4 }
+    }
+
+    fn push(&mut self, corner: [f64; 2]) {
+        if let Some(place) = self.corners.get_mut(self.len) {
+            *place = corner;
+            self.len += 1;
+        }
+    }
+
+    /// The part where `sign` times the coordinate along `axis` is at most `limit`.
+    fn below(&self, axis: usize, limit: f64, sign: f64) -> Self {
+        let mut clipped = Self { len: 0, ..*self };
+        let corners = &self.corners[..self.len];
+        let nexts = corners.iter().cycle().skip(1);
+        for (corner, next) in corners.iter().zip(nexts) {
+            let (here, there) = (sign * corner[axis], sign * next[axis]);
+            if here <= limit {
+                clipped.push(*corner);
+            }
+            if (here <= limit) != (there <= limit) {
+                let share = (limit - here) / (there - here);
+                let other = 1 - axis;
+                let mut crossing = [0.0; 2];
+                crossing[axis] = sign * limit;
+                crossing[other] = corner[other] + share * (next[other] - corner[other]);
+                clipped.push(crossing);
+            }
+        }
+        clipped
+    }
+
+    /// Gauss's shoelace formula.
+    fn area(&self) -> f64 {
+        let corners = &self.corners[..self.len];
+        let nexts = corners.iter().cycle().skip(1);
+        let doubled: f64 = corners.iter().zip(nexts).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
+        doubled.abs() / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests;
