@@ -84,12 +84,12 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
         class,
         truncated: as_written(found.truncated),
         occluded: found.occluded,
-        alpha: f64::from(found.alpha),
+        alpha: as_written(found.alpha),
         in_image: found.bbox2d.map(as_written),
-        dimensions: found.dimensions.map(f64::from),
-        location: found.location.map(f64::from),
-        rotation_y: f64::from(found.rotation_y),
-        score: f64::from(found.confidence),
+        dimensions: found.dimensions.map(as_written),
+        location: found.location.map(as_written),
+        rotation_y: as_written(found.rotation_y),
+        score: as_written(found.confidence),
     })
 }
 
