@@ -25,19 +25,16 @@ impl ClassTable {
         table
     }
 
-    /// The number of a class.
+    /// The number of a class; `own` are the names that its target gives, which count where the data set gives none.
     ///
     /// # Errors
     /// `InvalidInput` for a number that is no class.
-    pub fn number(&mut self, name: &Name) -> Result<usize> {
-        match name {
-            Name::Label(label) => {
-                if !self.numbers.contains_key(&**label) {
-                    self.push(label);
-                }
-                Ok(self.numbers[&**label])
-            }
-            Name::Index(index) => {
+    pub fn number(&mut self, name: &Name, own: &Classes) -> Result<usize> {
+        match (name, own.label(name)) {
+            (Name::Label(_), Some(label)) => Ok(self.labelled(label)),
+            (Name::Index(_), Some(label)) if !self.named => Ok(self.labelled(label)),
+            (Name::Label(label), None) => Ok(self.labelled(label)),
+            (Name::Index(index), _) => {
                 let most = if self.named { self.names.len() } else { MOST };
                 let number = usize::try_from(*index).ok().filter(|number| *number < most);
                 let number = number.ok_or_else(|| {
@@ -58,6 +55,14 @@ impl ClassTable {
         &self.names
     }
 
+    fn labelled(&mut self, label: &str) -> usize {
+        if let Some(number) = self.numbers.get(label) {
+            return *number;
+        }
+        self.push(label);
+        self.names.len() - 1
+    }
+
     fn push(&mut self, name: &str) {
         self.numbers.entry(name.to_owned()).or_insert(self.names.len());
         self.names.push(name.to_owned());
@@ -70,13 +75,17 @@ mod tests {
 
     #[test]
     fn labels_are_added_and_wrong_numbers_refused() {
-        let mut table = ClassTable::new(&["cat", "dog"].into_iter().collect());
-        assert_eq!(table.number(&Name::from("dog")).unwrap(), 1);
-        assert_eq!(table.number(&Name::from("cow")).unwrap(), 2);
-        assert_eq!(table.number(&Name::from(0)).unwrap(), 0);
-        assert!(table.number(&Name::from(3)).is_err() && table.number(&Name::from(-1)).is_err());
+        let classes: Classes = ["cat", "dog"].into_iter().collect();
+        let mut table = ClassTable::new(&classes);
+        let number = |table: &mut ClassTable, name: Name| table.number(&name, &Classes::default());
+        assert_eq!(number(&mut table, "dog".into()).unwrap(), 1);
+        assert_eq!(number(&mut table, "cow".into()).unwrap(), 2);
+        assert_eq!(number(&mut table, 0.into()).unwrap(), 0);
+        assert!(number(&mut table, 3.into()).is_err() && number(&mut table, (-1).into()).is_err());
         let mut nameless = ClassTable::new(&Classes::default());
-        assert_eq!(nameless.number(&Name::from(2)).unwrap(), 2);
+        assert_eq!(number(&mut nameless, 2.into()).unwrap(), 2);
         assert_eq!(nameless.names(), ["0", "1", "2"]);
+        assert_eq!(nameless.number(&1.into(), &classes).unwrap(), 3);
+        assert_eq!(nameless.names()[3], "dog");
     }
 }

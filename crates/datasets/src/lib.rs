@@ -20,6 +20,7 @@ mod problems;
 mod registry;
 mod stats;
 mod wav;
+mod yolo;
 
 pub use any::{FormatEntry, Recognition};
 pub use check::check;
@@ -36,3 +37,4 @@ pub use problems::{Place, Problem, Problems};
 pub use registry::{find, formats, open, recognise};
 pub use stats::{ClassCount, DatasetStats, Spread};
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
+pub use yolo::Yolo;

@@ -33,6 +33,7 @@ const KEYS: [&str; 4] = ["images", "annotations", "categories", "licenses"];
 ///
 /// Class numbers are the positions of COCO's category ids in ascending order; [`DatasetIterator::class_ids`] has the
 /// ids.
+#[derive(Debug)]
 pub struct Coco {
     folder: PathBuf,
     index: Index,

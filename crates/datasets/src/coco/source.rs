@@ -18,6 +18,7 @@ const GAP: u64 = 1 << 12;
 const MOST: u64 = 1 << 20;
 
 /// An indexed COCO file. Reads are short, so threads take turns.
+#[derive(Debug)]
 pub(super) struct Source {
     path: PathBuf,
     file: Mutex<File>,

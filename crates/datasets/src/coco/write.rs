@@ -202,11 +202,7 @@ impl<'a> CocoWriter<'a> {
 
     /// The data set's own number of a class.
     fn category(&mut self, list: &BoundingBoxList, name: &Name) -> Result<i64> {
-        // A list may name its classes where the data set does not.
-        let number = match list.classes.label(name) {
-            Some(label) if self.dataset.classes().is_empty() => self.classes.number(&Name::from(label))?,
-            _ => self.classes.number(name)?,
-        };
+        let number = self.classes.number(name, &list.classes)?;
         Ok(self.category_id(number))
     }
 
