@@ -29,31 +29,39 @@ pub fn grammar() -> Command {
         .arg(loading::learner())
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
-        .args([
-            Arg::new("metric").long("metric").value_name("NAME").help(format!(
-                "What to measure by; by default the task's own: {}",
-                metrics::metrics().iter().map(|entry| entry.name).collect::<Vec<_>>().join(", ")
-            )),
-            Arg::new("metric-param")
-                .long("metric-param")
-                .action(ArgAction::Append)
-                .value_name("NAME=VALUE")
-                .help("A parameter of the metric (docs/metrics.md)"),
+        .args(metric_flags())
+        .arg(
             Arg::new("limit")
                 .long("limit")
                 .value_parser(value_parser!(usize))
                 .value_name("N")
                 .help("Stop after the first N samples"),
-            Arg::new("out")
-                .long("out")
-                .short('o')
-                .value_parser(value_parser!(PathBuf))
-                .value_name("DIR")
-                .help("Write the answers, report.json, figures and the worst samples into this folder"),
-            Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
-        ])
+        )
         .args(loading::flags())
         .after_help(EXAMPLES)
+}
+
+/// The flags of what measures.
+pub fn metric_flags() -> [Arg; 4] {
+    let names: Vec<_> = metrics::metrics().iter().map(|entry| entry.name).collect();
+    [
+        Arg::new("metric").long("metric").value_name("NAME").help(format!(
+            "What to measure by: {} (docs/metrics.md); eval takes the task's own by default",
+            names.join(", ")
+        )),
+        Arg::new("metric-param")
+            .long("metric-param")
+            .action(ArgAction::Append)
+            .value_name("NAME=VALUE")
+            .help("A parameter of the metric (docs/metrics.md)"),
+        Arg::new("out")
+            .long("out")
+            .short('o')
+            .value_parser(value_parser!(PathBuf))
+            .value_name("DIR")
+            .help("Write answers, report.json, figures and the worst samples into this folder"),
+        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+    ]
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
@@ -85,16 +93,14 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let count = loading::how_many(matches, Some(dataset.len() as u64))?;
     let mut learners = loading::side_by_side(count, || loading::load(spec, &params, matches, &bar))?;
     let outcome = evaluation.run(&mut learners, entry.ports, &dataset)?;
-    tell(&outcome, matches, &problems)?;
-    if !outcome.written.is_empty() {
-        let written: Vec<_> = outcome.written.iter().map(|path| path.display().to_string()).collect();
-        bar.note(&format!("written: {}", written.join(", ")));
-    }
-    Ok(if outcome.skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
+    tell(&outcome, matches, &problems, &bar)
 }
 
 /// The metric's parameters that the user set.
-fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<ParamMap> {
+///
+/// # Errors
+/// `InvalidParam` for one that the metric does not have, or a wrong value.
+pub fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<ParamMap> {
     let given = matches.get_many::<String>("metric-param").into_iter().flatten();
     given
         .map(|text| {
@@ -111,12 +117,22 @@ fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<ParamMap>
         .collect()
 }
 
-fn tell(outcome: &Evaluated, matches: &ArgMatches, problems: &Problems) -> Result<()> {
+/// Prints an outcome, and what was left out and written.
+///
+/// # Errors
+/// `Io` when standard output cannot be written.
+pub fn tell(outcome: &Evaluated, matches: &ArgMatches, problems: &Problems, bar: &Bar) -> Result<Outcome> {
     if matches.get_flag("json") {
         let json = serde_json::to_string(outcome)
             .map_err(|error| Error::internal("the outcome has no JSON form").with_source(error))?;
-        return stdout::print(json);
+        stdout::print(json)?;
+    } else {
+        stdout::print(outcome.to_string().trim_end())?;
+        dataset_flags::print_problems(problems)?;
     }
-    stdout::print(outcome.to_string().trim_end())?;
-    dataset_flags::print_problems(problems)
+    if !outcome.written.is_empty() {
+        let written: Vec<_> = outcome.written.iter().map(|path| path.display().to_string()).collect();
+        bar.note(&format!("written: {}", written.join(", ")));
+    }
+    Ok(if outcome.skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }

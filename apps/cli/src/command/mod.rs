@@ -8,6 +8,7 @@ mod eval;
 mod infer;
 mod models;
 mod runtime;
+mod score;
 
 use std::ffi::{OsStr, OsString};
 
@@ -36,6 +37,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
     let mut commands = [
         infer::grammar(),
         eval::grammar(),
+        score::grammar(),
         data::grammar(),
         models::grammar(),
         download::grammar(),
@@ -68,6 +70,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     loading::with_threads(matches, || match name {
         "infer" => infer::run(matches),
         "eval" => eval::run(matches),
+        "score" => score::run(matches),
         "data" => data::run(matches),
         "models" => models::run(matches),
         "download" => download::run(matches),

@@ -1,0 +1,91 @@
+//! `opendr score`: a file of answers against a data set.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::dataset::ExternalDataset;
+use opendr::datasets::{self, OpenOptions, Problems};
+use opendr::evaluation::{self, Answers, Evaluation, Lines, Subject};
+use opendr::metrics::{self, MetricEntry};
+use opendr::{Error, Result};
+
+use crate::command::eval;
+use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{dataset_flags, loading};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr score results.json coco/annotations/instances_val2017.json --metric coco_detection
+  opendr score answers.jsonl coco/ --metric coco_detection      lines of \"opendr infer --json\"
+  opendr score tracker/ MOT17/train/ --metric hota              files of the data set's own format
+  opendr score results/ KITTI/ --metric kitti --answers-format kitti";
+
+pub fn grammar() -> Command {
+    Command::new("score")
+        .about("Measure answers that were written into files")
+        .arg(
+            Arg::new("answers")
+                .required(true)
+                .value_name("ANSWERS")
+                .value_parser(value_parser!(PathBuf))
+                .help("COCO results, lines of JSON, or a data set whose annotations are the answers"),
+        )
+        .arg(dataset_flags::dataset())
+        .args(dataset_flags::flags())
+        .arg(
+            Arg::new("answers-format")
+                .long("answers-format")
+                .value_name("FORMAT")
+                .help("The format of the answers; by default the data set's"),
+        )
+        .args(eval::metric_flags())
+        .arg(loading::quiet())
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    let name = matches.get_one::<String>("metric").ok_or_else(|| {
+        let names: Vec<_> = metrics::metrics().iter().map(|entry| entry.name).collect();
+        Error::invalid_param(format!("name a metric with --metric; there are {}", names.join(", ")))
+    })?;
+    let metric = metrics::find(name)?;
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let problems = dataset_flags::problems(matches);
+    let external = dataset_flags::external(matches);
+    let path = matches.get_one::<PathBuf>("answers").cloned().unwrap_or_default();
+    let dataset = evaluation::open_for(metric, &external, dataset_flags::split(matches), &problems)?;
+    let answers = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("jsonl") => Answers::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
+        _ => Answers::from_dataset(open(&path, &external, metric, matches, &problems)?, dataset.as_ref()),
+    };
+    let subject = Subject { learner: path.display().to_string(), ..Subject::default() };
+    let evaluation = Evaluation {
+        dataset: external.path().display().to_string(),
+        metric_params: eval::metric_params(metric, matches)?,
+        folder: matches.get_one::<PathBuf>("out").map(PathBuf::as_path),
+        progress: &bar,
+        ..Evaluation::new(subject, metric, &problems)
+    };
+    let outcome = evaluation.score(&answers, dataset.as_ref())?;
+    eval::tell(&outcome, matches, &problems, &bar)
+}
+
+/// The answers as a data set.
+fn open(
+    path: &Path,
+    truth: &ExternalDataset,
+    metric: &MetricEntry,
+    matches: &ArgMatches,
+    problems: &Problems,
+) -> Result<Box<dyn opendr::dataset::DatasetIterator>> {
+    let format = match matches.get_one::<String>("answers-format") {
+        Some(format) => format.clone(),
+        None if matches!(truth.dataset_type(), "" | "auto") => {
+            datasets::recognise(truth.path())?.name.to_owned()
+        }
+        None => truth.dataset_type().to_owned(),
+    };
+    let options = OpenOptions { split: None, target: Some(metric.prediction) };
+    datasets::open(&ExternalDataset::new(path, format), &options, problems)
+}
