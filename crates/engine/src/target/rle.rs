@@ -1,5 +1,8 @@
 //! Masks by runs, as COCO writes them.
 
+mod outline;
+mod overlap;
+
 use serde::{Deserialize, Serialize};
 
 use crate::{Error, Result};

@@ -1,0 +1,122 @@
+//! Masks taken together: union, intersection, extent.
+
+use crate::target::Rle;
+use crate::{Error, Result};
+
+impl Rle {
+    /// `[left, top, width, height]` in pixels around the object; zeros when there is none.
+    pub fn bounding_box(&self) -> [u32; 4] {
+        let (height, mut at) = (u64::from(self.height), 0u64);
+        let mut corners: Option<[u64; 4]> = None;
+        for (index, run) in self.counts.iter().enumerate() {
+            let (first, end) = (at, at + u64::from(*run));
+            at = end;
+            if index % 2 == 0 || first == end {
+                continue;
+            }
+            let (x0, x1) = (first / height, (end - 1) / height);
+            let (y0, y1) = if x0 < x1 { (0, height - 1) } else { (first % height, (end - 1) % height) };
+            let [left, top, right, bottom] = corners.unwrap_or([x0, y0, x1, y1]);
+            corners = Some([left.min(x0), top.min(y0), right.max(x1), bottom.max(y1)]);
+        }
+        let [left, top, right, bottom] = corners.map_or([0; 4], |[l, t, r, b]| [l, t, r + 1, b + 1]);
+        [left, top, right - left, bottom - top].map(|pixels| pixels as u32)
+    }
+
+    /// Pixels of both objects.
+    ///
+    /// # Errors
+    /// `InvalidInput` for masks of different sizes.
+    pub fn intersection(&self, other: &Self) -> Result<u64> {
+        let mut pixels = 0;
+        self.walk(other, |run, [this, that]| pixels += if this && that { u64::from(run) } else { 0 })?;
+        Ok(pixels)
+    }
+
+    /// The mask of what belongs to either object.
+    ///
+    /// # Errors
+    /// `InvalidInput` for masks of different sizes.
+    pub fn union(&self, other: &Self) -> Result<Self> {
+        let (mut counts, mut inside) = (vec![0], false);
+        self.walk(other, |run, [this, that]| {
+            if (this || that) != inside {
+                inside = !inside;
+                counts.push(0);
+            }
+            if let Some(last) = counts.last_mut() {
+                *last += run;
+            }
+        })?;
+        Self::new(self.height, self.width, counts)
+    }
+
+    /// Goes through the pixels of two masks at once, in pieces that are uniform in both.
+    fn walk(&self, other: &Self, mut piece: impl FnMut(u32, [bool; 2])) -> Result<()> {
+        if self.size() != other.size() {
+            let ([height, width], [rows, columns]) = (self.size(), other.size());
+            return Err(Error::invalid_input(format!(
+                "masks of {height}x{width} and {rows}x{columns} pixels cannot be laid over each other; \
+                 both must be of the picture's size"
+            )));
+        }
+        let (mut these, mut those) = (self.counts.iter().copied(), other.counts.iter().copied());
+        let (mut this, mut that) = (these.next(), those.next());
+        let mut inside = [false; 2];
+        while let (Some(left), Some(right)) = (this, that) {
+            let run = left.min(right);
+            piece(run, inside);
+            this = Some(left - run);
+            that = Some(right - run);
+            if left == run {
+                this = these.next();
+                inside[0] = !inside[0];
+            }
+            if right == run {
+                that = those.next();
+                inside[1] = !inside[1];
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn masks() -> impl Strategy<Value = (Vec<bool>, Vec<bool>)> {
+        let mask = || proptest::collection::vec(any::<bool>(), 5 * 7);
+        (mask(), mask())
+    }
+
+    proptest! {
+        #[test]
+        fn as_on_pixels((this, that) in masks(), band in 0usize..35) {
+            let this: Vec<bool> = this.iter().enumerate().map(|(at, inside)| *inside && at >= band).collect();
+            let [left, right] = [&this, &that].map(|mask| Rle::from_mask(mask, 5, 7).unwrap());
+            let pairs = || this.iter().zip(&that);
+            prop_assert_eq!(
+                left.intersection(&right).unwrap(),
+                pairs().filter(|(a, b)| **a && **b).count() as u64
+            );
+            let either: Vec<bool> = pairs().map(|(a, b)| *a || *b).collect();
+            prop_assert_eq!(left.union(&right).unwrap(), Rle::from_mask(&either, 5, 7).unwrap());
+            let inside = || (0..35).filter(|at| this[*at]).map(|at| [at % 7, at / 7]);
+            let extent = |axis: usize| {
+                let (min, max) = (inside().map(|p| p[axis]).min(), inside().map(|p| p[axis]).max());
+                min.zip(max).map_or([0, 0], |(min, max)| [min as u32, (max - min + 1) as u32])
+            };
+            let ([left_edge, width], [top, height]) = (extent(0), extent(1));
+            prop_assert_eq!(left.bounding_box(), [left_edge, top, width, height]);
+        }
+    }
+
+    #[test]
+    fn masks_of_different_sizes_are_refused() {
+        let (wide, high) = (Rle::new(2, 3, vec![6]).unwrap(), Rle::new(3, 2, vec![0, 6]).unwrap());
+        assert!(wide.union(&high).is_err() && wide.intersection(&high).is_err());
+    }
+}
