@@ -9,6 +9,7 @@ mod average;
 mod calibration;
 mod classification;
 mod clear_mot;
+pub mod coco;
 mod depth;
 mod edit_distance;
 mod generated;

@@ -1,0 +1,147 @@
+//! Verdicts of many pictures, class by class.
+
+use std::collections::BTreeMap;
+
+use opendr_engine::{Error, Result, map_in_order};
+
+use super::curve::{Curve, Ranked};
+use super::matching::{Detection, Matching, Truth};
+use super::protocol::{AREAS, Protocol, THRESHOLDS};
+use super::summary::{ClassOutcome, Outcome};
+
+/// Counts objects and detections, picture by picture, for classes that `K` tells apart.
+///
+/// A picture is matched when it is added; what stays is 32 bytes a detection. Accumulators of several threads merge to
+/// the same outcome however pictures were spread over them.
+#[derive(Debug)]
+pub struct Accumulator<K> {
+    protocol: Protocol,
+    classes: BTreeMap<K, Class>,
+    matching: Matching,
+    order: Vec<usize>,
+    sorted: Vec<Detection>,
+    overlaps: Vec<f64>,
+}
+
+/// What is kept of a class.
+#[derive(Debug, Default)]
+struct Class {
+    /// Objects that count, in each range of area.
+    truths: [u64; AREAS],
+    ranked: Vec<Ranked>,
+}
+
+impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
+    /// An accumulator that has counted nothing.
+    pub fn new(protocol: Protocol) -> Self {
+        Self {
+            protocol,
+            classes: BTreeMap::new(),
+            matching: Matching::default(),
+            order: Vec::new(),
+            sorted: Vec::new(),
+            overlaps: Vec::new(),
+        }
+    }
+
+    /// Counts the objects and detections of one class in picture number `picture`, and tells the average precision over
+    /// all thresholds in it; `None` when no object counts.
+    ///
+    /// `overlap(detection, truth)` is asked for the detections that are within the limit only.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a score that is NaN, and errors of `overlap`; nothing has been counted then.
+    pub fn add(
+        &mut self,
+        class: &K,
+        picture: u32,
+        truths: &[Truth],
+        detections: &[Detection],
+        mut overlap: impl FnMut(usize, usize) -> Result<f64>,
+    ) -> Result<Option<f64>> {
+        if detections.iter().any(|detection| detection.score.is_nan()) {
+            return Err(Error::invalid_input(
+                "a detection has a score that is no number; give it one or leave it out",
+            ));
+        }
+        let falling = |a: &usize, b: &usize| detections[*b].score.total_cmp(&detections[*a].score);
+        self.order.clear();
+        self.order.extend(0..detections.len());
+        self.order.sort_by(falling);
+        self.order.truncate(self.protocol.most() as usize);
+        self.overlaps.clear();
+        for detection in &self.order {
+            for truth in 0..truths.len() {
+                self.overlaps.push(overlap(*detection, truth)?);
+            }
+        }
+        self.sorted.clear();
+        self.sorted.extend(self.order.iter().map(|index| detections[*index]));
+        let verdicts = self.matching.verdicts(self.protocol.areas, truths, &self.sorted, &self.overlaps);
+        if !self.classes.contains_key(class) {
+            self.classes.insert(class.clone(), Class::default());
+        }
+        let Some(kept) = self.classes.get_mut(class) else { return Ok(None) };
+        let start = kept.ranked.len();
+        kept.ranked.extend(verdicts.iter().zip(&self.sorted).zip(0..).map(|((verdict, detection), rank)| {
+            Ranked { score: detection.score, picture, rank, verdict: *verdict }
+        }));
+        let counting = |at: usize| {
+            let area = self.protocol.areas[at];
+            truths.iter().filter(|truth| !truth.ignored && area.contains(truth.area)).count() as u64
+        };
+        for at in 0..self.protocol.areas.len() {
+            kept.truths[at] += counting(at);
+        }
+        let alone = counting(0);
+        Ok((alone > 0).then(|| Curve::of(&kept.ranked[start..], 0, alone).mean()))
+    }
+
+    /// Counts what `other` counted.
+    pub fn merge(&mut self, other: Self) {
+        for (class, theirs) in other.classes {
+            let ours = self.classes.entry(class).or_default();
+            ours.truths.iter_mut().zip(theirs.truths).for_each(|(ours, theirs)| *ours += theirs);
+            if ours.ranked.is_empty() {
+                ours.ranked = theirs.ranked;
+            } else {
+                ours.ranked.extend(theirs.ranked);
+            }
+        }
+    }
+
+    /// The outcome, computed on `threads` threads; counting may go on.
+    pub fn finish(&self, threads: usize) -> Outcome<K> {
+        let mut classes = Vec::with_capacity(self.classes.len());
+        let work = |(): &mut (), (class, kept): (&K, &Class)| (class.clone(), kept.outcome(&self.protocol));
+        let mut workers = vec![(); threads.clamp(1, self.classes.len().max(1))];
+        let done: Result<(), std::convert::Infallible> =
+            map_in_order(&mut workers, &self.classes, work, |outcome| {
+                classes.push(outcome);
+                Ok(())
+            });
+        match done {
+            Ok(()) => Outcome::new(&self.protocol, classes),
+        }
+    }
+}
+
+impl Class {
+    fn outcome(&self, protocol: &Protocol) -> ClassOutcome {
+        let mut ranked = self.ranked.clone();
+        ranked.sort_unstable_by(Ranked::before);
+        let curve = |at: usize| (self.truths[at] > 0).then(|| Curve::of(&ranked, at, self.truths[at]));
+        let curves: Vec<Option<Curve>> = (0..protocol.areas.len()).map(curve).collect();
+        ClassOutcome { truths: self.truths[0], recalls: self.recalls(protocol), curves }
+    }
+
+    /// For every limit of detections, the recall over all thresholds among objects of all sizes.
+    fn recalls(&self, protocol: &Protocol) -> Vec<Option<f64>> {
+        let recall = |limit: &u32| {
+            let within = self.ranked.iter().filter(|ranked| ranked.rank < *limit);
+            let found: u64 = within.map(|ranked| u64::from(ranked.verdict.right[0].count_ones())).sum();
+            (self.truths[0] > 0).then(|| found as f64 / (self.truths[0] as usize * THRESHOLDS) as f64)
+        };
+        protocol.limits.iter().map(recall).collect()
+    }
+}
