@@ -7,6 +7,7 @@
 mod any;
 mod average;
 mod calibration;
+mod class_key;
 mod classification;
 mod clear_mot;
 pub mod coco;
@@ -37,6 +38,7 @@ pub use any::{AnyMetric, MetricEntry};
 pub use calibration::{Calibration, CalibrationBin};
 pub use classification::{Classification, ClassificationParams};
 pub use clear_mot::{ClearMot, ClearMotCounts, TrackMatchingParams};
+pub use coco::{CocoDetection, CocoKeypoints, CocoSegmentation};
 pub use depth::{Depth, DepthErrors, DepthParams, DepthQuantity, DisparityErrors};
 pub use edit_distance::EditCounts;
 pub use hota::{Hota, HotaCounts, HotaParams, HotaScores};

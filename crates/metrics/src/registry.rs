@@ -11,6 +11,9 @@ pub const fn metrics() -> &'static [MetricEntry] {
         &[
             MetricEntry::of::<crate::Classification>(),
             MetricEntry::of::<crate::ClearMot>(),
+            MetricEntry::of::<crate::CocoDetection>(),
+            MetricEntry::of::<crate::CocoKeypoints>(),
+            MetricEntry::of::<crate::CocoSegmentation>(),
             MetricEntry::of::<crate::Depth>(),
             MetricEntry::of::<crate::Hota>(),
             MetricEntry::of::<crate::Identity>(),

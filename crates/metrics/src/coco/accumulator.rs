@@ -64,7 +64,10 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
                 "a detection has a score that is no number; give it one or leave it out",
             ));
         }
-        let falling = |a: &usize, b: &usize| detections[*b].score.total_cmp(&detections[*a].score);
+        let falling = |a: &usize, b: &usize| {
+            let scores = detections[*b].score.partial_cmp(&detections[*a].score);
+            scores.unwrap_or(std::cmp::Ordering::Equal)
+        };
         self.order.clear();
         self.order.extend(0..detections.len());
         self.order.sort_by(falling);

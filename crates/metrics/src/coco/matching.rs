@@ -63,7 +63,7 @@ impl Matching {
         self.candidates.clear();
         if !truths.is_empty() {
             let rows = overlaps.chunks_exact(truths.len()).enumerate();
-            let enough = |row: &[f64]| row.iter().any(|overlap| !(*overlap < 0.5));
+            let enough = |row: &[f64]| row.iter().any(|overlap| *overlap >= 0.5 || overlap.is_nan());
             self.candidates.extend(rows.filter(|(_, row)| enough(row)).map(|(index, _)| index));
         }
         for (at, area) in areas.iter().enumerate().take(AREAS) {

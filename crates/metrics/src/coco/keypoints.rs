@@ -1,0 +1,103 @@
+//! COCO's average precision of key points.
+
+use opendr_engine::Result;
+use opendr_engine::params::Params;
+use opendr_engine::target::{Pose, PoseList, Skeleton};
+
+use super::accumulator::Accumulator;
+use super::decimal::{f64_box, f64_from_f32};
+use super::detection::{checked_score, picture_number, truth_of};
+use super::matching::{Detection, Truth};
+use super::overlap::{JOINTS, Person, check_box, keypoint_similarity};
+use super::picture::quality_of_nothing;
+use super::protocol::Protocol;
+use crate::{Metric, Report};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct CocoKeypointsParams {
+    /// At most this many persons a picture are counted, the surest.
+    #[param(default = 20, range = 1..=100_000)]
+    pub max_detections: u32,
+}
+
+/// Average precision and recall of persons by their key points: pycocotools' `COCOeval(.., "keypoints")`.
+///
+/// Poses of any skeleton are compared by the names of COCO's 17 joints. A joint that a truth lacks was not annotated;
+/// one that an answer lacks is at (0, 0), as in COCO's result files. Box, area and crowd of a truth are those of its
+/// [`Pose::region`], else those of the box around its joints.
+#[derive(Debug)]
+pub struct CocoKeypoints {
+    accumulator: Accumulator<()>,
+}
+
+impl Metric for CocoKeypoints {
+    const NAME: &'static str = "coco_keypoints";
+    const ABOUT: &'static str = "average precision and recall of persons by their key points, as pycocotools";
+    type Params = CocoKeypointsParams;
+    type Prediction = PoseList;
+    type Truth = PoseList;
+
+    fn new(params: &CocoKeypointsParams) -> Result<Self> {
+        Ok(Self { accumulator: Accumulator::new(Protocol::keypoints(params.max_detections)) })
+    }
+
+    fn update(&mut self, at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
+        let answered = prediction.poses.iter().map(answer).collect::<Result<Vec<_>>>()?;
+        let (detections, detected): (Vec<Detection>, Vec<_>) = answered.into_iter().unzip();
+        let annotated = truth.poses.iter().map(person).collect::<Result<Vec<_>>>()?;
+        let (truths, persons): (Vec<Truth>, Vec<Person>) = annotated.into_iter().unzip();
+        let similarity =
+            |detection: usize, truth: usize| Ok(keypoint_similarity(&detected[detection], &persons[truth]));
+        let quality = self.accumulator.add(&(), picture_number(at)?, &truths, &detections, similarity)?;
+        Ok(quality.unwrap_or_else(|| quality_of_nothing(&detections)))
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.accumulator.merge(other.accumulator);
+    }
+
+    fn finish(&self) -> Report {
+        self.accumulator.finish(1).report(|()| "person".to_owned())
+    }
+}
+
+/// Where COCO's joints are; (0, 0) where they are not.
+fn joints(pose: &Pose) -> ([[f64; 2]; JOINTS], [bool; JOINTS]) {
+    let (mut places, mut found) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
+    for (at, name) in Skeleton::Coco17.joints().iter().enumerate().take(JOINTS) {
+        if let Some(keypoint) = pose.keypoint(name).filter(|keypoint| keypoint.is_found()) {
+            places[at] = [keypoint.x, keypoint.y].map(f64_from_f32);
+            found[at] = true;
+        }
+    }
+    (places, found)
+}
+
+fn answer(pose: &Pose) -> Result<(Detection, [[f64; 2]; JOINTS])> {
+    let (places, _) = joints(pose);
+    Ok((Detection { score: checked_score(pose.confidence)?, area: area_around(&places) }, places))
+}
+
+/// Of the box around all joints, those at (0, 0) too.
+pub(super) fn area_around(joints: &[[f64; 2]; JOINTS]) -> f64 {
+    let extent = |axis: usize| {
+        let along = joints.iter().map(|joint| joint[axis]);
+        along.clone().fold(f64::NEG_INFINITY, f64::max) - along.fold(f64::INFINITY, f64::min)
+    };
+    extent(0) * extent(1)
+}
+
+fn person(pose: &Pose) -> Result<(Truth, Person)> {
+    let (places, found) = joints(pose);
+    let around = pose.bounding_box().unwrap_or_default().map(f64_from_f32);
+    let region = pose.region.as_deref();
+    let bounding_box = region.map_or(around, f64_box);
+    check_box(bounding_box, "person")?;
+    let box_area = bounding_box[2] * bounding_box[3];
+    let plain = Truth { area: box_area, crowd: false, ignored: false };
+    let mut truth = region.map_or(plain, |region| truth_of(region, box_area));
+    truth.ignored |= found == [false; JOINTS];
+    let joints = std::array::from_fn(|at| [places[at][0], places[at][1], f64::from(u8::from(found[at]))]);
+    Ok((truth, Person { joints, bounding_box, area: truth.area }))
+}

@@ -1,0 +1,91 @@
+//! The boxes of one picture, class by class.
+
+use opendr_engine::Result;
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
+
+use super::accumulator::Accumulator;
+use super::matching::{Detection, Truth};
+use crate::class_key::ClassKey;
+
+/// An accumulator over lists of boxes, with or without masks.
+#[derive(Debug)]
+pub(super) struct Pictures {
+    pub accumulator: Accumulator<ClassKey>,
+    /// Labels of the data set.
+    pub classes: Classes,
+    pub use_classes: bool,
+}
+
+impl Pictures {
+    /// Counts a picture; `shapes` are what `overlap(detection, truth)` compares. Tells how good the detections are.
+    pub(super) fn add<S>(
+        &mut self,
+        at: u32,
+        [prediction, truth]: [&BoundingBoxList; 2],
+        [detected, annotated]: [&[S]; 2],
+        detections: &[Detection],
+        truths: &[Truth],
+        overlap: impl Fn(&S, &S, bool) -> Result<f64>,
+    ) -> Result<f64> {
+        if self.classes.is_empty() {
+            self.classes = truth.classes.clone();
+        }
+        let keys = |list: &BoundingBoxList| {
+            let key = |found: &BoundingBox| ClassKey::new(&found.name, &list.classes, &truth.classes);
+            list.boxes.iter().map(key).collect::<Vec<_>>()
+        };
+        let (found, there) = (sorted(keys(prediction)), sorted(keys(truth)));
+        let mut classes: Vec<Option<&ClassKey>> = vec![None];
+        if self.use_classes {
+            classes = found.iter().chain(&there).map(|(key, _)| Some(key)).collect();
+            classes.sort_unstable();
+            classes.dedup();
+        }
+        let mut qualities = Vec::new();
+        for class in classes {
+            let of_class = |all: &[(ClassKey, usize)]| -> Vec<usize> {
+                all.iter()
+                    .filter(|(key, _)| class.is_none_or(|class| class == key))
+                    .map(|(_, at)| *at)
+                    .collect()
+            };
+            let (found, there) = (of_class(&found), of_class(&there));
+            let some = |indices: &[usize]| indices.iter().map(|at| detections[*at]).collect::<Vec<_>>();
+            let truths: Vec<_> = there.iter().map(|at| truths[*at]).collect();
+            let quality = self.accumulator.add(
+                class.unwrap_or(&ClassKey::Any),
+                at,
+                &truths,
+                &some(&found),
+                |detection, truth| {
+                    overlap(&detected[found[detection]], &annotated[there[truth]], truths[truth].crowd)
+                },
+            )?;
+            qualities.extend(quality);
+        }
+        Ok(match qualities.len() {
+            0 => quality_of_nothing(detections),
+            count => qualities.iter().sum::<f64>() / count as f64,
+        })
+    }
+
+    pub(super) fn merge(&mut self, other: Self) {
+        if self.classes.is_empty() {
+            self.classes = other.classes;
+        }
+        self.accumulator.merge(other.accumulator);
+    }
+}
+
+/// How good detections are where there is nothing to find.
+pub(super) fn quality_of_nothing(detections: &[Detection]) -> f64 {
+    let surest = detections.iter().map(|detection| detection.score).fold(0.0, f64::max);
+    1.0 - surest.min(1.0)
+}
+
+/// Numbers of the boxes by class, in their order within a class.
+fn sorted(keys: Vec<ClassKey>) -> Vec<(ClassKey, usize)> {
+    let mut keys: Vec<_> = keys.into_iter().enumerate().map(|(at, key)| (key, at)).collect();
+    keys.sort();
+    keys
+}

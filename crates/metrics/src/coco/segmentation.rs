@@ -1,0 +1,109 @@
+//! COCO's average precision of masks.
+
+use opendr_engine::target::{BoundingBoxList, Rle, Segmentation};
+use opendr_engine::{Error, Result};
+
+use super::accumulator::Accumulator;
+use super::decimal::f64_from_f32;
+use super::detection::{CocoDetectionParams, checked_score, picture_number, truth_of};
+use super::matching::Detection;
+use super::overlap::Mask;
+use super::picture::Pictures;
+use super::protocol::Protocol;
+use crate::{Metric, Report};
+
+/// Average precision and recall of masks: pycocotools' `COCOeval(.., "segm")`.
+///
+/// Every box needs an outline or a mask. Where all are outlines, nothing tells the size of the picture, and they are
+/// filled on a canvas that holds them all; pycocotools cuts them off at the picture's edge.
+#[derive(Debug)]
+pub struct CocoSegmentation {
+    pictures: Pictures,
+}
+
+impl Metric for CocoSegmentation {
+    const NAME: &'static str = "coco_segmentation";
+    const ABOUT: &'static str = "average precision and recall of masks, as pycocotools";
+    type Params = CocoDetectionParams;
+    type Prediction = BoundingBoxList;
+    type Truth = BoundingBoxList;
+
+    fn new(params: &CocoDetectionParams) -> Result<Self> {
+        let accumulator = Accumulator::new(Protocol::objects(params.max_detections));
+        let pictures = Pictures { accumulator, classes: Default::default(), use_classes: params.use_classes };
+        Ok(Self { pictures })
+    }
+
+    fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
+        let canvas = canvas([prediction, truth])?;
+        let (detected, annotated) =
+            (masks(prediction, canvas, "detection")?, masks(truth, canvas, "object")?);
+        let scored = prediction.boxes.iter().zip(&detected).map(|(found, mask)| {
+            Ok(Detection { score: checked_score(found.confidence)?, area: mask.area() as f64 })
+        });
+        let detections = scored.collect::<Result<Vec<_>>>()?;
+        let objects = truth.boxes.iter().zip(&annotated);
+        let truths: Vec<_> = objects.map(|(found, mask)| truth_of(found, mask.area() as f64)).collect();
+        let lists = [prediction, truth];
+        let at = picture_number(at)?;
+        self.pictures.add(at, lists, [&detected, &annotated], &detections, &truths, Mask::overlap)
+    }
+
+    fn merge(&mut self, other: Self) {
+        self.pictures.merge(other.pictures);
+    }
+
+    fn finish(&self) -> Report {
+        let classes = &self.pictures.classes;
+        self.pictures.accumulator.finish(1).report(|class| class.label(classes))
+    }
+}
+
+fn segmentations(list: &BoundingBoxList) -> impl Iterator<Item = &Segmentation> {
+    list.boxes.iter().filter_map(|found| found.segment.as_deref()).map(|segment| &segment.segmentation)
+}
+
+/// `[height, width]` of all masks: the picture's, or what holds all outlines.
+fn canvas(lists: [&BoundingBoxList; 2]) -> Result<[u32; 2]> {
+    let mut size: Option<[u32; 2]> = None;
+    let mut extent = [1.0f32; 2];
+    for segmentation in lists.into_iter().flat_map(segmentations) {
+        match segmentation {
+            Segmentation::Rle(rle) => {
+                let [height, width] = size.unwrap_or(rle.size());
+                if [height, width] != rle.size() {
+                    let [rows, columns] = rle.size();
+                    return Err(Error::invalid_input(format!(
+                        "masks of {height}x{width} and {rows}x{columns} pixels in one picture; \
+                         give all masks the picture's size"
+                    )));
+                }
+                size = Some(rle.size());
+            }
+            Segmentation::Polygons(polygons) => {
+                for [x, y] in polygons.iter().flat_map(|polygon| polygon.as_chunks::<2>().0) {
+                    extent = [extent[0].max(*y), extent[1].max(*x)];
+                }
+            }
+        }
+    }
+    Ok(size.unwrap_or(extent.map(|pixels| (pixels.ceil() as u32).saturating_add(1))))
+}
+
+fn masks(list: &BoundingBoxList, [height, width]: [u32; 2], what: &str) -> Result<Vec<Mask>> {
+    let mask = |segmentation: &Segmentation| match segmentation {
+        Segmentation::Rle(rle) => Ok(Mask::from(rle.clone())),
+        Segmentation::Polygons(polygons) => {
+            let exact = |polygon: &Vec<f32>| polygon.iter().copied().map(f64_from_f32).collect::<Vec<_>>();
+            let polygons: Vec<_> = polygons.iter().map(exact).collect();
+            Rle::from_polygons(height, width, &polygons).map(Mask::from)
+        }
+    };
+    let masks = list.boxes.iter().enumerate().map(|(index, found)| match found.segment.as_deref() {
+        Some(segment) => mask(&segment.segmentation),
+        None => Err(Error::invalid_input(format!(
+            "{what} {index} has neither outline nor mask; compare boxes with coco_detection"
+        ))),
+    });
+    masks.collect()
+}
