@@ -18,9 +18,11 @@ mod picture_box;
 mod picture_files;
 mod problems;
 mod registry;
+mod speech_commands;
 mod stats;
 mod wav;
 mod yolo;
+mod wfdb;
 
 pub use any::{FormatEntry, Recognition};
 pub use check::check;
@@ -35,6 +37,11 @@ pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use problems::{Place, Problem, Problems};
 pub use registry::{find, formats, open, recognise};
+pub use speech_commands::{SpeechCommands, SpeechSplit, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
 pub use yolo::Yolo;
+pub use wfdb::{
+    Wfdb, WfdbAnnotation, WfdbHeader, WfdbRecord, WfdbSignal, annotations_from_atr, atr_from_annotations,
+    open_wfdb_header, open_wfdb_record, wfdb_from_timeseries, wfdb_samples,
+};

@@ -19,6 +19,8 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::Mot>(),
     FormatEntry::of::<crate::Kitti>(),
     FormatEntry::of::<crate::KittiTracking>(),
+    FormatEntry::of::<crate::SpeechCommands>(),
+    FormatEntry::of::<crate::Wfdb>(),
 ];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.

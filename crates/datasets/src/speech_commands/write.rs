@@ -1,0 +1,86 @@
+//! Any sound with its word as Speech Commands.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use opendr_engine::dataset::DatasetIterator;
+use opendr_engine::target::Classes;
+use opendr_engine::{Error, Progress, Result, Unit, Value};
+
+use crate::folder::{path_inside, write_file};
+use crate::speech_commands::SpeechSplit;
+use crate::{Problem, Problems, WavEncoding, WriteOptions, wav_from_audio};
+
+/// Writes 16-bit WAVE files, and the clips of the part into its list; what other lists name stays there.
+pub(super) fn write(
+    dataset: &dyn DatasetIterator,
+    path: &Path,
+    options: &WriteOptions,
+    problems: &Problems,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let part = SpeechSplit::from_name(options.split.as_deref().unwrap_or("training"))?;
+    let classes = dataset.classes();
+    progress.begin("writing Speech Commands", Some(dataset.len() as u64), Unit::Items);
+    let mut names = BTreeMap::new();
+    for index in 0..dataset.len() {
+        if progress.stopped() {
+            break;
+        }
+        match write_clip(dataset, index, path, &classes, part) {
+            Ok(name) => drop(names.insert(index, name)),
+            Err(error) => {
+                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    let list: String = names.values().map(|name| format!("{name}\n")).collect();
+    for (list_of, name) in
+        [(SpeechSplit::Validation, "validation_list.txt"), (SpeechSplit::Testing, "testing_list.txt")]
+    {
+        let file = path.join(name);
+        if list_of == part {
+            write_file(&file, list.as_bytes())?;
+        } else if !file.exists() {
+            write_file(&file, b"")?;
+        }
+    }
+    Ok(())
+}
+
+/// A clip keeps the name of its file, which tells the speaker, where it has one.
+fn write_clip(
+    dataset: &dyn DatasetIterator,
+    index: usize,
+    path: &Path,
+    classes: &Classes,
+    part: SpeechSplit,
+) -> Result<String> {
+    let sample = dataset.get(index)?;
+    let Some(Value::Audio(audio)) = sample.data.first() else {
+        return Err(Error::invalid_input("no sound; Speech Commands holds Audio"));
+    };
+    let word = match &sample.target {
+        Some(Value::Category(category)) => {
+            let named = category.description.clone().or_else(|| classes.name(category.class).cloned());
+            named.map_or_else(|| category.class.to_string(), |word| word.to_string())
+        }
+        Some(Value::SpeechCommand(command)) => {
+            classes.label(&command.command).map_or_else(|| command.command.to_string(), str::to_owned)
+        }
+        _ => {
+            return Err(Error::invalid_input(
+                "no word; Speech Commands holds a Category or SpeechCommand a sample",
+            ));
+        }
+    };
+    let file = dataset.path(index).and_then(|path| Some(path.file_name()?.to_str()?.to_owned()));
+    let file = file.filter(|name| name.contains("_nohash_") && name.ends_with(".wav"));
+    let file = file.unwrap_or_else(|| format!("{part:?}{index:08}_nohash_0.wav").to_lowercase());
+    let name = format!("{word}/{file}");
+    let to = path_inside(path, &name).map_err(Error::invalid_input)?;
+    write_file(&to, &wav_from_audio(audio, WavEncoding::Pcm16)?)?;
+    Ok(name)
+}

@@ -1,0 +1,288 @@
+//! WFDB records: biomedical signals with annotated beats, as PhysioNet has them.
+//!
+//! Format: <https://physionet.org/physiotools/wag/>, sections header(5), signal(5), annot(5).
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use opendr_engine::data::Timeseries;
+use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
+use opendr_engine::target::Classes;
+use opendr_engine::{Error, Header, Progress, Result, Value, ValueType};
+
+use crate::fields::lines;
+use crate::folder::{files_in, past_end, path_inside, read_bytes, read_text};
+use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
+
+mod annotation;
+mod beats;
+mod header;
+mod signal;
+mod write;
+
+pub use annotation::{WfdbAnnotation, annotations_from_atr, atr_from_annotations};
+pub use header::{WfdbHeader, WfdbSignal};
+pub use signal::{wfdb_from_timeseries, wfdb_samples};
+
+use beats::Beats;
+
+/// The longest signal file that is read: a day of three signals at 500 Hz and 16 bits is 259 MB.
+const MAX_BYTES: u64 = 512 << 20;
+/// Records that are kept when samples are beats.
+const MOST_KEPT: usize = 4;
+
+/// A signal with its annotations.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WfdbRecord {
+    /// What the header file says.
+    pub header: WfdbHeader,
+    /// `[time, signals]` in physical units; NaN where a sample is marked as invalid.
+    pub signals: Timeseries,
+    /// What is annotated, in the order of time.
+    pub annotations: Vec<WfdbAnnotation>,
+}
+
+/// Reads the header file of a record; `path` may lack its ending `.hea`.
+///
+/// # Errors
+/// `NotFound` or `Io` when it cannot be read; `Format` with the number of the line.
+pub fn open_wfdb_header(path: impl AsRef<Path>) -> Result<WfdbHeader> {
+    let path = header_path(path.as_ref());
+    WfdbHeader::parse(&read_text(&path)?)
+        .map_err(|(line, message)| Problem::at_line(&path, line, message).into())
+}
+
+/// Reads a record with the annotations beside it (`.atr`), if there are any.
+///
+/// # Errors
+/// `NotFound` or `Io` when a file cannot be read; `Format` with file and line or byte; `Unsupported` for formats of
+/// signals other than 8, 16, 24, 32, 61, 80 and 212, and for records in several segments.
+pub fn open_wfdb_record(path: impl AsRef<Path>) -> Result<WfdbRecord> {
+    let path = header_path(path.as_ref());
+    let header = open_wfdb_header(&path)?;
+    let signals = read_signals(&path, &header)?;
+    let annotations = read_annotations(&path, header.length)?;
+    Ok(WfdbRecord { header, signals, annotations })
+}
+
+fn header_path(path: &Path) -> PathBuf {
+    if path.extension().is_some_and(|extension| extension == "hea") {
+        return path.to_owned();
+    }
+    let mut name = path.as_os_str().to_owned();
+    name.push(".hea");
+    PathBuf::from(name)
+}
+
+fn read_signals(path: &Path, header: &WfdbHeader) -> Result<Timeseries> {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let count = header.signals.len();
+    let mut columns: Vec<Vec<f32>> = Vec::with_capacity(count);
+    let mut first = 0;
+    while let Some(signal) = header.signals.get(first) {
+        // Signals of one file lie one after the other and share it.
+        let shared = header.signals.iter().skip(first).take_while(|other| other.file == signal.file).count();
+        let group = header.signals.get(first..first + shared).unwrap_or_default();
+        let file = path_inside(folder, &signal.file)
+            .map_err(|message| Problem::at_line(path, signal.line, message))?;
+        let bytes = read_bytes(&file, MAX_BYTES)?;
+        let (samples, length) = wfdb_samples(group, header.length, &bytes)
+            .map_err(|(byte, message)| Error::from(Problem::at_byte(&file, byte, message)))?;
+        if columns.first().is_some_and(|column| column.len() != length) {
+            let message =
+                format!("{length} samples where the file before it has another number; the file is cut off");
+            return Err(Problem::new(file, message).into());
+        }
+        columns.extend(samples);
+        first += shared;
+    }
+    let length = columns.first().map_or(0, Vec::len);
+    let mut data = Vec::with_capacity(length * count);
+    for time in 0..length {
+        data.extend(columns.iter().filter_map(|column| column.get(time)));
+    }
+    Timeseries::new(data, [length, count])
+}
+
+fn read_annotations(path: &Path, length: Option<usize>) -> Result<Vec<WfdbAnnotation>> {
+    let path = path.with_extension("atr");
+    if !path.is_file() {
+        return Ok(Vec::new());
+    }
+    let annotations = annotations_from_atr(&read_bytes(&path, MAX_BYTES)?)
+        .map_err(|(byte, message)| Error::from(Problem::at_byte(&path, byte, message)))?;
+    let outside = |annotation: &&WfdbAnnotation| {
+        length.is_some_and(|length| annotation.sample < 0 || annotation.sample as u64 >= length as u64)
+    };
+    if let Some(annotation) = annotations.iter().find(outside) {
+        let message =
+            format!("an annotation at sample {} of {}", annotation.sample, length.unwrap_or_default());
+        return Err(Problem::new(path, message).into());
+    }
+    Ok(annotations)
+}
+
+/// WFDB records: a sample is a whole record without target, or, where beats are annotated and the target is a
+/// `Category` (the default), one beat with its kind by the classes of AAMI EC57 (N, S, V, F, Q).
+///
+/// A beat is cut from a quarter of a second before its annotation to half a second after it; those too near to the ends
+/// of their record are left out.
+#[derive(Debug)]
+pub struct Wfdb {
+    records: Vec<PathBuf>,
+    beats: Option<Beats>,
+    /// The records that beats were cut from last.
+    kept: Mutex<Vec<(usize, Arc<(WfdbHeader, Timeseries)>)>>,
+}
+
+impl Wfdb {
+    /// The header files of the records.
+    pub fn records(&self) -> &[PathBuf] {
+        &self.records
+    }
+
+    /// Record number `record`, which is kept for the next beat.
+    fn record(&self, record: usize) -> Result<Arc<(WfdbHeader, Timeseries)>> {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, found)) = lock().iter().find(|(number, _)| *number == record) {
+            return Ok(Arc::clone(found));
+        }
+        let path = self.records.get(record).ok_or_else(|| past_end(record, self.records.len()))?;
+        let header = open_wfdb_header(path)?;
+        let signals = read_signals(path, &header)?;
+        let read = Arc::new((header, signals));
+        let mut kept = lock();
+        kept.truncate(MOST_KEPT - 1);
+        kept.insert(0, (record, Arc::clone(&read)));
+        Ok(read)
+    }
+
+    /// Record and sample in it at which beat `index` is annotated; `None` when samples are records.
+    fn beat(&self, index: usize) -> Option<(usize, beats::Beat)> {
+        self.beats.as_ref()?.get(index)
+    }
+}
+
+impl Dataset for Wfdb {}
+
+impl DatasetIterator for Wfdb {
+    fn len(&self) -> usize {
+        self.beats.as_ref().map_or(self.records.len(), Beats::len)
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let beat = match &self.beats {
+            Some(beats) => Some(beats.get(index).ok_or_else(|| past_end(index, self.len()))?),
+            None => None,
+        };
+        let record = self.record(beat.map_or(index, |(record, _)| record))?;
+        let (header, signals) = &*record;
+        let signals = match beat {
+            Some((_, beat)) => beats::cut(signals, header, beat.sample)?,
+            None => signals.clone(),
+        };
+        let datum =
+            signals.with_header(Header { frame_id: Some(header.name.as_str().into()), stamp_ns: None });
+        Ok(Sample { data: vec![Value::Timeseries(datum)], target: self.target(index)? })
+    }
+
+    fn target(&self, index: usize) -> Result<Option<Value>> {
+        Ok(self.beat(index).map(|(_, beat)| Value::Category(beat.category())))
+    }
+
+    fn name(&self, index: usize) -> String {
+        let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        let named = match self.beat(index) {
+            Some((record, beat)) => {
+                self.records.get(record).and_then(stem).map(|stem| format!("{stem}/{}", beat.sample))
+            }
+            None => self.records.get(index).and_then(stem),
+        };
+        named.unwrap_or_else(|| index.to_string())
+    }
+
+    fn path(&self, index: usize) -> Option<PathBuf> {
+        let record = if self.beats.is_some() { self.beat(index)?.0 } else { index };
+        self.records.get(record).cloned()
+    }
+
+    fn classes(&self) -> Classes {
+        if self.beats.is_some() { beats::classes() } else { Classes::default() }
+    }
+}
+
+impl Format for Wfdb {
+    const NAME: &'static str = "wfdb";
+    const ALIASES: &'static [&'static str] = &["physionet", "mitdb"];
+    const ABOUT: &'static str = "WFDB records of PhysioNet: signals with annotated beats";
+    const LAYOUT: &'static str =
+        "RECORD.hea with its RECORD.dat and, if beats are annotated, RECORD.atr; RECORDS may list them";
+    const TARGETS: &'static [ValueType] = &[ValueType::Category];
+
+    fn recognise(path: &Path) -> Recognition {
+        let is_header = path.extension().is_some_and(|extension| extension == "hea") && path.is_file();
+        match is_header || header_path(path).is_file() || !files_in(path, &["hea"]).is_empty() {
+            true => Recognition::Certain,
+            false => Recognition::No("a .hea file".into()),
+        }
+    }
+
+    /// `split` names a list of records in place of `RECORDS`.
+    fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
+        if let Some(other) = options.target.filter(|target| !Self::TARGETS.contains(target)) {
+            let message = format!("beats can be read as Category, not as {}", other.name());
+            return Err(Error::unsupported(message));
+        }
+        let mut records = list(path, options.split.as_deref(), problems)?;
+        let mut known = Vec::with_capacity(records.len());
+        for record in &records {
+            let header = open_wfdb_header(record);
+            match header.and_then(|header| Ok((read_annotations(record, header.length)?, header))) {
+                Ok((annotations, header)) => known.push(Some((annotations, header))),
+                Err(error) => {
+                    problems.report(Problem::new(record, error.to_string()))?;
+                    known.push(None);
+                }
+            }
+        }
+        let mut whole = known.iter().map(Option::is_some);
+        records.retain(|_| whole.next().unwrap_or(false));
+        if records.is_empty() {
+            let (path, layout) = (path.display(), Self::LAYOUT);
+            return Err(Error::not_found(format!("no WFDB record in {path}; it should have {layout}")));
+        }
+        Ok(Self { records, beats: Beats::of(known.into_iter().flatten()), kept: Mutex::default() })
+    }
+
+    fn write(
+        dataset: &dyn DatasetIterator,
+        path: &Path,
+        _options: &WriteOptions,
+        problems: &Problems,
+        progress: &dyn Progress,
+    ) -> Result<()> {
+        write::write(dataset, path, problems, progress)
+    }
+}
+
+/// The header files at `path`: itself, those of the list, or all in the folder.
+fn list(path: &Path, part: Option<&str>, problems: &Problems) -> Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        return Ok(vec![header_path(path)]);
+    }
+    let list = path_inside(path, part.unwrap_or("RECORDS")).map_err(Error::invalid_param)?;
+    if part.is_none() && !list.is_file() {
+        return Ok(files_in(path, &["hea"]).into_iter().map(|name| path.join(name)).collect());
+    }
+    let mut records = Vec::new();
+    for (number, line) in lines(&read_text(&list)?) {
+        match path_inside(path, line.trim()) {
+            Ok(record) => records.push(header_path(&record)),
+            Err(message) => problems.report(Problem::at_line(&list, number, message))?,
+        }
+    }
+    Ok(records)
+}
+
+#[cfg(test)]
+mod tests;

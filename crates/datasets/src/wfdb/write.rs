@@ -1,0 +1,108 @@
+//! Any time series as WFDB records.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use opendr_engine::data::Timeseries;
+use opendr_engine::dataset::DatasetIterator;
+use opendr_engine::{Error, Progress, Result, Unit, Value};
+
+use crate::folder::{path_inside, write_file};
+use crate::wfdb::{WfdbAnnotation, WfdbRecord, atr_from_annotations, wfdb_from_timeseries};
+use crate::{Problem, Problems};
+
+/// Where a series tells no rate, one sample a second.
+const FREQUENCY: f64 = 1.0;
+
+/// A record a sample, numbered; the list of them in `RECORDS`.
+pub(super) fn write(
+    dataset: &dyn DatasetIterator,
+    path: &Path,
+    problems: &Problems,
+    progress: &dyn Progress,
+) -> Result<()> {
+    progress.begin("writing WFDB", Some(dataset.len() as u64), Unit::Items);
+    let mut list = String::new();
+    for index in 0..dataset.len() {
+        if progress.stopped() {
+            break;
+        }
+        let name = format!("{index:06}");
+        let written = dataset.get(index).and_then(|sample| match sample.data.first() {
+            Some(Value::Timeseries(series)) => write_files(path, &name, series, FREQUENCY, &[]),
+            _ => Err(Error::invalid_input("no time series; WFDB holds Timeseries")),
+        });
+        match written {
+            Ok(()) => list += &format!("{name}\n"),
+            Err(error) => {
+                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    write_file(&path.join("RECORDS"), list.as_bytes())
+}
+
+impl WfdbRecord {
+    /// Writes the record into `folder` as `NAME.hea`, `NAME.dat` (format 16) and, with annotations, `NAME.atr`.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a name that is none, or annotations out of order; `Io`.
+    pub fn save(&self, folder: impl AsRef<Path>) -> Result<()> {
+        let header = &self.header;
+        write_files(folder.as_ref(), &header.name, &self.signals, header.frequency, &self.annotations)?;
+        let descriptions =
+            header.signals.iter().map(|signal| (signal.units.as_str(), signal.description.as_str()));
+        let text = header_text(&header.name, &self.signals, header.frequency, descriptions)?;
+        write_file(&folder.as_ref().join(format!("{}.hea", header.name)), text.as_bytes())
+    }
+}
+
+fn write_files(
+    folder: &Path,
+    name: &str,
+    series: &Timeseries,
+    frequency: f64,
+    annotations: &[WfdbAnnotation],
+) -> Result<()> {
+    let stem = path_inside(folder, name).map_err(Error::invalid_input)?;
+    let [_, signals] = series.shape();
+    let (bytes, _) = wfdb_from_timeseries(series.as_slice(), signals);
+    let header = header_text(name, series, frequency, std::iter::repeat(("NU", "")))?;
+    write_file(&stem.with_extension("dat"), &bytes)?;
+    write_file(&stem.with_extension("hea"), header.as_bytes())?;
+    if annotations.is_empty() {
+        return Ok(());
+    }
+    write_file(&stem.with_extension("atr"), &atr_from_annotations(annotations)?)
+}
+
+fn header_text<'a>(
+    name: &str,
+    series: &Timeseries,
+    frequency: f64,
+    described: impl Iterator<Item = (&'a str, &'a str)>,
+) -> Result<String> {
+    let plain =
+        |text: &str| text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_' || byte == b'-');
+    if name.is_empty() || !plain(name) {
+        return Err(Error::invalid_input(format!(
+            "{name:.40?} is no name of a record; give letters, digits, _ and -"
+        )));
+    }
+    let [length, signals] = series.shape();
+    let (_, told) = wfdb_from_timeseries(series.as_slice(), signals);
+    let mut text = format!("{name} {signals} {frequency} {length}\n");
+    for ((at, (gain, baseline, sum)), (units, description)) in told.into_iter().enumerate().zip(described) {
+        let first = series.as_slice().get(at).copied().unwrap_or(0.0);
+        let first =
+            if first.is_finite() { (f64::from(first) * gain).round() as i64 + baseline } else { -32768 };
+        let sum = sum as i16;
+        let description =
+            if description.is_empty() { format!("signal {at}") } else { description.to_owned() };
+        // Writing to a String cannot fail.
+        writeln!(text, "{name}.dat 16 {gain}({baseline})/{units} 16 0 {first} {sum} 0 {description}").ok();
+    }
+    Ok(text)
+}
