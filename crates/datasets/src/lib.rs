@@ -21,8 +21,8 @@ mod registry;
 mod speech_commands;
 mod stats;
 mod wav;
-mod yolo;
 mod wfdb;
+mod yolo;
 
 pub use any::{FormatEntry, Recognition};
 pub use check::check;
@@ -40,8 +40,8 @@ pub use registry::{find, formats, open, recognise};
 pub use speech_commands::{SpeechCommands, SpeechSplit, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
-pub use yolo::Yolo;
 pub use wfdb::{
     Wfdb, WfdbAnnotation, WfdbHeader, WfdbRecord, WfdbSignal, annotations_from_atr, atr_from_annotations,
     open_wfdb_header, open_wfdb_record, wfdb_from_timeseries, wfdb_samples,
 };
+pub use yolo::Yolo;
