@@ -275,6 +275,7 @@ impl Metric for Segmentation {
         let mut report = Report::new("miou");
         let scores = self.scores();
         let numbers = [
+            ("pixels", Some(scores.total(|class| class.truth) as f64)),
             ("miou", scores.mean_iou()),
             ("pixel_accuracy", scores.pixel_accuracy()),
             ("mean_accuracy", scores.mean_accuracy()),
