@@ -169,6 +169,12 @@ impl Metric for Classification {
     type Truth = Category;
 
     fn new(params: &ClassificationParams) -> Result<Self> {
+        let mut seen = BTreeSet::new();
+        if let Some(label) = params.labels.iter().find(|label| !seen.insert(**label)) {
+            return Err(Error::invalid_param(format!(
+                "labels name class {label} twice; give each class once"
+            )));
+        }
         Ok(Self { params: params.clone(), ..Self::default() })
     }
 

@@ -155,10 +155,9 @@ impl Keypoints {
     }
 
     fn add_pose(&mut self, truth: &Pose, predicted: Option<&Pose>, size: f64) -> Result<Option<f64>> {
-        let places = |pose: &Pose| pose.keypoints.iter().map(place_of).collect::<Vec<_>>();
-        let truth = places(truth);
-        let predicted = predicted.map_or_else(|| vec![None; truth.len()], places);
-        self.add(&truth, &predicted, size)
+        let places = truth.keypoints.iter().map(place_of).collect::<Vec<_>>();
+        let predicted = predicted.map_or_else(|| vec![None; places.len()], |pose| places_like(truth, pose));
+        self.add(&places, &predicted, size)
     }
 
     fn table(&self) -> Table {
@@ -183,7 +182,17 @@ fn place_of(keypoint: &opendr_engine::target::Keypoint) -> Option<[f64; 2]> {
     (!missing).then(|| [f64::from(keypoint.x), f64::from(keypoint.y)])
 }
 
-/// Each pose of the truth is answered by the nearest one that answers no other; what is left over does not count.
+/// Where the joints of `pose` are, in the order of the skeleton of `wanted`.
+fn places_like(wanted: &Pose, pose: &Pose) -> Vec<Option<[f64; 2]>> {
+    if wanted.skeleton == pose.skeleton {
+        return pose.keypoints.iter().map(place_of).collect();
+    }
+    let joints = wanted.skeleton.joints().iter().take(wanted.keypoints.len());
+    joints.map(|joint| pose.keypoint(joint).and_then(place_of)).collect()
+}
+
+/// Each pose of the truth is answered by the nearest one that answers no other; what is left over does not count. Poses
+/// of different skeletons are compared by the names of the joints of the truth.
 impl Metric for Keypoints {
     const NAME: &'static str = "keypoints";
     const ABOUT: &'static str = "PCK, PCKh and their area, NME and EPE of key points, as MMPose";
@@ -216,7 +225,9 @@ impl Metric for Keypoints {
                     None
                 }
             };
-            picture.names = pose.skeleton.joints();
+            if pose.skeleton.joints().len() == pose.keypoints.len() {
+                picture.names = pose.skeleton.joints();
+            }
         }
         let score = picture.pooled_pck().unwrap_or(1.0);
         self.merge(picture);

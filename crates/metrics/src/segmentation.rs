@@ -38,20 +38,29 @@ impl Pixels {
     }
 
     fn count(&mut self, truth: &[u32], predicted: &[u32]) {
-        let (side, last) = (self.classes + 1, self.classes as u32);
-        for (truth, predicted) in truth.chunks(RUN).zip(predicted.chunks(RUN)) {
-            let [wanted, given] = [truth[0], predicted[0]];
-            let differing =
-                |of: u32, labels: &[u32]| labels.iter().fold(0, |bits, label| bits | (label ^ of));
-            if differing(wanted, truth) | differing(given, predicted) == 0 {
-                self.counts[wanted.min(last) as usize * side + given.min(last) as usize] +=
-                    truth.len() as u64;
-                continue;
-            }
-            for (wanted, given) in truth.iter().zip(predicted) {
-                self.counts[(*wanted).min(last) as usize * side + (*given).min(last) as usize] += 1;
+        let (runs, rest) = truth.as_chunks::<RUN>();
+        let (answers, rest_of_answers) = predicted.as_chunks::<RUN>();
+        let differing = |run: &[u32; RUN]| run.iter().fold(0, |bits, label| bits | (label ^ run[0]));
+        for (run, answer) in runs.iter().zip(answers) {
+            if differing(run) | differing(answer) == 0 {
+                *self.at(run[0], answer[0]) += RUN as u64;
+            } else {
+                self.count_each(run, answer);
             }
         }
+        self.count_each(rest, rest_of_answers);
+    }
+
+    fn count_each(&mut self, truth: &[u32], predicted: &[u32]) {
+        for (truth, predicted) in truth.iter().zip(predicted) {
+            *self.at(*truth, *predicted) += 1;
+        }
+    }
+
+    #[inline]
+    fn at(&mut self, truth: u32, predicted: u32) -> &mut u64 {
+        let [row, column] = [truth, predicted].map(|label| label.min(self.classes as u32) as usize);
+        &mut self.counts[row * (self.classes + 1) + column]
     }
 
     fn add(&mut self, other: &Self) {

@@ -49,6 +49,13 @@ fn refused_answers_are_not_counted() {
 }
 
 #[test]
+fn labels_are_named_once() {
+    let params = ClassificationParams { labels: vec![3, 1, 3], ..ClassificationParams::default() };
+    let error = Classification::new(&params).unwrap_err();
+    assert_eq!(error.to_string(), "labels name class 3 twice; give each class once");
+}
+
+#[test]
 fn confusion_matrix_covers_what_occurs() {
     let classification = counted(&[(5, -1), (5, 5), (5, 5)]);
     assert_eq!(classification.labels(), [-1, 5]);

@@ -3,7 +3,7 @@
 use opendr_engine::target::Pose;
 use opendr_engine::{Error, Result};
 
-use super::place_of;
+use super::{place_of, places_like};
 
 /// Most pairs of poses that are compared in one picture.
 const MAX_PAIRS: usize = 1 << 20;
@@ -40,9 +40,10 @@ pub(super) fn nearest(truth: &[Pose], predicted: &[Pose]) -> Result<Vec<Option<u
     Ok(answers)
 }
 
+/// From a pose of the truth to one that may answer it.
 fn distance(one: &Pose, other: &Pose) -> f64 {
-    let both = one.keypoints.iter().zip(&other.keypoints);
-    let both = both.filter_map(|(one, other)| Some((place_of(one)?, place_of(other)?)));
+    let both = one.keypoints.iter().zip(places_like(one, other));
+    let both = both.filter_map(|(one, other)| Some((place_of(one)?, other?)));
     let distances = both.map(|([x0, y0], [x1, y1])| (x1 - x0).hypot(y1 - y0));
     crate::average::mean(distances).unwrap_or(f64::INFINITY)
 }

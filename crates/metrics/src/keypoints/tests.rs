@@ -83,7 +83,29 @@ fn nearest_pose_answers() {
     assert_eq!((score, keypoints.end_point_error()), (0.5, Some(48.0)));
     assert_eq!(keypoints.update(1, &list(&[]), &list(&[5.0])).unwrap(), 0.0);
     assert_eq!(keypoints.update(2, &list(&[5.0]), &list(&[])).unwrap(), 1.0);
-    assert_eq!(keypoints.finish().statistics.get("poses"), Some(3.0));
+    let report = keypoints.finish();
+    assert_eq!(report.statistics.get("poses"), Some(3.0));
+    // These points are of no skeleton.
+    assert_eq!(report.tables[0].rows[0].0, "0");
+}
+
+#[test]
+fn other_skeletons_are_compared_by_name() {
+    use opendr_engine::target::Skeleton::{Coco17, Opendr18};
+    let place = |name: &str| -> [f32; 2] {
+        let at = Coco17.joints().iter().position(|joint| *joint == name).map_or(99, |at| 10 * at);
+        [at as f32, 0.0]
+    };
+    let of = |skeleton: opendr_engine::target::Skeleton| {
+        let places: Vec<_> = skeleton.joints().iter().map(|name| place(name)).collect();
+        PoseList::from(vec![Pose { skeleton, ..pose(&places) }])
+    };
+    let mut keypoints = Keypoints::default();
+    assert_eq!(keypoints.update(0, &of(Opendr18), &of(Coco17)).unwrap(), 1.0);
+    assert_eq!(keypoints.finish().tables[0].rows[1].0, "l_eye");
+    // The neck is not among COCO's joints.
+    let mut keypoints = Keypoints::default();
+    assert_eq!(keypoints.update(0, &of(Coco17), &of(Opendr18)).unwrap(), 17.0 / 18.0);
 }
 
 #[test]
@@ -92,6 +114,7 @@ fn poses_without_size_do_not_count() {
     let point = PoseList::from(vec![pose(&[[1.0, 1.0]])]);
     assert_eq!(keypoints.update(0, &point, &point).unwrap(), 1.0);
     let report = keypoints.finish();
+    assert!(report.tables[0].rows.is_empty());
     assert_eq!(report.statistics.get("poses_without_size"), Some(1.0));
     assert_eq!((report.statistics.get("pck"), report.figures.len()), (None, 0));
 }
