@@ -4,14 +4,20 @@
 //! with its file and line or key, through [`Problems`].
 
 mod any;
+mod camvid;
 mod check;
+mod cityscapes;
 mod class_table;
 mod coco;
 mod contact_sheet;
 mod fields;
 mod folder;
 mod format;
+#[doc(hidden)]
+pub mod fuzzing;
+mod imagenet;
 mod kitti;
+mod label_png;
 mod mot;
 mod npy;
 mod picture_box;
@@ -20,15 +26,20 @@ mod problems;
 mod registry;
 mod speech_commands;
 mod stats;
+mod voc;
 mod wav;
 mod wfdb;
+mod wider_face;
 mod yolo;
 
 pub use any::{FormatEntry, Recognition};
+pub use camvid::CamVid;
 pub use check::check;
-pub use coco::Coco;
+pub use cityscapes::Cityscapes;
+pub use coco::{Coco, CocoPanoptic};
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
+pub use imagenet::ImageNet;
 pub use kitti::{
     Kitti, KittiTracking, calibration_from_kitti, kitti_from_calibration, open_kitti_calibration,
     open_velodyne, velodyne_from_cloud,
@@ -39,9 +50,11 @@ pub use problems::{Place, Problem, Problems};
 pub use registry::{find, formats, open, recognise};
 pub use speech_commands::{SpeechCommands, SpeechSplit, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
+pub use voc::Voc;
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
 pub use wfdb::{
     Wfdb, WfdbAnnotation, WfdbHeader, WfdbRecord, WfdbSignal, annotations_from_atr, atr_from_annotations,
     open_wfdb_header, open_wfdb_record, wfdb_from_timeseries, wfdb_samples,
 };
+pub use wider_face::WiderFace;
 pub use yolo::Yolo;

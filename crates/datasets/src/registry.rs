@@ -14,13 +14,19 @@ pub const fn formats() -> &'static [FormatEntry] {
 
 #[rustfmt::skip] // One line a format.
 const FORMATS: &[FormatEntry] = &[
+    FormatEntry::of::<crate::CocoPanoptic>(),
     FormatEntry::of::<crate::Coco>(),
     FormatEntry::of::<crate::Yolo>(),
+    FormatEntry::of::<crate::Voc>(),
+    FormatEntry::of::<crate::WiderFace>(),
+    FormatEntry::of::<crate::Cityscapes>(),
+    FormatEntry::of::<crate::CamVid>(),
     FormatEntry::of::<crate::Mot>(),
     FormatEntry::of::<crate::Kitti>(),
     FormatEntry::of::<crate::KittiTracking>(),
     FormatEntry::of::<crate::SpeechCommands>(),
     FormatEntry::of::<crate::Wfdb>(),
+    FormatEntry::of::<crate::ImageNet>(),
 ];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.

@@ -67,15 +67,23 @@ impl Index {
     /// read when the rest is known.
     pub fn new<E: Entry>(path: &Path, problems: &Problems) -> Result<Self> {
         let file = File::open(path).context(|| format!("opening {}", path.display()))?;
-        let scan = Scan { path, problems };
+        Self::from_reader::<E, _>(file, path, problems)
+    }
+
+    /// As [`Index::new`], from any reader; `path` is what problems call it.
+    pub fn from_reader<E: Entry, R: Read + Seek>(
+        reader: R,
+        path: &Path,
+        problems: &Problems,
+    ) -> Result<Self> {
         let mut index = Self::default();
-        let read = index.read::<E>(&scan, &file);
+        let read = index.read::<E, _>(&Scan { path, problems }, reader);
         read.context(|| path.display().to_string())?;
         Ok(index)
     }
 
-    fn read<E: Entry>(&mut self, scan: &Scan<'_>, file: &File) -> Result<()> {
-        let mut json = JsonStream::new(file);
+    fn read<E: Entry, R: Read + Seek>(&mut self, scan: &Scan<'_>, mut reader: R) -> Result<()> {
+        let mut json = JsonStream::new(&mut reader);
         let (mut seen, mut later) = (HashSet::new(), None);
         json.begin_object().context(|| "a COCO file holds one object (a list is a file of results)")?;
         while let Some(key) = json.key()? {
@@ -100,9 +108,8 @@ impl Index {
             return Err(Error::format(format!("there is no key {key:?}; COCO files have one")));
         }
         if let Some(Later { offset, line }) = later {
-            let mut file = file;
-            file.seek(SeekFrom::Start(offset))?;
-            self.read_annotations::<E, _>(scan, &mut JsonStream::at(file, offset, line))?;
+            reader.seek(SeekFrom::Start(offset))?;
+            self.read_annotations::<E, _>(scan, &mut JsonStream::at(reader, offset, line))?;
         }
         self.annotations.sort_unstable_by_key(|annotation| (annotation.picture, annotation.offset));
         self.annotations.shrink_to_fit();

@@ -5,14 +5,18 @@
 
 mod annotation;
 mod categories;
+mod file_writer;
 mod index;
 mod locate;
+mod panoptic;
 mod record;
+mod segment_map;
 mod source;
 #[cfg(test)]
 mod tests;
 mod write;
 
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
@@ -23,6 +27,7 @@ use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
 use crate::picture_files::open_picture;
 use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 use index::{Entry, Index, Picture};
+pub use panoptic::CocoPanoptic;
 use record::AnnotationRecord;
 use source::Source;
 
@@ -84,6 +89,14 @@ impl Coco {
         })?;
         Ok(PoseList::from(poses))
     }
+}
+
+/// Indexes the annotation file in `bytes`; how many annotations it has. For the fuzzers.
+pub(crate) fn index_bytes(bytes: &[u8]) -> Result<usize> {
+    let problems = Problems::skipping();
+    let index =
+        Index::from_reader::<AnnotationRecord, _>(Cursor::new(bytes), Path::new("a.json"), &problems)?;
+    Ok(index.annotations.len())
 }
 
 fn name_begins(file: &Path, beginnings: &[&str]) -> bool {

@@ -3,7 +3,7 @@ use opendr_engine::target::{BoundingBox, Name, Segmentation};
 use proptest::prelude::*;
 
 use super::*;
-use crate::folder::TemporaryFolder;
+use crate::folder::{TemporaryFolder, real_data};
 
 const FILE: &str = "annotations/instances_val2017.json";
 
@@ -199,6 +199,18 @@ fn parts_are_chosen() {
     assert_eq!((id(Some("train")).unwrap(), id(Some("train2017")).unwrap()), (3, 3));
     let error = id(Some("test")).unwrap_err().to_string();
     assert!(error.contains("there are: val2017, train2017") || error.contains("val2017"), "{error}");
+}
+
+#[test]
+fn real_poses_are_read() {
+    let Some(folder) = real_data("mmpose_samples/coco") else { return };
+    let options = OpenOptions { target: Some(ValueType::PoseList), ..OpenOptions::default() };
+    let coco = Coco::open(&folder.join("test_coco.json"), &options, &Problems::strict()).unwrap();
+    let poses = (0..coco.len()).map(|at| match coco.get(at).unwrap().target {
+        Some(Value::PoseList(list)) => list.poses.len(),
+        other => panic!("{other:?}"),
+    });
+    assert_eq!((coco.len(), poses.sum::<usize>()), (4, 14));
 }
 
 proptest! {

@@ -1,16 +1,14 @@
-//! COCO files written sample by sample: annotations wait in a file of their own for the pictures to end.
+//! Any boxes and poses as COCO.
 
-use std::fs::{self, File};
-use std::io::{self, BufWriter, Seek, SeekFrom, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::target::{BoundingBox, BoundingBoxList, Name, Pose, Segmentation, Skeleton};
-use opendr_engine::{Error, Progress, Result, ResultExt, Value};
+use opendr_engine::target::{BoundingBox, Classes, Name, Pose, Segmentation, Skeleton};
+use opendr_engine::{Error, Progress, Result, Value};
 use serde::Serialize;
 use serde_json::json;
 
-use crate::class_table::ClassTable;
+use super::file_writer::{CategoryIds, FileWriter};
 use crate::picture_files::{PictureWriter, Placed, split_name, write_each};
 use crate::{Problems, WriteOptions};
 
@@ -70,7 +68,8 @@ pub(super) fn write(
         let file = path.join("annotations").join(format!("{kind}_{split}.json"));
         (file, Some(PictureWriter::new(dataset, path.join(split), options)?))
     };
-    let mut writer = CocoWriter::new(&file, dataset)?;
+    let (file, categories) = (FileWriter::new(&file)?, CategoryIds::new(dataset));
+    let mut writer = CocoWriter { dataset, file, categories, joints: None };
     write_each(dataset, problems, progress, |index| {
         let target = dataset.target(index)?;
         writer.check(target.as_ref())?;
@@ -85,56 +84,36 @@ pub(super) fn write(
                 })?,
             },
         };
-        writer.add(index, placed, target.as_ref())
+        writer.add(index, &placed, target.as_ref())
     })?;
-    writer.finish().context(|| format!("writing {}", file.display()))
+    writer.finish()
 }
 
 struct CocoWriter<'a> {
     dataset: &'a dyn DatasetIterator,
-    file: PathBuf,
-    /// The file, up to its pictures.
-    main: BufWriter<File>,
-    annotations: BufWriter<File>,
-    pictures: u64,
-    count: u64,
-    classes: ClassTable,
-    class_ids: Vec<i64>,
+    file: FileWriter,
+    categories: CategoryIds,
     joints: Option<(usize, Skeleton)>,
 }
 
-impl<'a> CocoWriter<'a> {
-    fn new(file: &Path, dataset: &'a dyn DatasetIterator) -> Result<Self> {
-        let make = || -> Result<_> {
-            if let Some(folder) = file.parent() {
-                fs::create_dir_all(folder)?;
-            }
-            let open = |path| File::options().read(true).write(true).create(true).truncate(true).open(path);
-            let mut main = BufWriter::new(open(partial(file, "main"))?);
-            write!(main, "{{\"info\":{},\n\"images\":[", json!({"description": "written by OpenDR"}))?;
-            Ok((main, BufWriter::new(open(partial(file, "annotations"))?)))
-        };
-        let (main, annotations) = make().context(|| format!("writing {}", file.display()))?;
-        Ok(Self {
-            dataset,
-            file: file.to_owned(),
-            main,
-            annotations,
-            pictures: 0,
-            count: 0,
-            classes: ClassTable::new(&dataset.classes()),
-            class_ids: dataset.class_ids(),
-            joints: None,
-        })
-    }
-
+impl CocoWriter<'_> {
     /// Whether a target can be written, found out before its picture is.
     fn check(&mut self, target: Option<&Value>) -> Result<()> {
         match target {
-            None | Some(Value::PoseList(_)) => Ok(()),
-            Some(Value::BoundingBoxList(list)) => {
-                list.boxes.iter().try_for_each(|found| self.category(list, &found.name).map(drop))
-            }
+            None => Ok(()),
+            Some(Value::BoundingBoxList(list)) => list.boxes.iter().try_for_each(|found| {
+                self.categories.category(&found.name, &list.classes)?;
+                check_finite(found)
+            }),
+            Some(Value::PoseList(list)) => list.poses.iter().try_for_each(|pose| {
+                self.categories.category(&name_of(pose), &Classes::default())?;
+                let points = pose.keypoints.iter().filter(|point| point.confidence > 0.0);
+                let wrong = points.into_iter().find(|point| !point.x.is_finite() || !point.y.is_finite());
+                if let Some(point) = wrong {
+                    return Err(Error::invalid_input(format!("a key point at {point} cannot be written")));
+                }
+                pose.region.as_deref().map_or(Ok(()), check_finite)
+            }),
             Some(other) => {
                 let found = other.as_value_ref().value_type().name();
                 Err(Error::invalid_input(format!("COCO holds boxes and poses, no {found}")))
@@ -142,20 +121,16 @@ impl<'a> CocoWriter<'a> {
         }
     }
 
-    fn add(&mut self, index: usize, Placed { name, size }: Placed, target: Option<&Value>) -> Result<()> {
+    fn add(&mut self, index: usize, placed: &Placed, target: Option<&Value>) -> Result<()> {
         let image_id = self.dataset.id(index).unwrap_or(index as i64 + 1);
-        let comma = if self.pictures > 0 { ",\n" } else { "\n" };
-        let entry = json!({"id": image_id, "file_name": name, "width": size[0], "height": size[1]});
-        write!(self.main, "{comma}{entry}")?;
-        self.pictures += 1;
+        self.file.picture(image_id, placed)?;
         match target {
             Some(Value::BoundingBoxList(list)) => list.boxes.iter().try_for_each(|found| {
-                let category_id = self.category(list, &found.name)?;
+                let category_id = self.categories.category(&found.name, &list.classes)?;
                 self.annotation(image_id, category_id, Some(found), None)
             }),
             Some(Value::PoseList(list)) => list.poses.iter().try_for_each(|pose| {
-                let name = pose.region.as_ref().map_or(Name::Index(0), |region| region.name.clone());
-                let category_id = self.category(&BoundingBoxList::default(), &name)?;
+                let category_id = self.categories.category(&name_of(pose), &Classes::default())?;
                 self.annotation(image_id, category_id, pose.region.as_deref(), Some(pose))
             }),
             _ => Ok(()),
@@ -176,68 +151,51 @@ impl<'a> CocoWriter<'a> {
         if let Some(pose) = pose {
             self.joints.get_or_insert((pose.keypoints.len(), pose.skeleton));
         }
-        self.count += 1;
-        let entry = AnnotationEntry {
-            id: self.count,
+        let visible =
+            |numbers: &Vec<f32>| numbers.iter().skip(2).step_by(3).filter(|seen| **seen > 0.0).count();
+        self.file.annotation(&AnnotationEntry {
+            id: self.file.count + 1,
             image_id,
             category_id,
             bbox,
             area: segment.map_or(bbox[2] * bbox[3], |segment| segment.area),
             iscrowd: segment.is_some_and(|segment| segment.iscrowd).into(),
             segmentation: segment.map_or(&no_outline, |segment| &segment.segmentation),
-            num_keypoints: keypoints
-                .as_ref()
-                .map(|numbers| numbers.iter().skip(2).step_by(3).filter(|visible| **visible > 0.0).count()),
+            num_keypoints: keypoints.as_ref().map(visible),
             keypoints,
-        };
-        if !bbox.iter().all(|number| number.is_finite()) {
-            return Err(Error::invalid_input(format!(
-                "a box at {bbox:?} cannot be written; its numbers must be finite"
-            )));
-        }
-        self.annotations.write_all(if self.count > 1 { b",\n" } else { b"\n" })?;
-        serde_json::to_writer(&mut self.annotations, &entry)
-            .map_err(|error| Error::io("the annotation cannot be written").with_source(error))
+        })
     }
 
-    /// The data set's own number of a class.
-    fn category(&mut self, list: &BoundingBoxList, name: &Name) -> Result<i64> {
-        let number = self.classes.number(name, &list.classes)?;
-        Ok(self.category_id(number))
-    }
-
-    /// Classes without a number of the data set's own get the next ones, from 1.
-    fn category_id(&self, number: usize) -> i64 {
-        let (count, most) = (self.class_ids.len(), self.class_ids.iter().copied().max().unwrap_or(0));
-        self.class_ids.get(number).copied().unwrap_or_else(|| most + 1 + number.saturating_sub(count) as i64)
-    }
-
-    fn finish(mut self) -> Result<()> {
-        let mut categories = Vec::new();
-        for (number, name) in self.classes.names().iter().enumerate() {
-            let id = self.category_id(number);
+    fn finish(self) -> Result<()> {
+        let category = |(id, name)| {
             let mut category = json!({"id": id, "name": name, "supercategory": "none"});
             if let Some((count, skeleton)) = self.joints {
                 describe_joints(&mut category, count, skeleton);
             }
-            categories.push(category);
-        }
-        write!(self.main, "],\n\"categories\":{},\n\"annotations\":[", json!(categories))?;
-        let mut annotations = self.annotations.into_inner().map_err(io::IntoInnerError::into_error)?;
-        annotations.seek(SeekFrom::Start(0))?;
-        io::copy(&mut annotations, &mut self.main)?;
-        self.main.write_all(b"]}\n")?;
-        self.main.flush()?;
-        fs::rename(partial(&self.file, "main"), &self.file)?;
-        Ok(fs::remove_file(partial(&self.file, "annotations"))?)
+            category
+        };
+        let categories: Vec<_> = self.categories.iter().map(category).collect();
+        self.file.finish(&categories)
     }
 }
 
-/// Where a part of the file is until the whole is there.
-fn partial(file: &Path, part: &str) -> PathBuf {
-    let mut name = file.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{part}.partial"));
-    file.with_file_name(name)
+/// The class of a person: that of its region, or the first.
+fn name_of(pose: &Pose) -> Name {
+    pose.region.as_ref().map_or(Name::Index(0), |region| region.name.clone())
+}
+
+fn check_finite(found: &BoundingBox) -> Result<()> {
+    let segment = found.segment.as_deref();
+    let polygons = segment.map(|segment| match &segment.segmentation {
+        Segmentation::Polygons(polygons) => polygons.as_slice(),
+        Segmentation::Rle(_) => &[],
+    });
+    let area = segment.map_or(0.0, |segment| segment.area);
+    let mut numbers = polygons.unwrap_or_default().iter().flatten().chain([&area]);
+    if found.corners().iter().all(|number| number.is_finite()) && numbers.all(|number| number.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::invalid_input(format!("a box with NaN or infinite numbers cannot be written: {found:#}")))
 }
 
 /// x, y and visibility (0 not labelled, 1 hidden, 2 visible) of each joint.

@@ -9,7 +9,7 @@ use crate::picture_box::leaves_picture;
 const SLACK: f32 = 0.01;
 
 /// Reads `class x y width height` (centre and size), the same with a score, or `class x0 y0 x1 y1 x2 y2 ...`.
-pub(super) fn box_from_line(
+pub(crate) fn box_from_line(
     line: &str,
     size: [u32; 2],
     class_from_number: impl Fn(i64) -> Result<i64, String>,
@@ -80,7 +80,7 @@ fn polygon_area(polygon: &[f32]) -> f32 {
 }
 
 /// The line of a box, with its outline when `outlined` (its corners when it has none of polygons); `None` for a crowd.
-pub(super) fn line_from_box(
+pub(crate) fn line_from_box(
     found: &BoundingBox,
     class: usize,
     size: [u32; 2],

@@ -1,11 +1,11 @@
 //! YOLO: a text file of boxes or outlines beside each picture, in fractions of it.
 
-mod label;
+pub(crate) mod label;
 mod layout;
 #[cfg(test)]
 mod tests;
 mod write;
-mod yaml;
+pub(crate) mod yaml;
 
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,7 @@ use crate::Problem;
 
 /// What stands behind a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Yaml {
+pub(crate) enum Yaml {
     Text(String),
     List(Vec<String>),
     Table(Vec<(String, String)>),
@@ -16,7 +16,7 @@ pub(super) enum Yaml {
 
 /// The keys of a file, in their order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Keys(Vec<(String, Yaml)>);
+pub(crate) struct Keys(Vec<(String, Yaml)>);
 
 impl Keys {
     /// Reads `text`, which stands in `file`.

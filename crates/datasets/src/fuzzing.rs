@@ -1,0 +1,30 @@
+//! The text parsers of this crate, for the fuzzers: each may refuse what it is given, none may panic.
+
+use std::path::Path;
+
+use crate::voc::annotation::Annotation;
+use crate::yolo::{label, yaml};
+
+/// COCO's annotation file.
+pub fn coco_json(bytes: &[u8]) {
+    let _ = crate::coco::index_bytes(bytes);
+}
+
+/// Pascal VOC's annotation file.
+pub fn voc_xml(text: &str) {
+    let _ = Annotation::new(Path::new("a.xml"), text);
+}
+
+/// YOLO's label file and `data.yaml`.
+pub fn yolo_text(text: &str) {
+    let _ = yaml::Keys::new(Path::new("data.yaml"), text);
+    for line in text.lines() {
+        if let Ok(found) = label::box_from_line(line, [640, 480], Ok) {
+            assert!(found.corners().iter().all(|number| number.is_finite()));
+            let _ = (
+                label::line_from_box(&found, 0, [640, 480], true),
+                label::line_from_box(&found, 0, [640, 480], false),
+            );
+        }
+    }
+}
