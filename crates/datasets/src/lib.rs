@@ -4,6 +4,7 @@
 //! with its file and line or key, through [`Problems`].
 
 mod any;
+pub mod augment;
 mod camvid;
 mod check;
 mod cityscapes;
@@ -18,6 +19,7 @@ pub mod fuzzing;
 mod imagenet;
 mod kitti;
 mod label_png;
+pub mod loader;
 mod mot;
 mod npy;
 mod picture_box;

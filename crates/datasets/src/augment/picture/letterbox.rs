@@ -1,0 +1,39 @@
+//! A fixed size, the same shape.
+
+use opendr_engine::dataset::Sample;
+use opendr_engine::params::Params;
+use opendr_engine::{Random, Result};
+
+use crate::augment::picture::{Border, PictureMap, picture_size, transform};
+use crate::augment::{Augment, Augmentation, Others};
+
+/// Brings a picture to a fixed size, keeps its aspect ratio and fills up the rest, half on each side.
+#[derive(Debug, Clone, Params)]
+pub struct Letterbox {
+    /// Width of the result.
+    #[param(default = 416, range = 1..=65535, unit = "px")]
+    pub width: usize,
+    /// Height of the result.
+    #[param(default = 416, range = 1..=65535, unit = "px")]
+    pub height: usize,
+    /// Level of the rest.
+    #[param(default = 114, range = 0..=255)]
+    pub level: u32,
+}
+
+impl Augmentation for Letterbox {
+    const NAME: &'static str = "letterbox";
+    const ABOUT: &'static str = "brings to a fixed size, keeps the shape and fills up";
+}
+
+impl Augment for Letterbox {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+        let (size, wanted) = (picture_size(sample)?, [self.width, self.height]);
+        let scale = (0..2).map(|axis| wanted[axis] as f64 / size[axis] as f64).fold(f64::INFINITY, f64::min);
+        let sides = [0, 1].map(|axis| ((size[axis] as f64 * scale).round() as usize).clamp(1, wanted[axis]));
+        let corner = [0, 1].map(|axis| (wanted[axis] - sides[axis]) / 2);
+        let rectangle = [corner[0], corner[1], sides[0], sides[1]];
+        let map = PictureMap::window(size, [0, 0, size[0], size[1]], rectangle, wanted);
+        transform(sample, &map, &Border { level: self.level.min(255) as u8, ..Border::default() })
+    }
+}

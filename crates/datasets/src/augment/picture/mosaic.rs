@@ -1,0 +1,158 @@
+//! Four pictures in one (Bochkovskiy et al., YOLOv4, 2020).
+
+use opendr_engine::data::{Image, PixelFormat};
+use opendr_engine::dataset::Sample;
+use opendr_engine::params::Params;
+use opendr_engine::target::Heatmap;
+use opendr_engine::{Error, Random, Result, Value};
+
+use crate::augment::picture::border::Border;
+use crate::augment::picture::targets::follow;
+use crate::augment::picture::{PictureMap, picture_size, transform};
+use crate::augment::{Augment, Augmentation, Others};
+
+/// Puts a picture and three others around a point, each covering its quarter and cut at its border.
+#[derive(Debug, Clone, Params)]
+pub struct Mosaic {
+    /// Width of the result.
+    #[param(default = 640, range = 4..=65535, unit = "px")]
+    pub width: usize,
+    /// Height of the result.
+    #[param(default = 640, range = 4..=65535, unit = "px")]
+    pub height: usize,
+    /// How far the point may lie from the border at least, as a share of the side.
+    #[param(default = 0.25, range = 0.05..=0.5)]
+    pub margin: f32,
+    /// Pictures are at most so much larger than what just covers their quarter.
+    #[param(default = 1.5, range = 1.0..=10.0)]
+    pub max_zoom: f32,
+    /// Boxes with less than this share of their area inside are dropped.
+    #[param(default = 0.1, range = 0.0..=1.0)]
+    pub min_visible: f32,
+}
+
+impl Augmentation for Mosaic {
+    const NAME: &'static str = "mosaic";
+    const ABOUT: &'static str = "puts four pictures into one";
+}
+
+impl Augment for Mosaic {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+        let size = [self.width, self.height];
+        let point = size.map(|side| {
+            let share = random.uniform(self.margin, 1.0 - self.margin);
+            ((side as f32 * share) as usize).clamp(1, side - 1)
+        });
+        let mut canvas = vec![0u8; self.width * self.height * 3];
+        let mut whole: Option<Sample> = None;
+        // The quarter that the sample itself takes is as random as the others.
+        let own = random.below(4);
+        for quarter in 0..4 {
+            let mut part = if quarter == own { sample.clone() } else { others.pick(random)? };
+            let right_below = [quarter % 2, quarter / 2];
+            let corner = [0, 1].map(|axis| right_below[axis] * point[axis]);
+            let sides = [0, 1]
+                .map(|axis| if right_below[axis] == 0 { point[axis] } else { size[axis] - point[axis] });
+            self.fit(&mut part, sides, right_below, random)?;
+            paste_picture(&mut canvas, self.width, &part, corner)?;
+            let shift = PictureMap::crop(sides, corner.map(|edge| -(edge as i64)), size);
+            if let Some(target) = &mut part.target {
+                follow(target, &shift, &Border::default())?;
+            }
+            whole = Some(match whole {
+                None => part,
+                Some(before) => joined(before, part, [corner[0], corner[1], sides[0], sides[1]])?,
+            });
+        }
+        let header = sample.data.first().map(|datum| datum.header().clone()).unwrap_or_default();
+        let image = Image::from_rgb8(canvas, self.width, self.height)?.with_header(header);
+        let target = whole.and_then(|whole| whole.target);
+        *sample = Sample { data: vec![image.into()], target };
+        Ok(())
+    }
+}
+
+impl Mosaic {
+    /// Scales a part so that it covers `sides`, and cuts it there; its inner corner stays at the point.
+    fn fit(
+        &self,
+        part: &mut Sample,
+        sides: [usize; 2],
+        outer_end: [usize; 2],
+        random: &mut Random,
+    ) -> Result<()> {
+        if !matches!(part.data[..], [Value::Image(_)]) {
+            return Err(Error::unsupported("a mosaic is made of samples of one picture; leave it out here"));
+        }
+        let size = picture_size(part)?;
+        let cover = (0..2).map(|axis| sides[axis] as f32 / size[axis] as f32).fold(0.0, f32::max);
+        let scale = cover * random.uniform(1.0, self.max_zoom);
+        // The window of the picture that the quarter shows, in whole pixels.
+        let window = [0, 1].map(|axis| ((sides[axis] as f32 / scale).round() as usize).clamp(1, size[axis]));
+        let corner = [0, 1].map(|axis| if outer_end[axis] == 0 { size[axis] - window[axis] } else { 0 });
+        let window = [corner[0], corner[1], window[0], window[1]];
+        let map = PictureMap::window(size, window, [0, 0, sides[0], sides[1]], sides);
+        transform(part, &map, &Border::keeping(self.min_visible))
+    }
+}
+
+fn paste_picture(canvas: &mut [u8], width: usize, part: &Sample, [left, top]: [usize; 2]) -> Result<()> {
+    let [Value::Image(image)] = &part.data[..] else {
+        return Err(Error::internal("a mosaic's part lost its picture"));
+    };
+    let pixels = image.hwc_u8(PixelFormat::Rgb);
+    let row = image.width() * 3;
+    for (line, target) in pixels.chunks_exact(row).zip(canvas.chunks_exact_mut(width * 3).skip(top)) {
+        target[left * 3..left * 3 + row].copy_from_slice(line);
+    }
+    Ok(())
+}
+
+/// The targets of both, which lie in the same picture; of label maps, `rectangle` is taken from the second.
+fn joined(mut before: Sample, part: Sample, rectangle: [usize; 4]) -> Result<Sample> {
+    before.target = match (before.target, part.target) {
+        (None, None) => None,
+        (Some(Value::BoundingBoxList(mut boxes)), Some(Value::BoundingBoxList(more))) => {
+            boxes.boxes.extend(more.boxes);
+            Some(boxes.into())
+        }
+        (Some(Value::PoseList(mut poses)), Some(Value::PoseList(more))) => {
+            poses.poses.extend(more.poses);
+            Some(poses.into())
+        }
+        (Some(Value::Heatmap(map)), Some(Value::Heatmap(part))) => {
+            Some(overlaid(map, &part, rectangle)?.into())
+        }
+        (before, _) => {
+            let name = before.map_or("no target", |target| target.as_value_ref().value_type().name());
+            return Err(Error::unsupported(format!(
+                "a mosaic joins boxes, poses or label maps, all of one kind, not {name}; leave it out here"
+            )));
+        }
+    };
+    Ok(before)
+}
+
+/// A label map with a rectangle from another.
+fn overlaid(mut map: Heatmap, part: &Heatmap, [left, top, width, height]: [usize; 4]) -> Result<Heatmap> {
+    use opendr_engine::target::HeatmapValues::Labels;
+    let shape = map.shape().to_vec();
+    let (&[_, columns], Labels(labels)) = (&shape[..], part.values()) else {
+        return Err(Error::unsupported("a mosaic joins label maps, not scores; leave it out here"));
+    };
+    if part.shape() != shape || !matches!(map.values(), Labels(_)) {
+        return Err(Error::unsupported(format!(
+            "label maps of shape {shape:?} and {:?} do not join to a mosaic; give them the size of their pictures",
+            part.shape()
+        )));
+    }
+    let labels = labels.clone();
+    let Labels(under) = map.values() else { return Ok(map) };
+    let mut all = under.to_vec();
+    let lines = all.chunks_exact_mut(columns).zip(labels.chunks_exact(columns)).skip(top).take(height);
+    for (under, over) in lines {
+        under[left..left + width].copy_from_slice(&over[left..left + width]);
+    }
+    map.labels_mut(&shape).copy_from_slice(&all);
+    Ok(map)
+}

@@ -1,0 +1,31 @@
+//! Another size.
+
+use opendr_engine::dataset::Sample;
+use opendr_engine::params::Params;
+use opendr_engine::{Random, Result};
+
+use crate::augment::picture::{Border, PictureMap, picture_size, transform};
+use crate::augment::{Augment, Augmentation, Others};
+
+/// Stretches a picture to a fixed size; its aspect ratio changes.
+#[derive(Debug, Clone, Params)]
+pub struct Resize {
+    /// Width of the result.
+    #[param(default = 416, range = 1..=65535, unit = "px")]
+    pub width: usize,
+    /// Height of the result.
+    #[param(default = 416, range = 1..=65535, unit = "px")]
+    pub height: usize,
+}
+
+impl Augmentation for Resize {
+    const NAME: &'static str = "resize";
+    const ABOUT: &'static str = "stretches to a fixed size";
+}
+
+impl Augment for Resize {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+        let map = PictureMap::stretch(picture_size(sample)?, [self.width, self.height]);
+        transform(sample, &map, &Border::default())
+    }
+}

@@ -1,0 +1,34 @@
+//! A turn.
+
+use opendr_engine::dataset::Sample;
+use opendr_engine::params::Params;
+use opendr_engine::{Random, Result};
+
+use crate::augment::picture::{Border, PictureMap, picture_size, transform};
+use crate::augment::{Augment, Augmentation, Others};
+
+/// Turns a picture about its middle; its size stays.
+#[derive(Debug, Clone, Params)]
+pub struct Rotate {
+    /// Largest turn, either way.
+    #[param(default = 0.17, range = 0.0..=3.1416, unit = "rad")]
+    pub max_angle: f32,
+    /// Boxes with less than this share of their area inside are dropped.
+    #[param(default = 0.1, range = 0.0..=1.0)]
+    pub min_visible: f32,
+}
+
+impl Augmentation for Rotate {
+    const NAME: &'static str = "rotate";
+    const ABOUT: &'static str = "turns about the middle";
+}
+
+impl Augment for Rotate {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+        let angle = f64::from(random.uniform(-self.max_angle, self.max_angle));
+        let (sine, cosine) = angle.sin_cos();
+        let map =
+            PictureMap::about_middle(picture_size(sample)?, [[cosine, sine], [-sine, cosine]], [0.0; 2]);
+        transform(sample, &map, &Border::keeping(self.min_visible))
+    }
+}

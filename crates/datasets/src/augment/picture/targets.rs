@@ -1,0 +1,143 @@
+//! Targets under a map.
+
+use opendr_engine::target::{Heatmap, HeatmapValues, Keypoint, Pose, PoseList, Skeleton};
+use opendr_engine::{Error, Result, Value};
+
+use crate::augment::picture::border::Border;
+use crate::augment::picture::boxes::follow_box;
+use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::warp::nearest_plane;
+
+/// Maps whatever stands in a picture; what says something of the whole (a class, a text) stays.
+pub(super) fn follow(target: &mut Value, map: &PictureMap, border: &Border) -> Result<()> {
+    match target {
+        Value::BoundingBoxList(list) => retain(&mut list.boxes, |found| follow_box(found, map, border)),
+        Value::TrackingAnnotationList(list) => {
+            retain(&mut list.annotations, |track| follow_box(&mut track.bounding_box, map, border))
+        }
+        Value::PoseList(list) => follow_poses(list, map, border),
+        Value::Heatmap(heatmap) => follow_heatmap(heatmap, map, border),
+        Value::Category(_)
+        | Value::SpeechCommand(_)
+        | Value::BaseTranscription(_)
+        | Value::WhisperTranscription(_)
+        | Value::VoskTranscription(_) => Ok(()),
+        other => Err(Error::unsupported(format!(
+            "a {} cannot follow when its picture is moved; leave the augmentation out",
+            other.as_value_ref().value_type().name()
+        ))),
+    }
+}
+
+/// Keeps what `keep` says; the first error ends it.
+pub(super) fn retain<T>(items: &mut Vec<T>, mut keep: impl FnMut(&mut T) -> Result<bool>) -> Result<()> {
+    let mut outcome = Ok(());
+    items.retain_mut(|item| {
+        keep(item).unwrap_or_else(|error| {
+            outcome = Err(error);
+            true
+        })
+    });
+    outcome
+}
+
+fn follow_poses(list: &mut PoseList, map: &PictureMap, border: &Border) -> Result<()> {
+    retain(&mut list.poses, |pose| {
+        let joints = |pose: &Pose| pose.keypoints.iter().filter(|joint| joint.is_found()).count();
+        let nothing_before = joints(pose) == 0 && pose.region.is_none();
+        pose.keypoints.iter_mut().for_each(|joint| follow_joint(joint, map));
+        if map.mirrors() {
+            swap_sides(pose);
+        }
+        if let Some(region) = &mut pose.region
+            && !follow_box(region, map, border)?
+        {
+            pose.region = None;
+        }
+        Ok(nothing_before || joints(pose) > 0 || pose.region.is_some())
+    })
+}
+
+fn follow_joint(joint: &mut Keypoint, map: &PictureMap) {
+    if !joint.is_found() {
+        return;
+    }
+    let [x, y] = map.output_from_input([joint.x.into(), joint.y.into()]);
+    let [width, height] = map.output_size().map(|side| side as f64);
+    // One on the very edge is still inside: a flip takes 0 to the picture's width.
+    let inside = (0.0..=width).contains(&x) && (0.0..=height).contains(&y);
+    *joint = if inside { Keypoint { x: x as f32, y: y as f32, ..*joint } } else { Keypoint::MISSING };
+}
+
+/// What was a left hand is a right one in the mirror.
+fn swap_sides(pose: &mut Pose) {
+    for (joint, name) in pose.skeleton.joints().iter().enumerate() {
+        if let Some(partner) = partner_of(pose.skeleton, name)
+            && joint < partner
+            && partner < pose.keypoints.len()
+        {
+            pose.keypoints.swap(joint, partner);
+        }
+    }
+}
+
+/// The joint on the other side of the body.
+fn partner_of(skeleton: Skeleton, joint: &str) -> Option<usize> {
+    let (side, rest) = joint.split_once('_')?;
+    let other = match side {
+        "l" => "r",
+        "r" => "l",
+        _ => return None,
+    };
+    skeleton.joints().iter().position(|name| name.split_once('_') == Some((other, rest)))
+}
+
+fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> Result<()> {
+    let shape: Vec<usize> = heatmap.shape().to_vec();
+    let (&[height, width] | &[_, height, width]) = &shape[..] else {
+        return Err(Error::unsupported(format!(
+            "a heat map of shape {shape:?} cannot follow when its picture is moved; give [height, width] or \
+             [classes, height, width]"
+        )));
+    };
+    let map = map.for_size([width, height]);
+    let [columns, rows] = map.output_size();
+    let values = match heatmap.values() {
+        HeatmapValues::Labels(labels) => HeatmapValues::Labels(each_plane(labels, &map, border.label).into()),
+        HeatmapValues::Scores(scores) => HeatmapValues::Scores(each_plane(scores, &map, 0.0).into()),
+    };
+    let shape: Vec<usize> = shape[..shape.len() - 2].iter().copied().chain([rows, columns]).collect();
+    let mut moved = Heatmap::new(values, &shape)?;
+    (moved.header, moved.classes) = (heatmap.header.clone(), heatmap.classes.clone());
+    moved.action = heatmap.action;
+    *heatmap = moved;
+    Ok(())
+}
+
+fn each_plane<T: Copy>(values: &[T], map: &PictureMap, fill: T) -> Vec<T> {
+    let [width, height] = map.input_size();
+    let planes = values.chunks_exact((width * height).max(1));
+    planes.flat_map(|plane| nearest_plane(plane, map, fill)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_side_has_its_other() {
+        for skeleton in [Skeleton::Opendr18, Skeleton::Coco17] {
+            let mut alone = Vec::new();
+            for (joint, name) in skeleton.joints().iter().enumerate() {
+                match partner_of(skeleton, name) {
+                    Some(partner) => {
+                        assert_ne!(partner, joint);
+                        assert_eq!(partner_of(skeleton, skeleton.joints()[partner]), Some(joint));
+                    }
+                    None => alone.push(*name),
+                }
+            }
+            assert!(alone.iter().all(|name| ["nose", "neck"].contains(name)), "{alone:?}");
+        }
+    }
+}

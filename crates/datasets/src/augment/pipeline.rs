@@ -1,0 +1,90 @@
+//! Several augmentations, one after the other.
+
+use opendr_engine::dataset::Sample;
+use opendr_engine::params::ParamMap;
+use opendr_engine::{Error, Random, Result, ResultExt};
+
+use crate::augment::{Augment, Augmentation, Others, find_augmentation};
+
+/// Augmentations in the order in which they are applied, each with its probability.
+///
+/// ```
+/// use opendr_datasets::augment::{Colour, Flip, Pipeline, RandomResizedCrop};
+///
+/// let pipeline = Pipeline::default()
+///     .then(RandomResizedCrop { width: 416, height: 416, ..Default::default() })?
+///     .sometimes(0.5, Flip::default())?
+///     .sometimes(0.8, Colour::default())?;
+/// assert_eq!(pipeline.names(), ["random_resized_crop", "flip", "colour"]);
+/// # Ok::<(), opendr_engine::Error>(())
+/// ```
+#[derive(Default)]
+pub struct Pipeline {
+    steps: Vec<Step>,
+}
+
+struct Step {
+    name: &'static str,
+    probability: f32,
+    augment: Box<dyn Augment>,
+}
+
+impl Pipeline {
+    /// The same with `augmentation` applied to every sample after the others.
+    ///
+    /// # Errors
+    /// `InvalidParam` when a parameter is out of its range.
+    pub fn then(self, augmentation: impl Augmentation) -> Result<Self> {
+        self.sometimes(1.0, augmentation)
+    }
+
+    /// The same with `augmentation` applied after the others to this share of the samples.
+    ///
+    /// # Errors
+    /// `InvalidParam` when the probability or a parameter is out of its range.
+    pub fn sometimes<A: Augmentation>(self, probability: f32, augmentation: A) -> Result<Self> {
+        augmentation.check().context(|| A::NAME)?;
+        self.push(A::NAME, probability, Box::new(augmentation))
+    }
+
+    /// As [`Pipeline::sometimes`], for the augmentation called `name` with parameters by name.
+    ///
+    /// # Errors
+    /// `NotFound` when there is no such augmentation, `InvalidParam` as above or for an unknown parameter.
+    pub fn by_name(self, name: &str, probability: f32, params: &ParamMap) -> Result<Self> {
+        let entry = find_augmentation(name)?;
+        self.push(entry.name, probability, (entry.make)(params).context(|| entry.name)?)
+    }
+
+    /// As [`Pipeline::sometimes`], for an augmentation of a program's own.
+    ///
+    /// # Errors
+    /// `InvalidParam` when the probability is not within 0 and 1.
+    pub fn push(mut self, name: &'static str, probability: f32, augment: Box<dyn Augment>) -> Result<Self> {
+        if !(0.0..=1.0).contains(&probability) {
+            return Err(Error::invalid_param(format!(
+                "{name}: a probability of {probability}; give one within 0 and 1"
+            )));
+        }
+        self.steps.push(Step { name, probability, augment });
+        Ok(self)
+    }
+
+    /// What is applied, in order.
+    pub fn names(&self) -> Vec<&'static str> {
+        self.steps.iter().map(|step| step.name).collect()
+    }
+}
+
+impl Augment for Pipeline {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+        for step in &self.steps {
+            if random.chance(step.probability) {
+                step.augment
+                    .apply(sample, random, others)
+                    .context(|| format!("augmentation {}", step.name))?;
+            }
+        }
+        Ok(())
+    }
+}

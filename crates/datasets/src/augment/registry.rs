@@ -1,0 +1,53 @@
+//! Which augmentations there are: one line each.
+
+use opendr_engine::{Error, Result};
+
+use crate::augment::*;
+
+/// Every augmentation.
+pub const fn augmentations() -> &'static [AugmentEntry] {
+    const {
+        &[
+            AugmentEntry::of::<Flip>(),
+            AugmentEntry::of::<CentreCrop>(),
+            AugmentEntry::of::<RandomCrop>(),
+            AugmentEntry::of::<RandomResizedCrop>(),
+            AugmentEntry::of::<IouCrop>(),
+            AugmentEntry::of::<Resize>(),
+            AugmentEntry::of::<RandomScale>(),
+            AugmentEntry::of::<Letterbox>(),
+            AugmentEntry::of::<Rotate>(),
+            AugmentEntry::of::<Affine>(),
+            AugmentEntry::of::<Mosaic>(),
+            AugmentEntry::of::<MixUp>(),
+            AugmentEntry::of::<Colour>(),
+            AugmentEntry::of::<Grey>(),
+            AugmentEntry::of::<Blur>(),
+            AugmentEntry::of::<PixelNoise>(),
+            AugmentEntry::of::<CutOut>(),
+            AugmentEntry::of::<CloudRotate>(),
+            AugmentEntry::of::<CloudScale>(),
+            AugmentEntry::of::<CloudFlip>(),
+            AugmentEntry::of::<DropPoints>(),
+            AugmentEntry::of::<JitterPoints>(),
+            AugmentEntry::of::<PasteObjects>(),
+            AugmentEntry::of::<AudioShift>(),
+            AugmentEntry::of::<AudioNoise>(),
+            AugmentEntry::of::<AudioGain>(),
+            AugmentEntry::of::<SpecAugment>(),
+            AugmentEntry::of::<SeriesJitter>(),
+            AugmentEntry::of::<SeriesScale>(),
+        ]
+    }
+}
+
+/// The augmentation called `name`.
+///
+/// # Errors
+/// `NotFound`, with the names that there are.
+pub fn find_augmentation(name: &str) -> Result<&'static AugmentEntry> {
+    augmentations().iter().find(|entry| entry.name == name).ok_or_else(|| {
+        let names: Vec<_> = augmentations().iter().map(|entry| entry.name).collect();
+        Error::not_found(format!("no augmentation {name:?}; there are {}", names.join(", ")))
+    })
+}

@@ -1,0 +1,13 @@
+//! Time series, and spectra through time.
+
+mod jitter;
+mod rows;
+mod scale;
+mod spec_augment;
+
+pub use jitter::SeriesJitter;
+pub use scale::SeriesScale;
+pub use spec_augment::SpecAugment;
+
+#[cfg(test)]
+mod tests;

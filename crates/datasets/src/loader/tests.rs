@@ -1,0 +1,206 @@
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use opendr_engine::data::Image;
+use opendr_engine::dataset::{Dataset, Sample};
+use opendr_engine::target::{BoundingBox, BoundingBoxList};
+use opendr_engine::{ErrorKind, Value};
+use opendr_vision::Preprocess;
+
+use super::*;
+use crate::augment::{Blur, Colour, Flip, Mosaic, PixelNoise, RandomResizedCrop, Rotate};
+
+const THREADS: [usize; 4] = [0, 1, 2, 4];
+
+/// Pictures that are told apart by their pixels; counts how many were read.
+struct Pictures {
+    count: usize,
+    broken: Vec<usize>,
+    panics: Option<usize>,
+    read: Arc<AtomicUsize>,
+}
+
+impl Pictures {
+    fn new(count: usize) -> Self {
+        Self { count, broken: Vec::new(), panics: None, read: Arc::default() }
+    }
+}
+
+impl Dataset for Pictures {}
+
+impl DatasetIterator for Pictures {
+    fn len(&self) -> usize {
+        self.count
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        self.read.fetch_add(1, Ordering::SeqCst);
+        assert_ne!(self.panics, Some(index), "sample {index} is a trap");
+        if self.broken.contains(&index) {
+            return Err(Error::format("cut off"));
+        }
+        let pixels = (0..48 * 36 * 3).map(|at| (at * (index + 3) / 5) as u8).collect();
+        let found = BoundingBox::new(index as i64, 5.0, 5.0, 30.0, 20.0, 1.0);
+        Ok(Sample {
+            data: vec![Image::from_rgb8(pixels, 48, 36).unwrap().into()],
+            target: Some(BoundingBoxList::from(vec![found]).into()),
+        })
+    }
+}
+
+fn options(threads: usize) -> LoaderOptions {
+    LoaderOptions { batch_size: 4, threads, ahead: 3, seed: 11, ..LoaderOptions::default() }
+}
+
+fn loader(pictures: Pictures, threads: usize) -> Loader {
+    Loader::new(pictures, options(threads)).unwrap()
+}
+
+fn indices<C: Collate>(epoch: Epoch<C>) -> Vec<usize> {
+    epoch.flat_map(|batch| batch.unwrap().indices).collect()
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bytes() {
+    let run = |threads: usize| -> Vec<(Vec<usize>, Vec<Sample>)> {
+        let pipeline = Pipeline::default()
+            .sometimes(0.3, Mosaic { width: 60, height: 50, ..Default::default() })
+            .and_then(|steps| steps.then(RandomResizedCrop { width: 32, height: 24, ..Default::default() }))
+            .and_then(|steps| steps.sometimes(0.5, Flip::default()))
+            .and_then(|steps| steps.sometimes(0.5, Rotate::default()))
+            .and_then(|steps| steps.sometimes(0.8, Colour::default()))
+            .and_then(|steps| steps.sometimes(0.5, Blur::default()))
+            .and_then(|steps| steps.then(PixelNoise::default()));
+        let loader = loader(Pictures::new(22), threads).augment(pipeline.unwrap());
+        let both = [loader.epoch(0), loader.epoch(1)];
+        both.into_iter()
+            .flatten()
+            .map(|batch| batch.unwrap())
+            .map(|batch| (batch.indices, batch.content))
+            .collect()
+    };
+    let wanted = run(0);
+    assert_eq!(wanted.len(), 12);
+    for threads in [1, 2, 4] {
+        assert!(run(threads) == wanted, "{threads} threads");
+    }
+}
+
+#[test]
+fn epochs_have_all_samples_in_orders_of_their_own() {
+    for threads in THREADS {
+        let loader = loader(Pictures::new(22), threads);
+        let [first, second] = [0, 1].map(|epoch| indices(loader.epoch(epoch)));
+        assert_eq!(first, indices(loader.epoch(0)));
+        assert_ne!(first, second);
+        let mut sorted = first.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..22).collect::<Vec<_>>());
+        assert_eq!((loader.batches(), loader.samples()), (6, 22));
+    }
+    let plain = LoaderOptions { shuffle: false, drop_last: true, ..options(2) };
+    let loader = Loader::new(Pictures::new(22), plain).unwrap();
+    assert_eq!(indices(loader.epoch(0)), (0..20).collect::<Vec<_>>());
+    assert_eq!(Loader::new(Pictures::new(0), options(2)).unwrap().epoch(0).count(), 0);
+}
+
+#[test]
+fn an_epoch_goes_on_where_it_was_left() {
+    let loader =
+        loader(Pictures::new(22), 2).augment(Pipeline::default().then(PixelNoise::default()).unwrap());
+    let whole: Vec<_> = loader.epoch(3).map(|batch| batch.unwrap()).collect();
+    let position = whole[1].next_position;
+    assert_eq!(position, 8);
+    let rest: Vec<_> = loader.resume(3, position).unwrap().map(|batch| batch.unwrap()).collect();
+    assert_eq!(rest.len(), 4);
+    for (one, other) in rest.iter().zip(&whole[2..]) {
+        assert_eq!((&one.indices, one.next_position), (&other.indices, other.next_position));
+        assert!(one.content == other.content);
+    }
+    assert_eq!(loader.resume(3, 22).unwrap().count(), 0);
+    assert_eq!(loader.resume(3, 23).err().unwrap().kind(), ErrorKind::InvalidInput);
+}
+
+#[test]
+fn no_more_is_read_ahead_than_agreed_and_dropping_ends_it() {
+    for threads in [1, 2, 4] {
+        let pictures = Pictures::new(4000);
+        let read = Arc::clone(&pictures.read);
+        let loader = loader(pictures, threads);
+        let mut epoch = loader.epoch(0);
+        for handed in 1..=40 {
+            epoch.next().unwrap().unwrap();
+            // Whoever trains is slow: the threads would run ahead if they could.
+            std::thread::yield_now();
+            assert!(read.load(Ordering::SeqCst) <= (handed + 3) * 4);
+        }
+        drop(epoch);
+        let after = read.load(Ordering::SeqCst);
+        assert!(after <= (40 + 3) * 4);
+        // The threads were joined: the loader alone holds what they shared.
+        assert_eq!(Arc::strong_count(&loader.dataset), 1);
+        assert_eq!(read.load(Ordering::SeqCst), after);
+    }
+}
+
+#[test]
+fn broken_samples_are_errors_in_place_or_skipped_and_listed() {
+    for threads in THREADS {
+        let pictures = || Pictures { broken: vec![5, 12, 13, 14, 15], ..Pictures::new(22) };
+        let plain = LoaderOptions { shuffle: false, ..options(threads) };
+        let strict = Loader::new(pictures(), plain.clone()).unwrap();
+        let outcomes: Vec<bool> = strict.epoch(0).map(|batch| batch.is_ok()).collect();
+        assert_eq!(outcomes, [true, false, true, false, true, true]);
+        let error = strict.epoch(0).find_map(Result::err).unwrap();
+        assert_eq!(error.to_string(), "sample 5 (5): cut off");
+        let lenient = Loader::new(pictures(), LoaderOptions { skip_broken: true, ..plain }).unwrap();
+        let mut epoch = lenient.epoch(0);
+        let kept: Vec<usize> = epoch.by_ref().flat_map(|batch| batch.unwrap().indices).collect();
+        assert_eq!(kept, [0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 11, 16, 17, 18, 19, 20, 21]);
+        let skipped: Vec<usize> = epoch.skipped().iter().map(|one| one.index).collect();
+        assert_eq!(skipped, [5, 12, 13, 14, 15]);
+    }
+}
+
+#[test]
+fn a_panic_comes_to_whoever_asks_in_its_place() {
+    for threads in THREADS {
+        let pictures = Pictures { panics: Some(9), ..Pictures::new(22) };
+        let loader = Loader::new(pictures, LoaderOptions { shuffle: false, ..options(threads) }).unwrap();
+        let mut epoch = loader.epoch(0);
+        assert!(epoch.next().unwrap().is_ok() && epoch.next().unwrap().is_ok());
+        assert!(catch_unwind(AssertUnwindSafe(|| epoch.next())).is_err());
+        assert_eq!(epoch.next().unwrap().unwrap().indices, [12, 13, 14, 15]);
+    }
+}
+
+#[test]
+fn batches_of_pictures_are_tensors() {
+    let scaling = Preprocess::new(24, 18).normalise([0.0; 3], [255.0; 3]);
+    let loader = loader(Pictures { broken: vec![3], ..Pictures::new(10) }, 2);
+    let loader = Loader { options: LoaderOptions { skip_broken: true, ..loader.options.clone() }, ..loader }
+        .collate(ImageBatches::new(scaling.clone()));
+    let mut seen = 0;
+    for batch in loader.epoch(0).chain(loader.epoch(1)) {
+        let Batch { content, indices, .. } = batch.unwrap();
+        assert_eq!(content.shape(), [indices.len(), 3, 18, 24]);
+        assert_eq!(content.targets().len(), indices.len());
+        for (place, index) in indices.iter().enumerate() {
+            let Value::Image(image) = &Pictures::new(10).get(*index).unwrap().data[0] else { panic!() };
+            let mut wanted = vec![0f32; scaling.len()];
+            scaling.run_into(image.view(), &mut wanted).unwrap();
+            assert_eq!(&content.values()[place * wanted.len()..][..wanted.len()], &wanted[..]);
+            assert_eq!(content.geometries()[place].image_from_input([12.0, 9.0]), [24.0, 18.0]);
+            let Some(Value::BoundingBoxList(list)) = &content.targets()[place] else { panic!() };
+            assert_eq!(list.boxes[0].name, (*index as i64).into());
+        }
+        seen += indices.len();
+    }
+    assert_eq!(seen, 18);
+}
+
+#[test]
+fn options_out_of_range_are_refused() {
+    let wrong = LoaderOptions { batch_size: 0, ..LoaderOptions::default() };
+    assert_eq!(Loader::new(Pictures::new(3), wrong).err().unwrap().kind(), ErrorKind::InvalidParam);
+}
