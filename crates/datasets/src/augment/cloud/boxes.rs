@@ -28,7 +28,7 @@ pub(super) fn corners(found: &BoundingBox3D) -> [[f64; 3]; 8] {
 /// Whether two boxes overlap, seen from above: there is no line between them along any of their sides.
 pub(super) fn touch(one: &BoundingBox3D, other: &BoundingBox3D) -> bool {
     let axes = [one, other].map(|found| f64::from(found.rotation_y).sin_cos());
-    let floors = [one, other].map(|found| corners(found));
+    let floors = [one, other].map(corners);
     axes.iter().flat_map(|(sine, cosine)| [[*cosine, -sine], [*sine, *cosine]]).all(|[x, z]| {
         let [[low, high], [other_low, other_high]] = floors.map(|floor| {
             let along = floor[..4].iter().map(|corner| x * corner[0] + z * corner[2]);

@@ -11,7 +11,7 @@ use crate::augment::{Augment, Augmentation, Others};
 #[derive(Debug, Clone, Params)]
 pub struct CloudRotate {
     /// Largest turn, either way.
-    #[param(default = 0.785, range = 0.0..=3.1416, unit = "rad")]
+    #[param(default = 0.785, range = 0.0..=3.15, unit = "rad")]
     pub max_angle: f32,
 }
 

@@ -11,7 +11,7 @@ use crate::augment::{Augment, Augmentation, Others};
 #[derive(Debug, Clone, Params)]
 pub struct Affine {
     /// Largest turn, either way.
-    #[param(default = 0.0, range = 0.0..=3.1416, unit = "rad")]
+    #[param(default = 0.0, range = 0.0..=3.15, unit = "rad")]
     pub max_angle: f32,
     /// Smallest factor.
     #[param(default = 0.5, range = 0.01..=16.0, log)]

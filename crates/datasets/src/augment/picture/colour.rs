@@ -23,7 +23,7 @@ pub struct Colour {
     #[param(default = 0.2, range = 0.0..=1.0)]
     pub saturation: f32,
     /// Hue is turned by at most this, either way.
-    #[param(default = 0.1, range = 0.0..=3.1416, unit = "rad")]
+    #[param(default = 0.1, range = 0.0..=3.15, unit = "rad")]
     pub hue: f32,
 }
 
