@@ -269,7 +269,8 @@ impl DatasetIterator for Shelf {
 #[test]
 fn mosaics_keep_boxes_around_objects() {
     let mut kept = 0;
-    let (shelf, mosaic) = (Shelf(5), Mosaic { width: 200, height: 160, ..Default::default() });
+    let (shelf, mosaic) =
+        (Shelf(5), Mosaic { width: 200, height: 160, min_visible: 0.0, ..Default::default() });
     for seed in 0..40 {
         let mut sample = shelf.get(0).unwrap();
         mosaic.apply(&mut sample, &mut Random::new(seed), &Others::of(&shelf)).unwrap();
