@@ -11,7 +11,7 @@ use opendr::target::Classes;
 use opendr::{Error, Result, ValueType, datasets};
 use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PyTuple};
+use pyo3::types::{PyDict, PyList, PyString, PyTuple};
 
 use crate::datum::{python_from_value, value_from_python};
 use crate::error::{ToPython, error_from_exception};
@@ -157,7 +157,8 @@ struct PythonDataset {
 
 impl PythonDataset {
     fn new(object: &Bound<'_, PyAny>, ports: &'static [Port]) -> PyResult<Self> {
-        if !object.hasattr("__getitem__")? || !object.hasattr("__len__")? {
+        let is_text = object.is_instance_of::<PyString>();
+        if is_text || !object.hasattr("__getitem__")? || !object.hasattr("__len__")? {
             let class = object.get_type().name()?.to_string();
             return Err(PyTypeError::new_err(format!(
                 "dataset should be an ExternalDataset or a DatasetIterator, not {class}"

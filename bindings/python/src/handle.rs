@@ -134,7 +134,7 @@ impl Handle {
                 progress: bar,
                 ..Evaluation::new(subject, metric, &problems)
             };
-            let outcome = evaluation.run(std::slice::from_mut(&mut *learner), self.entry.ports, &dataset)?;
+            let outcome = evaluation.run(std::slice::from_mut(&mut *learner), self.entry, &dataset)?;
             let json = serde_json::to_string(&outcome);
             let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
             Ok((json, outcome.to_string()))

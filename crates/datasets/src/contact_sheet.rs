@@ -45,7 +45,8 @@ pub fn picture_with_target(sample: &Sample) -> Option<opendr_engine::data::Image
         _ => None,
     })?;
     if let Some(target) = &sample.target {
-        draw(&mut picture, target, &Style { confidences: false, ..Style::default() });
+        // Twice as thick: the picture is made smaller after.
+        draw(&mut picture, target, &Style { confidences: false, scale: 2.0, ..Style::default() });
     }
     Some(picture)
 }

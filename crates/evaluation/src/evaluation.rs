@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use opendr_datasets::{Problem, Problems};
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::learner::{AnyLearner, Port, Ports};
-use opendr_engine::params::ParamMap;
+use opendr_engine::learner::{AnyLearner, Entry, Port, Ports};
+use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value, map_in_order};
 use opendr_metrics::{AnyMetric, MetricEntry};
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,9 @@ use crate::{Answers, ClassMap, Outcome};
 
 /// The worst samples that are listed.
 const WORST: usize = 24;
+/// The parameter below which learners drop answers, and what it is made where answers are ranked.
+const THRESHOLD: &str = "threshold";
+const LOW_THRESHOLD: f64 = 0.01;
 /// The file of the answers.
 const JOURNAL: &str = "predictions.jsonl";
 
@@ -66,7 +69,7 @@ impl<'a> Evaluation<'a> {
         }
     }
 
-    /// Runs loaded `learners` of one kind, whose inputs are `ports`, over the data set: as many samples at once as there
+    /// Runs loaded `learners` of one kind over the data set: as many samples at once as there
     /// are learners, sequences by the first alone.
     ///
     /// When the user stops it, the outcome is of what was done, and says so.
@@ -77,16 +80,47 @@ impl<'a> Evaluation<'a> {
     pub fn run(
         &self,
         learners: &mut [Box<dyn AnyLearner>],
-        ports: &'static [Port],
+        entry: &Entry,
         dataset: &dyn DatasetIterator,
     ) -> Result<Outcome> {
         let begun = Instant::now();
         let mut tally = self.begin(dataset)?;
-        let done =
-            self.resume(&mut tally).and_then(|journal| self.answer(learners, ports, &mut tally, journal));
+        let lowered = self.lower_threshold(learners, entry)?;
+        let done = self
+            .resume(&mut tally)
+            .and_then(|journal| self.answer(learners, entry.ports, &mut tally, journal));
         self.progress.end();
+        if let Some(threshold) = lowered {
+            learners.iter_mut().try_for_each(|learner| learner.set(THRESHOLD, threshold.clone()))?;
+        }
         done?;
         self.finish(tally, begun)
+    }
+
+    /// Where answers are ranked, those of a low score belong into the ranking, too: a threshold that the user left as it
+    /// is made low for the evaluation. What it was.
+    fn lower_threshold(
+        &self,
+        learners: &mut [Box<dyn AnyLearner>],
+        entry: &Entry,
+    ) -> Result<Option<ParamValue>> {
+        let Some(field) = entry.params.iter().find(|field| field.name == THRESHOLD && self.metric.ranks)
+        else {
+            return Ok(None);
+        };
+        let Some(was) = learners.first().and_then(|learner| learner.params().remove(THRESHOLD)) else {
+            return Ok(None);
+        };
+        if was != field.default.value() || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD) {
+            return Ok(None);
+        }
+        let low = ParamValue::Float(LOW_THRESHOLD);
+        learners.iter_mut().try_for_each(|learner| learner.set(THRESHOLD, low.clone()))?;
+        self.progress.note(&format!(
+            "threshold {LOW_THRESHOLD} instead of {was}: {} ranks answers of every score",
+            self.metric.name
+        ));
+        Ok(Some(was))
     }
 
     /// Counts answers that somebody wrote down.

@@ -58,6 +58,6 @@ impl EvalOptions {
             progress,
             ..Evaluation::new(subject, metric, &problems)
         };
-        evaluation.run(std::slice::from_mut(learner), entry.ports, &dataset)
+        evaluation.run(std::slice::from_mut(learner), entry, &dataset)
     }
 }

@@ -101,6 +101,7 @@ fn write_table(table: &Table, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let labels = table.rows.iter().map(|(label, _)| label.chars().count());
     let first = labels.chain([table.name.chars().count()]).max().unwrap_or(0);
     let widths: Vec<_> = table.columns.iter().map(|column| column.chars().count().max(8)).collect();
+    let whole: Vec<_> = (0..widths.len()).map(|column| is_of_counts(table, column)).collect();
     write!(f, "\n  {:first$}", table.name)?;
     for (column, width) in table.columns.iter().zip(&widths) {
         write!(f, "  {column:>width$}")?;
@@ -108,8 +109,12 @@ fn write_table(table: &Table, f: &mut fmt::Formatter<'_>) -> fmt::Result {
     writeln!(f)?;
     for (label, numbers) in table.rows.iter().take(ROWS) {
         write!(f, "  {label:first$}")?;
-        for (value, width) in numbers.iter().zip(&widths) {
-            let text = value.map_or("-".to_owned(), number);
+        for ((value, width), whole) in numbers.iter().zip(&widths).zip(&whole) {
+            let text = match value {
+                None => "-".to_owned(),
+                Some(value) if *whole => format!("{value}"),
+                Some(value) => format!("{value:.4}"),
+            };
             write!(f, "  {text:>width$}")?;
         }
         writeln!(f)?;
@@ -118,6 +123,13 @@ fn write_table(table: &Table, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         Some(more) if more > 0 => writeln!(f, "  ... {more} more in report.json"),
         _ => Ok(()),
     }
+}
+
+/// Whether a column has whole numbers, and not zeros and ones alone.
+fn is_of_counts(table: &Table, column: usize) -> bool {
+    let numbers = || table.rows.iter().filter_map(|(_, numbers)| numbers.get(column).copied().flatten());
+    numbers().all(|number| number.fract() == 0.0 && number.abs() < 1e15)
+        && numbers().any(|number| number > 1.0)
 }
 
 /// Counts as they are, everything else with four places.

@@ -8,10 +8,12 @@ use std::sync::{Mutex, PoisonError};
 use opendr_datasets::Problems;
 use opendr_engine::data::Vector;
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
-use opendr_engine::learner::{AnyLearner, AnyStream, Capabilities, FitJob, Inputs, Outputs, Ports};
+use opendr_engine::learner::{
+    AnyLearner, AnyStream, Capabilities, Entry, FitJob, Inputs, Outputs, Ports, Spec, Targets,
+};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::target::{Category, Classes};
-use opendr_engine::{Device, Error, Progress, Result, Statistics, Unit, Value};
+use opendr_engine::{Device, Error, Progress, Result, Statistics, Task, Unit, Value};
 use opendr_evaluation::{Evaluation, Outcome, Subject};
 use opendr_metrics::find;
 
@@ -157,7 +159,10 @@ fn evaluate(
         ..Evaluation::new(subject, find("classification")?, problems)
     };
     let mut learners: [Box<dyn AnyLearner>; 2] = [Box::new(Counter::default()), Box::new(Counter::default())];
-    evaluation.run(&mut learners, <&Vector as Inputs<'_>>::PORTS, dataset)
+    let spec = Spec::new("counter", Task::ObjectDetection2d);
+    let make = |_: &ParamMap, _| Err(Error::unsupported("making"));
+    let entry = Entry::added(spec, &[], <&Vector as Inputs<'_>>::PORTS, Category::OUTPUTS, make);
+    evaluation.run(&mut learners, &entry, dataset)
 }
 
 fn scratch(name: &str) -> PathBuf {

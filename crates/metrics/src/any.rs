@@ -75,6 +75,8 @@ pub struct MetricEntry {
     pub about: &'static str,
     /// Its parameters.
     pub params: &'static [Field],
+    /// As [`Metric::RANKS`].
+    pub ranks: bool,
     /// What learners answer.
     pub prediction: ValueType,
     /// What they should answer.
@@ -89,6 +91,7 @@ impl MetricEntry {
             name: M::NAME,
             about: M::ABOUT,
             params: M::Params::FIELDS,
+            ranks: M::RANKS,
             prediction: M::Prediction::TYPE,
             truth: M::Truth::TYPE,
             make: |params| Ok(Box::new(Typed(M::new(&M::Params::from_map(params)?)?))),

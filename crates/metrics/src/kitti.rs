@@ -60,6 +60,7 @@ impl Metric for Kitti {
     const NAME: &'static str = "kitti_detection";
     const ABOUT: &'static str =
         "KITTI's AP of boxes in picture, from above and in space, and AOS, as its development kit";
+    const RANKS: bool = true;
     type Params = NoParams;
     type Prediction = BoundingBox3DList;
     type Truth = BoundingBox3DList;

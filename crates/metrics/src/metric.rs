@@ -23,6 +23,9 @@ pub trait Metric: Send + Sized + 'static {
     /// What it should answer.
     type Truth: Datum;
 
+    /// Whether answers are ranked by their scores, so that a learner's threshold would cut the ranking off.
+    const RANKS: bool = false;
+
     /// An accumulator that has counted nothing.
     ///
     /// # Errors

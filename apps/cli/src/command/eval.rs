@@ -92,7 +92,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let count = loading::how_many(matches, Some(dataset.len() as u64))?;
     let mut learners = loading::side_by_side(count, || loading::load(spec, &params, matches, &bar))?;
-    let outcome = evaluation.run(&mut learners, entry.ports, &dataset)?;
+    let outcome = evaluation.run(&mut learners, entry, &dataset)?;
     tell(&outcome, matches, &problems, &bar)
 }
 
