@@ -77,6 +77,11 @@ def test_long_texts(compute, letters):
         other = "".join(random.choice(list(letters), size=4000 + 700 * seed))
         near = [random.choice(list(letters)) if random.random() < 0.2 else letter for letter in truth]
         gone = [letter for letter in near if random.random() < 0.9]
+        longer = list(random.choice(list(letters), size=20000))
+        few = longer.copy()
+        for place in random.integers(0, 19000, size=20):
+            few[place : place + int(random.integers(0, 3))] = random.choice(list(letters), size=1)
+        corpora.append([("".join(longer), "".join(few))])
         corpora += [[(truth, other)], [(truth, "".join(near))], [(truth, "".join(gone))], [("".join(gone), truth)]]
     for report, pairs in zip(compute(*map(case, corpora)), corpora):
         assert_equals_jiwer(report, pairs)

@@ -2,7 +2,11 @@
 //!
 //! Several alignments can have the fewest edits but differ in their hits. RapidFuzz prefers, from the end backwards, a
 //! deletion to an insertion to a substitution or hit, after ends that are alike are cut off, and halves what is too
-//! large for a matrix (Hirschberg); so does this, with as much memory as the matrix of at most 4 Mi places.
+//! large for a matrix (Hirschberg); so does this. The matrix is gone through 64 places at once (Myers, 1999; Hyyrö, 2003).
+
+use std::collections::HashMap;
+use std::hash::Hash;
+use std::ops::Range;
 
 /// How a sequence differs from its reference.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -19,9 +23,17 @@ pub struct EditCounts {
 
 impl EditCounts {
     /// Of `hypothesis` against `reference`. Takes time in proportion to the length times the number of edits.
-    pub fn of<T: PartialEq>(reference: &[T], hypothesis: &[T]) -> Self {
+    pub fn of<T: Eq + Hash>(reference: &[T], hypothesis: &[T]) -> Self {
+        let mut numbers = HashMap::new();
+        let [reference, hypothesis] = [reference, hypothesis].map(|symbols| {
+            let number = |symbol| {
+                let next = numbers.len() as u32;
+                *numbers.entry(symbol).or_insert(next)
+            };
+            symbols.iter().map(number).collect::<Vec<u32>>()
+        });
         let mut counts = Self::default();
-        counts.align(reference, hypothesis, distance(reference, hypothesis));
+        counts.align(&reference, &hypothesis, distance(&reference, &hypothesis));
         counts
     }
 
@@ -39,7 +51,7 @@ impl EditCounts {
     }
 
     /// Counts the edits from `a` to `b`, of which there are at most `most`.
-    fn align<T: PartialEq>(&mut self, a: &[T], b: &[T], most: usize) {
+    fn align(&mut self, a: &[u32], b: &[u32], most: usize) {
         let (a, b, same) = without_common_ends(a, b);
         self.hits += same as u64;
         let most = most.min(a.len().max(b.len()));
@@ -50,8 +62,8 @@ impl EditCounts {
         // The halves have their own fewest edits: where both together are fewest, `a` is cut.
         let (left, right) = b.split_at(b.len() / 2);
         let begin = last_row(a, left, most);
-        let (a_reversed, right_reversed): (Vec<&T>, Vec<&T>) =
-            (a.iter().rev().collect(), right.iter().rev().collect());
+        let [a_reversed, right_reversed] =
+            [a, right].map(|part| part.iter().rev().copied().collect::<Vec<_>>());
         let mut end = last_row(&a_reversed, &right_reversed, most);
         end.reverse();
         let edits = begin.iter().zip(&end).map(|(before, after)| before + after);
@@ -60,27 +72,31 @@ impl EditCounts {
         self.align(&a[cut..], right, end[cut] as usize);
     }
 
-    /// As [`EditCounts::align`], through a matrix of the last step to every place.
-    fn trace<T: PartialEq>(&mut self, a: &[T], b: &[T], most: usize) {
-        let width = a.len().min(2 * most + 1);
-        let first = |j: usize| j.saturating_sub(most).max(1);
-        let mut steps = vec![Step::Both; width * b.len()];
-        sweep(a, b, most, |i, j, step| steps[(j - 1) * width + i - first(j)] = step);
+    /// As [`EditCounts::align`], backwards through a matrix that is kept.
+    fn trace(&mut self, a: &[u32], b: &[u32], most: usize) {
+        let (mut kept, mut rows) = (Vec::new(), Vec::with_capacity(b.len()));
+        Matrix::new(a, most).sweep(b, |first, blocks| {
+            rows.push((first, kept.len()));
+            kept.extend_from_slice(blocks);
+        });
+        rows.push((0, kept.len()));
+        // How much further the `i`th place of `a` is than the one before it, after `j` symbols of `b`.
+        let step = |i: usize, j: usize| {
+            let (first, start) = rows[j - 1];
+            let block = ((i - 1) / 64).checked_sub(first).and_then(|at| kept[start..rows[j].1].get(at));
+            block.map_or(0, |block| block.difference(i - 1))
+        };
         let (mut i, mut j) = (a.len(), b.len());
         while i > 0 && j > 0 {
-            match steps[(j - 1) * width + i - first(j)] {
-                Step::Delete => {
-                    self.deletions += 1;
-                    i -= 1;
-                }
-                Step::Insert => {
-                    self.insertions += 1;
-                    j -= 1;
-                }
-                Step::Both => {
-                    (i, j) = (i - 1, j - 1);
-                    *if a[i] == b[j] { &mut self.hits } else { &mut self.substitutions } += 1;
-                }
+            if step(i, j) > 0 {
+                self.deletions += 1;
+                i -= 1;
+            } else if j > 1 && step(i, j - 1) < 0 {
+                self.insertions += 1;
+                j -= 1;
+            } else {
+                (i, j) = (i - 1, j - 1);
+                *if a[i] == b[j] { &mut self.hits } else { &mut self.substitutions } += 1;
             }
         }
         self.deletions += i as u64;
@@ -94,31 +110,24 @@ const MATRIX_BYTES: usize = 1 << 20;
 /// Further than any distance.
 const FAR: u32 = u32::MAX / 4;
 
-/// How the last symbols are accounted for on a shortest way.
-#[derive(Clone, Copy)]
-enum Step {
-    Delete,
-    Insert,
-    Both,
-}
-
 /// What is between the ends that `a` and `b` share, and how many symbols those have.
-fn without_common_ends<'a, T: PartialEq>(a: &'a [T], b: &'a [T]) -> (&'a [T], &'a [T], usize) {
+fn without_common_ends<'a>(a: &'a [u32], b: &'a [u32]) -> (&'a [u32], &'a [u32], usize) {
     let prefix = a.iter().zip(b).take_while(|(one, other)| one == other).count();
     let (a, b) = (&a[prefix..], &b[prefix..]);
     let suffix = a.iter().rev().zip(b.iter().rev()).take_while(|(one, other)| one == other).count();
     (&a[..a.len() - suffix], &b[..b.len() - suffix], prefix + suffix)
 }
 
-/// The fewest edits from `a` to `b`, or, of short ones, a bound (Ukkonen, 1985: a band around the diagonal, doubled until it is wide enough).
-fn distance<T: PartialEq>(a: &[T], b: &[T]) -> usize {
+/// The fewest edits from `a` to `b`, or, of short ones, a bound (Ukkonen, 1985: a band around the diagonal, doubled until
+/// it is wide enough).
+fn distance(a: &[u32], b: &[u32]) -> usize {
     let (a, b, _) = without_common_ends(a, b);
     let most = a.len().max(b.len());
-    if most <= 64 {
+    if most <= 256 {
         // A bound will do where the matrix is small anyway.
         return most;
     }
-    let mut band = a.len().abs_diff(b.len()).max(31);
+    let mut band = a.len().abs_diff(b.len()).max(63);
     loop {
         let edits = last_row(a, b, band.min(most)).last().map_or(0, |edits| *edits as usize);
         if edits <= band || band >= most {
@@ -129,40 +138,127 @@ fn distance<T: PartialEq>(a: &[T], b: &[T]) -> usize {
 }
 
 /// The fewest edits from every beginning of `a` to `b`, right where they are at most `most`.
-fn last_row<T: PartialEq>(a: &[T], b: &[T], most: usize) -> Vec<u32> {
-    sweep(a, b, most, |_, _, _| {})
-}
-
-/// Goes through the matrix of distances between the first `i` symbols of `a` and the first `j` of `b`, both from 1, no
-/// further than `most` off the diagonal; gives its last row.
-fn sweep<T: PartialEq>(a: &[T], b: &[T], most: usize, mut each: impl FnMut(usize, usize, Step)) -> Vec<u32> {
-    let mut row: Vec<u32> = (0..=a.len()).map(|i| if i <= most { i as u32 } else { FAR }).collect();
-    for (j, symbol) in (1..).zip(b) {
-        let begin = usize::saturating_sub(j, most);
-        if begin > a.len() {
-            return vec![FAR; a.len() + 1];
-        }
-        // In the row before: the places to the left and above.
-        let mut diagonal = row[begin.saturating_sub(1)];
-        if begin == 0 {
-            row[0] = j as u32;
-        } else {
-            row[begin - 1] = FAR;
-        }
-        for i in begin.max(1)..=a.len().min(j + most) {
-            let (above, left) = (row[i], row[i - 1]);
-            let edits = (diagonal + u32::from(a[i - 1] != *symbol)).min(above + 1).min(left + 1);
-            let step = match (edits == left + 1, above + 1 == diagonal) {
-                (true, _) => Step::Delete,
-                (false, true) => Step::Insert,
-                (false, false) => Step::Both,
-            };
-            each(i, j, step);
-            row[i] = edits;
-            diagonal = above;
-        }
+fn last_row(a: &[u32], b: &[u32], most: usize) -> Vec<u32> {
+    let mut row = vec![FAR; a.len() + 1];
+    let (mut from, mut differences) = (0, Vec::new());
+    let edits = Matrix::new(a, most).sweep(b, |first, blocks| {
+        from = 64 * first;
+        differences.clear();
+        differences.extend_from_slice(blocks);
+    });
+    let Some(mut edits) = edits else { return row };
+    row[from] = edits;
+    for (at, place) in row[from + 1..].iter_mut().take(64 * differences.len()).enumerate() {
+        edits = edits.wrapping_add_signed(differences[at / 64].difference(at));
+        *place = edits;
     }
     row
+}
+
+/// Differences between the distances at 64 places and those at the places before them.
+#[derive(Debug, Clone, Copy)]
+struct Block {
+    /// Where it is 1.
+    plus: u64,
+    /// Where it is -1.
+    minus: u64,
+}
+
+impl Block {
+    fn difference(&self, place: usize) -> i32 {
+        let bit = |bits: u64| (bits >> (place % 64) & 1) as i32;
+        bit(self.plus) - bit(self.minus)
+    }
+}
+
+/// The distances between the beginnings of a sequence and those of another, in a band around the diagonal.
+struct Matrix {
+    /// Where in the sequence each symbol stands, ascending, symbol after symbol.
+    places: Vec<usize>,
+    /// Where in `places` each symbol begins.
+    begins: Vec<usize>,
+    blocks: Vec<Block>,
+    length: usize,
+    most: usize,
+}
+
+impl Matrix {
+    fn new(a: &[u32], most: usize) -> Self {
+        let symbols = a.iter().max().map_or(0, |symbol| *symbol as usize + 1);
+        let mut begins = vec![0; symbols + 2];
+        // Counted one too far, so that going through the sequence moves each beginning to where it belongs.
+        a.iter().for_each(|symbol| begins[*symbol as usize + 2] += 1);
+        for symbol in 2..begins.len() {
+            begins[symbol] += begins[symbol - 1];
+        }
+        let mut places = vec![0; a.len()];
+        for (at, symbol) in a.iter().enumerate() {
+            let next = &mut begins[*symbol as usize + 1];
+            places[*next] = at;
+            *next += 1;
+        }
+        // Before any symbol of the other sequence, every place is one deletion further than the one before. So is, as an
+        // upper bound, a place that the band did not reach yet.
+        let blocks = vec![Block { plus: u64::MAX, minus: 0 }; a.len().div_ceil(64)];
+        Self { places, begins, blocks, length: a.len(), most }
+    }
+
+    /// Where `symbol` stands among the places `range`.
+    fn places_of(&self, symbol: u32, range: Range<usize>) -> &[usize] {
+        let symbol = symbol as usize;
+        let (Some(begin), Some(end)) = (self.begins.get(symbol), self.begins.get(symbol + 1)) else {
+            return &[];
+        };
+        let places = &self.places[*begin..*end];
+        let places = &places[places.partition_point(|at| *at < range.start)..];
+        &places[..places.partition_point(|at| *at < range.end)]
+    }
+
+    /// Hands the first block of the band and the blocks from there to `each` after every symbol of `b`. Gives the
+    /// distance before the first of the last ones; `None` where the band left the matrix, or there is no symbol.
+    fn sweep(&mut self, b: &[u32], mut each: impl FnMut(usize, &[Block])) -> Option<u32> {
+        let (mut top, mut edits) = (0, 0);
+        let mut equal = vec![0; self.blocks.len()];
+        for (j, symbol) in (1..).zip(b) {
+            let first = usize::saturating_sub(j, self.most + 1) / 64;
+            let end = self.length.min(j + self.most).div_ceil(64);
+            if first >= end {
+                return None;
+            }
+            for block in &self.blocks[top..first] {
+                edits = edits + block.plus.count_ones() - block.minus.count_ones();
+            }
+            top = first;
+            edits += 1;
+            let places = self.places_of(*symbol, 64 * first..64 * end);
+            places.iter().for_each(|at| equal[at / 64] |= 1 << (at % 64));
+            // Above the band, as above the matrix, distances grow by one.
+            let mut carry = (1, 0);
+            for (block, equal) in self.blocks[first..end].iter_mut().zip(&mut equal[first..end]) {
+                carry = block.advance(*equal, carry);
+                *equal = 0;
+            }
+            each(first, &self.blocks[first..end]);
+        }
+        (!b.is_empty()).then_some(edits)
+    }
+}
+
+impl Block {
+    /// Goes on by a symbol that stands where `equal` is set. `carry`: whether the distance just before the first place
+    /// grows or falls by that; gives the same of the last place.
+    fn advance(&mut self, equal: u64, (grows, falls): (u64, u64)) -> (u64, u64) {
+        let matched = equal | falls;
+        let diagonal = ((matched & self.plus).wrapping_add(self.plus) ^ self.plus) | matched | self.minus;
+        let right_plus = self.minus | !(diagonal | self.plus);
+        let right_minus = diagonal & self.plus;
+        let carry = (right_plus >> 63, right_minus >> 63);
+        let right_plus = right_plus << 1 | grows;
+        let right_minus = right_minus << 1 | falls;
+        self.plus = right_minus | !(diagonal | right_plus);
+        self.minus = right_plus & diagonal;
+        carry
+    }
 }
 
 #[cfg(test)]
