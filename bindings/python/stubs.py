@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what is made of the registry: the type stubs of the learners' modules, and the page docs/learners.md.
+"""Writes what is made of the registries: the type stubs of the learners' modules, and the pages docs/learners.md,
+docs/metrics.md and docs/datasets.md.
 
     bindings/python/stubs.py [--check]
 
@@ -19,7 +20,7 @@ from opendr._registered import _DRAWING
 from opendr.engine.learners import BaseLearner
 
 STUBS = Path(__file__).parent / "python/opendr/perception"
-PAGE = Path(__file__).parents[2] / "docs/learners.md"
+DOCS = Path(__file__).parents[2] / "docs"
 PAGE_HEADER = """# Learners
 
 Made by `bindings/python/stubs.py` from the registry; do not edit. Names and parameters are the same on every surface:
@@ -27,6 +28,30 @@ Made by `bindings/python/stubs.py` from the registry; do not edit. Names and par
 
 Every Python class takes OpenDR's 13 arguments besides (`lr`, `iters`, `batch_size`, ..., `device`); those that train are
 kept for `fit`. A parameter marked *live* may change while the learner runs, and can be given to one call of `infer`.
+"""
+METRICS_HEADER = """# Metrics
+
+Made by `bindings/python/stubs.py` from the registry; do not edit. `opendr eval` measures a learner by the metric of its
+task, or by the one that `--metric` names; `opendr score` measures files of answers; `opendr.metrics.Metric` in Python and
+`opendr::metrics` in Rust count whatever they are given. The numbers stand under these names in the JSON of `opendr eval`
+(`scalars`), in the dictionary that `eval` returns in Python, and in the JSON of `opendr_eval` in C. A number that could
+not be computed (a class without objects) is left out. `<k>` in a name stands for something that varies.
+
+Besides, `tables` has numbers by class or sequence (`name`, `columns`, `rows` of label and numbers), `figures` what
+`--out` draws (curves with their points, confusion matrices with their counts), `headline` the number to quote, `worst`
+the samples that were answered worst, `problems` what was left out as broken.
+
+Where a metric ranks answers by their scores, `eval` lowers a learner's `threshold` to 0.01 unless you have set it.
+"""
+DATASETS_HEADER = """# Data sets
+
+Made by `bindings/python/stubs.py` from the registry; do not edit. `opendr data check|stats|view|convert` work on each,
+`opendr eval` on those whose targets the metric takes; in Python `ExternalDataset(path, "coco").open()` reads them. The
+format is recognised where none is named. Pictures and other bulky data are read when they are asked for.
+
+What is broken (a file that is cut off or missing, a class that there is none of, a box outside its picture, NaN) is told
+with file and line or key. The first ends the work; with `--skip-broken` it is left out, counted and listed.
+`opendr data check` lists everything.
 """
 TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": "list[Any]"}
 #: What stands for a datum in `infer`, besides an object of its class.
@@ -170,11 +195,33 @@ def page():
             outputs = ", ".join(f"`{output['name']}` ({output['type']})" for output in entry["outputs"])
             text += f"\n### {entry['class_name']}: `{entry['name']}`\n\n{entry['about']}\n\n"
             text += f"Takes {inputs}; gives {outputs}.\n\n"
-            text += "| parameter | values | default | |\n|---|---|---|---|\n"
+            text += PARAMS_HEADER
             text += "".join(map(param_row, entry["params"]))
             if entry["without_effect"]:
                 text += "\n| argument of OpenDR's class without effect here | why |\n|---|---|\n"
                 text += "".join(f"| `{name}` | {cell(reason)} |\n" for name, reason in entry["without_effect"])
+    return text
+
+
+PARAMS_HEADER = "| parameter | values | default | |\n|---|---|---|---|\n"
+
+
+def metrics_page():
+    text = METRICS_HEADER
+    for table in _opendr.metrics():
+        text += f"\n## `{table['name']}`\n\n{table['about']}\n\n"
+        text += f"Compares a {table['prediction']} with a {table['truth']}.\n\n| number | |\n|---|---|\n"
+        text += "".join(f"| `{name}` | {cell(doc)} |\n" for name, doc in table["numbers"])
+        if table["params"]:
+            text += "\n" + PARAMS_HEADER + "".join(map(param_row, table["params"]))
+    return text
+
+
+def datasets_page():
+    text = DATASETS_HEADER + "\n| format | also | targets | files |\n|---|---|---|---|\n"
+    for table in _opendr.formats():
+        also = ", ".join(f"`{alias}`" for alias in table["aliases"])
+        text += f"| `{table['name']}`: {cell(table['about'])} | {also} | {', '.join(table['targets'])} | {cell(table['layout'])} |\n"
     return text
 
 
@@ -187,7 +234,8 @@ def stubs():
 
 def main():
     stale = False
-    files = {PAGE: page(), **{STUBS / name: text for name, text in stubs().items()}}
+    pages = {"learners.md": page(), "metrics.md": metrics_page(), "datasets.md": datasets_page()}
+    files = {**{DOCS / name: text for name, text in pages.items()}, **{STUBS / name: text for name, text in stubs().items()}}
     for path, text in files.items():
         there = path.read_text() if path.is_file() else ""
         if "--check" not in sys.argv[1:]:

@@ -9,7 +9,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::error::ToPython;
-use crate::param::{params_from_python, python_from_param};
+use crate::param::params_from_python;
+use crate::registry::{field, rows};
 use crate::target::target_from_python;
 
 /// An accumulator. Calls from several threads wait for each other.
@@ -103,11 +104,8 @@ pub fn metrics(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
         table.set_item("about", entry.about)?;
         table.set_item("prediction", entry.prediction.name())?;
         table.set_item("truth", entry.truth.name())?;
-        let params = PyDict::new(py);
-        for field in entry.params {
-            params.set_item(field.name, (python_from_param(py, &field.default.value())?, field.doc))?;
-        }
-        table.set_item("params", params)?;
+        table.set_item("numbers", entry.numbers.to_vec())?;
+        table.set_item("params", rows(py, entry.params, field)?)?;
         Ok(table)
     });
     PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)

@@ -34,7 +34,8 @@ fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     Ok(table)
 }
 
-fn rows<'py, T>(
+/// A dictionary for each of `rows`.
+pub fn rows<'py, T>(
     py: Python<'py>,
     rows: &[T],
     row: fn(&Bound<'py, PyDict>, &T) -> PyResult<()>,
@@ -46,7 +47,8 @@ fn rows<'py, T>(
     rows.iter().map(dict).collect()
 }
 
-fn field(row: &Bound<'_, PyDict>, field: &Field) -> PyResult<()> {
+/// What there is to know of a parameter.
+pub fn field(row: &Bound<'_, PyDict>, field: &Field) -> PyResult<()> {
     let kind = match field.kind {
         ParamKind::Float => "float",
         ParamKind::Int => "int",

@@ -10,8 +10,8 @@ use std::error::Error;
 use std::io::{self, BufRead, Write};
 
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Result, Value};
-use opendr_metrics::{Report, find};
+use opendr_engine::{Error as Failure, Result, Value};
+use opendr_metrics::{Report, find, undocumented};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -68,5 +68,9 @@ fn compute(case: &Case) -> Result<Report> {
     for part in parts.into_iter().rev() {
         whole.merge(part)?;
     }
-    Ok(whole.finish())
+    let report = whole.finish();
+    match &undocumented(entry, &report)[..] {
+        [] => Ok(report),
+        keys => Err(Failure::internal(format!("{} does not document {}", entry.name, keys.join(", ")))),
+    }
 }

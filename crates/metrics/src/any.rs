@@ -73,6 +73,8 @@ pub struct MetricEntry {
     pub name: &'static str,
     /// In one line.
     pub about: &'static str,
+    /// As [`Metric::NUMBERS`].
+    pub numbers: &'static [(&'static str, &'static str)],
     /// Its parameters.
     pub params: &'static [Field],
     /// As [`Metric::RANKS`].
@@ -90,6 +92,7 @@ impl MetricEntry {
         Self {
             name: M::NAME,
             about: M::ABOUT,
+            numbers: M::NUMBERS,
             params: M::Params::FIELDS,
             ranks: M::RANKS,
             prediction: M::Prediction::TYPE,

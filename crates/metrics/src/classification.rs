@@ -164,6 +164,20 @@ impl Metric for Classification {
     const NAME: &'static str = "classification";
     const ABOUT: &'static str =
         "accuracy, top-k, precision, recall, F1 and confusion matrix as scikit-learn, calibration error";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("accuracy", "Share of right answers."),
+        ("balanced_accuracy", "Mean recall over the classes that occur."),
+        ("top_<k>_accuracy", "Share of samples whose class is among the k best."),
+        ("precision_<average>", "Precision by `micro`, `macro` or `weighted` average over classes."),
+        ("recall_<average>", "Recall, averaged the same way."),
+        ("f1_<average>", "F1, averaged the same way."),
+        (
+            "expected_calibration_error",
+            "Mean distance of confidence and accuracy over 15 bins of confidence, weighted by samples.",
+        ),
+        ("maximum_calibration_error", "The largest of these distances."),
+        ("samples", "How many were counted."),
+    ];
     type Params = ClassificationParams;
     type Prediction = Category;
     type Truth = Category;

@@ -247,6 +247,27 @@ impl ClearMot {
 impl Metric for ClearMot {
     const NAME: &'static str = "clear_mot";
     const ABOUT: &'static str = "MOTA, MOTP, switches and fragmentations, as py-motmetrics 1.4";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("mota", "1 - (misses + false positives + switches) / objects."),
+        ("motp", "Mean distance (1 - IoU) of matches: 0 is best."),
+        ("precision", "Matches among predictions."),
+        ("recall", "Matches among objects."),
+        ("frames", "Frames that were counted."),
+        ("objects", "Boxes of objects."),
+        ("predictions", "Boxes of tracks."),
+        ("unique_objects", "Objects."),
+        ("matches", "Boxes that match and keep their track."),
+        ("switches", "Matches by another track than before."),
+        ("transfers", "Tracks that go over to another object."),
+        ("ascends", "Switches to a track that is new."),
+        ("migrates", "Transfers to an object that is new."),
+        ("false_positives", "Boxes of tracks without an object."),
+        ("misses", "Boxes of objects without a track."),
+        ("fragmentations", "Times that an object is lost and found again."),
+        ("mostly_tracked", "Objects matched in 80 % of their frames or more."),
+        ("partially_tracked", "Objects matched in 20 to 80 %."),
+        ("mostly_lost", "Objects matched in less than 20 %."),
+    ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
     type Truth = TrackingAnnotationList;

@@ -181,6 +181,18 @@ impl Metric for Depth {
     const NAME: &'static str = "depth";
     const ABOUT: &'static str =
         "relative and root errors and delta of depth; end-point error, bad pixels and D1 of disparity";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("abs_rel", "Mean of |answer - truth| / truth."),
+        ("sq_rel", "Mean of (answer - truth)^2 / truth, metres."),
+        ("rmse", "Root mean square error, metres; of each picture, then averaged."),
+        ("rmse_log", "The same of logarithms."),
+        ("silog", "Scale-invariant error of logarithms (Eigen et al. 2014)."),
+        ("delta<n>", "Share of pixels whose ratio to the truth is below 1.25^n."),
+        ("end_point_error", "Mean distance in pixels, of disparities."),
+        ("bad_<n>", "Share of pixels that are more than n pixels off."),
+        ("d1", "Share of pixels more than 3 pixels and 5 % off (KITTI)."),
+        ("pictures", "How many were counted."),
+    ];
     type Params = DepthParams;
     type Prediction = Heatmap;
     type Truth = Heatmap;

@@ -278,6 +278,17 @@ impl Hota {
 impl Metric for Hota {
     const NAME: &'static str = "hota";
     const ABOUT: &'static str = "HOTA, DetA, AssA and LocA, as TrackEval 1.3";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("hota", "Geometric mean of detection and association, mean over thresholds .05 to .95."),
+        ("deta", "Detection accuracy."),
+        ("assa", "Association accuracy."),
+        ("loca", "Accuracy of places: mean IoU of matches."),
+        ("detre", "Recall of detection."),
+        ("detpr", "Precision of detection."),
+        ("assre", "Recall of association."),
+        ("asspr", "Precision of association."),
+        ("owta", "Geometric mean of recall of detection and association: false positives do not count."),
+    ];
     type Params = HotaParams;
     type Prediction = TrackingAnnotationList;
     type Truth = TrackingAnnotationList;

@@ -138,6 +138,14 @@ impl Identity {
 impl Metric for Identity {
     const NAME: &'static str = "identity";
     const ABOUT: &'static str = "IDF1, IDP and IDR, as py-motmetrics 1.4";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("idf1", "F1 of the best one-to-one match of whole tracks."),
+        ("idp", "Its precision."),
+        ("idr", "Its recall."),
+        ("idtp", "Boxes that are right by that match."),
+        ("idfp", "Predicted boxes that are not."),
+        ("idfn", "Boxes of objects that are not."),
+    ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
     type Truth = TrackingAnnotationList;

@@ -196,6 +196,15 @@ fn places_like(wanted: &Pose, pose: &Pose) -> Vec<Option<[f64; 2]>> {
 impl Metric for Keypoints {
     const NAME: &'static str = "keypoints";
     const ABOUT: &'static str = "PCK, PCKh and their area, NME and EPE of key points, as MMPose";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("pck", "Share of joints within the threshold, mean over joints."),
+        ("pck_pooled", "The same over all joints together."),
+        ("auc", "Area under the share of right joints by threshold."),
+        ("nme", "Mean distance in sizes of the pose."),
+        ("epe", "Mean distance in pixels."),
+        ("poses", "Poses that were counted."),
+        ("poses_without_size", "Poses that have no size to measure by."),
+    ];
     type Params = KeypointsParams;
     type Prediction = PoseList;
     type Truth = PoseList;

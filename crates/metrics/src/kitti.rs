@@ -60,6 +60,13 @@ impl Metric for Kitti {
     const NAME: &'static str = "kitti_detection";
     const ABOUT: &'static str =
         "KITTI's AP of boxes in picture, from above and in space, and AOS, as its development kit";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        (
+            "map_<kind>_<difficulty>_<points>",
+            "Mean over the classes: `2d`, `bev`, `3d` or `aos`; `easy`, `moderate` or `hard`; `r11` or `r40` points of recall, and `_loose` where overlaps are the loose ones.",
+        ),
+        ("<class>_<kind>_<difficulty>_<points>", "The same of one class: `car`, `pedestrian`, `cyclist`."),
+    ];
     const RANKS: bool = true;
     type Params = NoParams;
     type Prediction = BoundingBox3DList;

@@ -16,6 +16,8 @@ pub trait Metric: Send + Sized + 'static {
     const NAME: &'static str;
     /// In one line, with the reference implementation that it equals.
     const ABOUT: &'static str;
+    /// The names of its numbers and what they are; `<k>` in a name stands for something that varies.
+    const NUMBERS: &'static [(&'static str, &'static str)];
     /// What a user may set.
     type Params: Params;
     /// What a learner answers.

@@ -174,6 +174,14 @@ fn count_picture(found: &PanopticMap<'_>, truth: &PanopticMap<'_>) -> Result<BTr
 impl Metric for Panoptic {
     const NAME: &'static str = "panoptic";
     const ABOUT: &'static str = "PQ, SQ and RQ of things, stuff and all, as COCO's panopticapi";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("pq", "Panoptic quality, mean over the classes that occur."),
+        ("sq", "Quality of segments: mean IoU of matches."),
+        ("rq", "Quality of recognition: F1 of segments."),
+        ("pq_<kind>", "The same over countable classes (`things`) or the others (`stuff`)."),
+        ("sq_<kind>", "The same of segments."),
+        ("rq_<kind>", "The same of recognition."),
+    ];
     type Params = PanopticParams;
     type Prediction = Heatmap;
     type Truth = Heatmap;

@@ -122,6 +122,14 @@ const MEASURES: [(&str, Measure); 5] = [
 impl Metric for Regression {
     const NAME: &'static str = "regression";
     const ABOUT: &'static str = "MAE, RMSE and R2 as scikit-learn, concordance correlation coefficient";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("ccc", "Concordance correlation."),
+        ("correlation", "Pearson's correlation."),
+        ("r2", "Coefficient of determination."),
+        ("mae", "Mean absolute error."),
+        ("rmse", "Root mean square error."),
+        ("samples", "How many were counted."),
+    ];
     type Params = NoParams;
     type Prediction = Vector;
     type Truth = Vector;

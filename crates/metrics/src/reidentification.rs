@@ -180,6 +180,12 @@ impl Reidentification {
 impl Metric for Reidentification {
     const NAME: &'static str = "reidentification";
     const ABOUT: &'static str = "mAP and CMC of retrieval as on Market-1501";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("map", "Mean average precision over queries."),
+        ("rank_<k>", "Share of queries with a match among the k best."),
+        ("queries", "Queries that have a match in the gallery."),
+        ("queries_without_match", "Queries that have none, which do not count."),
+    ];
     type Params = ReidentificationParams;
     type Prediction = Vector;
     type Truth = Category;

@@ -199,6 +199,14 @@ impl Roc {
 impl Metric for Roc {
     const NAME: &'static str = "roc";
     const ABOUT: &'static str = "ROC and precision-recall of one class against the others, as scikit-learn";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("roc_auc", "Area under the ROC curve."),
+        ("average_precision", "Area under precision over recall, by steps."),
+        ("best_f1", "The best F1 of any threshold."),
+        ("best_f1_threshold", "That threshold."),
+        ("positives", "Samples of the class that is looked for."),
+        ("negatives", "All others."),
+    ];
     type Params = RocParams;
     type Prediction = Category;
     type Truth = Category;

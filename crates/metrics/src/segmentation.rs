@@ -246,6 +246,13 @@ fn labels_of(map: &Heatmap) -> Result<(Cow<'_, [u32]>, &[usize])> {
 impl Metric for Segmentation {
     const NAME: &'static str = "segmentation";
     const ABOUT: &'static str = "mean IoU, IoU of classes and pixel accuracies of label maps";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("miou", "Mean over classes of intersection over union."),
+        ("pixel_accuracy", "Share of right pixels."),
+        ("mean_accuracy", "Mean over classes of the share of right pixels."),
+        ("frequency_weighted_iou", "Intersection over union, weighted by pixels of the class."),
+        ("pixels", "Pixels that were counted."),
+    ];
     type Params = SegmentationParams;
     type Prediction = Heatmap;
     type Truth = Heatmap;

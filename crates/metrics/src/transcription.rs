@@ -153,6 +153,17 @@ impl EditCounts {
 impl Metric for Transcription {
     const NAME: &'static str = "transcription";
     const ABOUT: &'static str = "WER, CER, MER and WIL of transcriptions, as jiwer";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("wer", "Word error rate: (substitutions + deletions + insertions) / words of the truth."),
+        ("cer", "The same of characters."),
+        ("mer", "Match error rate: errors / all that was aligned."),
+        ("wil", "Word information lost."),
+        ("wip", "Word information preserved."),
+        ("utterance_error_rate", "Share of utterances with any error."),
+        ("utterances", "How many were counted."),
+        ("word_<count>", "Hits, substitutions, deletions, insertions of words."),
+        ("character_<count>", "The same of characters."),
+    ];
     type Params = TranscriptionParams;
     type Prediction = BaseTranscription;
     type Truth = BaseTranscription;

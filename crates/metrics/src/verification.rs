@@ -141,6 +141,20 @@ impl RocCurve {
 impl Metric for Verification {
     const NAME: &'static str = "verification";
     const ABOUT: &'static str = "accuracy by cross-validation as LFW, ROC, TAR at FAR and EER of pairs";
+    const NUMBERS: &'static [(&'static str, &'static str)] = &[
+        ("accuracy", "Mean over folds of the accuracy at the best threshold of the other folds, as LFW."),
+        ("accuracy_standard_error", "Its standard error over the folds."),
+        ("best_accuracy", "Accuracy at the best threshold of all."),
+        ("best_threshold", "That threshold."),
+        ("roc_auc", "Area under the ROC curve."),
+        ("equal_error_rate", "Where as many are accepted as refused wrongly."),
+        (
+            "tar_at_far_<rate>",
+            "Share of right pairs accepted where the rate of wrong ones accepted is as given.",
+        ),
+        ("same", "Pairs of the same."),
+        ("different", "Pairs of different ones."),
+    ];
     type Params = VerificationParams;
     type Prediction = Category;
     type Truth = Category;

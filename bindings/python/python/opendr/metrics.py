@@ -27,8 +27,8 @@ def names() -> list[str]:
 
 
 def tables() -> list[dict[str, Any]]:
-    """What there is to know of each: ``name``, ``about``, the classes of ``prediction`` and ``truth``, and ``params``,
-    each with its default and what it is."""
+    """What there is to know of each: ``name``, ``about``, the classes of ``prediction`` and ``truth``, ``numbers`` (name
+    and meaning), and ``params``."""
     return _opendr.metrics()
 
 

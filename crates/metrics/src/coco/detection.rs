@@ -35,6 +35,7 @@ pub struct CocoDetection {
 impl Metric for CocoDetection {
     const NAME: &'static str = "coco_detection";
     const ABOUT: &'static str = "average precision and recall of boxes, as pycocotools";
+    const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
     const RANKS: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;

@@ -34,6 +34,7 @@ pub struct CocoKeypoints {
 impl Metric for CocoKeypoints {
     const NAME: &'static str = "coco_keypoints";
     const ABOUT: &'static str = "average precision and recall of persons by their key points, as pycocotools";
+    const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
     const RANKS: bool = true;
     type Params = CocoKeypointsParams;
     type Prediction = PoseList;

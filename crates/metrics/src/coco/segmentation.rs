@@ -24,6 +24,7 @@ pub struct CocoSegmentation {
 impl Metric for CocoSegmentation {
     const NAME: &'static str = "coco_segmentation";
     const ABOUT: &'static str = "average precision and recall of masks, as pycocotools";
+    const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
     const RANKS: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;

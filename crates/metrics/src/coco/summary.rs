@@ -4,6 +4,17 @@ use super::curve::Curve;
 use super::protocol::{Protocol, RECALLS, THRESHOLDS, recalls};
 use crate::{Curves, Figure, Line, Report, Table};
 
+/// What the numbers are.
+pub const NUMBERS: &[(&str, &str)] = &[
+    ("map", "Average precision, mean over IoU .50 to .95 and classes."),
+    ("map50", "At IoU .50 alone."),
+    ("map75", "At IoU .75 alone."),
+    ("map_<area>", "Of objects `small` (below 32x32 pixels), `medium` (below 96x96) or `large`."),
+    ("mar", "Average recall with all answers, mean over IoU .50 to .95 and classes."),
+    ("mar<n>", "With the n best answers a picture; of key points, at similarity .50 and .75 alone."),
+    ("mar_<area>", "Of objects of that size."),
+];
+
 /// What came out for one class.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ClassOutcome {
