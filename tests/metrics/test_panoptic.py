@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hotcoco.panoptic import pq_compute
 from PIL import Image
+from pycocotools import mask
 
 DIVISOR = 1000
 VOID = 255
@@ -158,6 +159,35 @@ def test_random_pictures(compute, tmp_path, seed):
     assert report == whole
     assert_equals(report, pictures, things, tmp_path)
     assert 0.1 < report["scalars"]["pq"] < 0.9
+
+
+def masks_of(labels, things, is_truth):
+    """The same segments as boxes with masks."""
+    ids, table = segments_of(labels, things, is_truth)
+    boxes = []
+    for row in table:
+        packed = mask.encode(np.asfortranarray(ids == row["id"], dtype=np.uint8))
+        runs = {"size": packed["size"], "counts": packed["counts"].decode()}
+        segment = {"segmentation": runs, "area": row["area"], "iscrowd": bool(row["iscrowd"])}
+        place = {"left": 0, "top": 0, "width": 1, "height": 1}
+        boxes.append({"name": row["category_id"], **place, "segment": segment})
+    return {"type": "BoundingBoxList", "boxes": boxes}
+
+
+def test_masks_are_as_good_as_labels(compute):
+    random = np.random.default_rng(9)
+    things, stuff = [1, 2, 3], [20, 21]
+    truths = [random_truth(random, things, stuff) for _ in range(20)]
+    pictures = [(random_answer(random, truth, things, stuff), truth) for truth in truths]
+    pictures[3][0][:] = VOID * DIVISOR
+    of_labels = case(pictures, things)
+    samples = [
+        {"prediction": masks_of(found, things, False), "truth": masks_of(truth, things, True)}
+        for found, truth in pictures
+    ]
+    report, wanted = compute({**of_labels, "samples": samples}, of_labels)
+    assert report == wanted
+    assert report["scalars"]["pq"] > 0.1
 
 
 def coco_pictures(folder, step):

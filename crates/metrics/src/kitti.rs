@@ -15,7 +15,7 @@ use opendr_engine::Result;
 use opendr_engine::params::NoParams;
 use opendr_engine::target::BoundingBox3DList;
 
-use crate::{Metric, Report, Table};
+use crate::{Curves, Figure, Line, Metric, Report, Table};
 
 pub use average_precision::KittiScore;
 pub use object::KittiObject;
@@ -106,7 +106,27 @@ impl Metric for Kitti {
             report.statistics.set(key, values.iter().sum::<f64>() / values.len() as f64);
         }
         report.tables.push(table(&scores));
+        report.figures.push(Figure::Curves(precision_over_recall(&scores)));
         report
+    }
+}
+
+/// A line for every class and kind of overlap, at moderate difficulty.
+fn precision_over_recall(scores: &[KittiScore]) -> Curves {
+    let usual =
+        scores.iter().filter(|score| score.difficulty == KittiDifficulty::Moderate && !score.is_loose);
+    let lines = usual.map(|score| {
+        let steps = (score.precision.len() - 1) as f64;
+        let point = |(at, precision): (usize, &f64)| [at as f64 / steps, *precision];
+        let label = format!("{} {}", score.class.name(), score.overlap.name());
+        Line { label, points: score.precision.iter().enumerate().map(point).collect() }
+    });
+    Curves {
+        name: "precision_recall".to_owned(),
+        title: "Precision over recall, moderate difficulty".to_owned(),
+        x: "recall".to_owned(),
+        y: "precision".to_owned(),
+        lines: lines.collect(),
     }
 }
 

@@ -3,13 +3,15 @@
 //! A. Kirillov, K. He, R. Girshick, C. Rother, P. Dollár, "Panoptic segmentation", CVPR 2019. Void and crowd are treated
 //! as COCO's `panopticapi` treats them.
 
+mod masks;
 mod segments;
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, Result, ValueRef};
 
 use crate::{Metric, Report, Table};
 
@@ -20,12 +22,15 @@ use segments::Overlaps;
 /// One: an intersection over union above one half is a whole number of these.
 const IOU_UNITS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
 
+/// A label is this times its class, plus the number of the object in its class: Cityscapes' way.
+pub const LABEL_DIVISOR: u32 = 1000;
+
+/// The label of a pixel of no class, whatever [`PanopticParams::ignore`] is.
+const VOID_LABEL: u32 = u32::MAX;
+
 /// What [`Panoptic`] is set by.
 #[derive(Debug, Clone, Params)]
 pub struct PanopticParams {
-    /// A label is this times its class, plus the number of the object in its class.
-    #[param(default = 1000, range = 1..=1_000_000_000_u32)]
-    pub label_divisor: u32,
     /// Classes whose objects are told apart; in the truth their object 0 is a crowd. All others are stuff.
     #[param(default = Vec::new())]
     pub things: Vec<u32>,
@@ -85,6 +90,9 @@ impl PanopticCounts {
 }
 
 /// Panoptic quality over pictures.
+///
+/// As values, a picture is a map of labels, [`LABEL_DIVISOR`] times the class plus the number of the object; or boxes
+/// with masks by runs, one per segment, stuff included.
 #[derive(Debug, Clone)]
 pub struct Panoptic {
     params: PanopticParams,
@@ -115,15 +123,15 @@ impl Panoptic {
 
     /// Numbers of segments in place of labels, and the segments' table.
     fn segments_from_labels(&self, labels: &[u32], is_truth: bool) -> (Vec<u32>, Vec<PanopticSegment>) {
-        let PanopticParams { label_divisor, things, ignore } = &self.params;
+        let PanopticParams { things, ignore } = &self.params;
         let mut ids = BTreeMap::new();
         let mut segments = Vec::new();
         let (mut last, mut last_id) = (None, 0);
         let map = labels.iter().map(|label| {
             if last != Some(*label) {
                 last = Some(*label);
-                let (class, object) = (label / label_divisor, label % label_divisor);
-                last_id = match *ignore == Some(class) {
+                let (class, object) = (label / LABEL_DIVISOR, label % LABEL_DIVISOR);
+                last_id = match *label == VOID_LABEL || *ignore == Some(class) {
                     true => 0,
                     false => *ids.entry(*label).or_insert_with(|| {
                         let id = segments.len() as u32 + 1;
@@ -196,7 +204,10 @@ impl Metric for Panoptic {
         else {
             return Err(Error::invalid_input("a map of scores has no segments; give a map of labels"));
         };
-        if prediction.shape() != truth.shape() {
+        // An answer without segments may not know its size.
+        let nothing = vec![VOID_LABEL; if found.is_empty() { wanted.len() } else { 0 }];
+        let found = if found.is_empty() { &nothing } else { found.as_slice() };
+        if prediction.shape() != truth.shape() && nothing.is_empty() {
             return Err(Error::invalid_input(format!(
                 "the answer's shape is {:?}, the truth's {:?}; give maps of one size",
                 prediction.shape(),
@@ -223,6 +234,21 @@ impl Metric for Panoptic {
         }
         if self.names.is_empty() {
             self.names = other.names;
+        }
+    }
+
+    fn prediction(value: ValueRef<'_>) -> Option<Cow<'_, Heatmap>> {
+        match value {
+            ValueRef::Heatmap(map) => Some(Cow::Borrowed(map)),
+            ValueRef::BoundingBoxList(list) => masks::labels_from_masks(list, false).map(Cow::Owned),
+            _ => None,
+        }
+    }
+
+    fn truth(value: ValueRef<'_>) -> Option<Cow<'_, Heatmap>> {
+        match value {
+            ValueRef::BoundingBoxList(list) => masks::labels_from_masks(list, true).map(Cow::Owned),
+            _ => Self::prediction(value),
         }
     }
 

@@ -1,3 +1,5 @@
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Rle, Segment, Segmentation};
+
 use super::*;
 
 const PERSON: u32 = 1;
@@ -8,7 +10,7 @@ fn segment(id: u32, class: u32) -> PanopticSegment {
 }
 
 fn new() -> Panoptic {
-    let params = PanopticParams { label_divisor: 1000, things: vec![PERSON], ignore: Some(255) };
+    let params = PanopticParams { things: vec![PERSON], ignore: Some(255) };
     Panoptic::new(&params).unwrap()
 }
 
@@ -150,4 +152,37 @@ fn what_cannot_be_counted_is_refused() {
             .unwrap(),
         1.0
     );
+}
+
+/// Masks are painted as labels: the first of a list on top, crowds of the truth as object 0, void where there is none.
+#[test]
+fn masks_as_labels() {
+    let masked = |class: i64, counts: &[u32], iscrowd| {
+        let rle = Rle::new(2, 3, counts.to_vec()).unwrap();
+        let segment = Segment { segmentation: Segmentation::Rle(rle), area: 0.0, iscrowd };
+        BoundingBox { segment: Some(Box::new(segment)), ..BoundingBox::new(class, 0.0, 0.0, 1.0, 1.0, 1.0) }
+    };
+    let list = BoundingBoxList::from(vec![
+        masked(1, &[0, 1, 5], false),
+        masked(7, &[0, 2, 4], false),
+        masked(1, &[4, 2], true),
+        masked(1, &[3, 1, 2], false),
+    ]);
+    let labels = |is_truth| {
+        let map = masks::labels_from_masks(&list, is_truth).unwrap();
+        let HeatmapValues::Labels(labels) = map.values() else { panic!("{map}") };
+        assert_eq!(map.shape(), [2, 3]);
+        labels.to_vec()
+    };
+    assert_eq!(labels(true), [1001, VOID_LABEL, 1000, 7001, 1002, 1000]);
+    assert_eq!(labels(false), [1001, VOID_LABEL, 1002, 7001, 1003, 1002]);
+    let truth = Panoptic::truth(ValueRef::BoundingBoxList(&list)).unwrap();
+    let mut metric = new();
+    assert_eq!(metric.update(0, &truth, &truth).unwrap(), 1.0);
+    assert_eq!(metric.update(1, &Heatmap::default(), &truth).unwrap(), 0.0);
+    assert_eq!(metric.counts()[&PERSON].false_negatives, 2);
+    let without_mask = BoundingBoxList::from(vec![BoundingBox::default()]);
+    assert!(masks::labels_from_masks(&without_mask, true).is_none());
+    let of_no_class = BoundingBoxList::from(vec![masked(-1, &[0, 6], false)]);
+    assert!(masks::labels_from_masks(&of_no_class, true).is_none());
 }
