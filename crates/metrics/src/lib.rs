@@ -51,7 +51,6 @@ pub use kitti::{Kitti, KittiClass, KittiDifficulty, KittiObject, KittiOverlap, K
 pub use metric::Metric;
 pub use mot_challenge::MotRules;
 pub use numbers::undocumented;
-pub use panoptic::{Panoptic, PanopticCounts, PanopticMap, PanopticParams, PanopticSegment};
 pub use panoptic::{LABEL_DIVISOR, Panoptic, PanopticCounts, PanopticMap, PanopticParams, PanopticSegment};
 pub use precision_recall::{ClassCounts, ClassScore, ClassScores, PrecisionRecall, ZeroDivision};
 pub use registry::{find, metrics};
