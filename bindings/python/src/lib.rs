@@ -40,6 +40,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(registry::entries, module)?,
         wrap_pyfunction!(dataset::formats, module)?,
         wrap_pyfunction!(metric::metrics, module)?,
+        wrap_pyfunction!(metric::metric_of, module)?,
         wrap_pyfunction!(plugin::register, module)?,
         wrap_pyfunction!(plugin::check_learner, module)?,
         wrap_pyfunction!(command::main, module)?,

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use opendr::Error;
+use opendr::{Error, Task};
 use opendr::metrics::{AnyMetric, MetricEntry, find};
 use opendr::params::ParamMap;
 use pyo3::prelude::*;
@@ -93,6 +93,12 @@ impl Metric {
     fn lock(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// The name of a task's metric.
+#[pyfunction]
+pub fn metric_of(py: Python<'_>, task: &str) -> PyResult<&'static str> {
+    task.parse::<Task>().and_then(opendr::evaluation::metric_of).to_python(py)
 }
 
 /// The metrics that there are.

@@ -11,6 +11,7 @@ import opendr
 import pytest
 from opendr.engine.data import Image
 from opendr.engine.datasets import DatasetIterator, ExternalDataset
+from opendr.engine.learners import Learner
 from opendr.engine.target import BoundingBox, BoundingBoxList, Category
 from opendr.metrics import Metric, names, tables
 
@@ -148,6 +149,21 @@ def test_eval_leaves_out_what_is_broken(detector, picture):
     assert "on fire" in report["problems"][0]["message"]
 
 
+def test_eval_of_a_learner_in_python(picture):
+    class Guess(Learner):
+        """Finds a person in every picture."""
+
+        name = "guess"
+        task = "object_detection_2d"
+
+        def infer(self, image: Image) -> BoundingBoxList:
+            return BoundingBoxList([BoundingBox(name=1, left=20, top=10, width=450, height=500, score=0.5)])
+
+    # One of three pictures has no person, so half of what is found last is wrong; cats are not found.
+    numbers = Guess().eval(Astronauts(picture))
+    assert 0.3 < numbers["map50"] < 0.5
+
+
 def test_eval_refuses_what_does_not_fit(detector, tmp_path):
     with pytest.raises(TypeError, match="ExternalDataset"):
         detector.eval("coco")
@@ -157,5 +173,5 @@ def test_eval_refuses_what_does_not_fit(detector, tmp_path):
         detector.eval(ExternalDataset(tmp_path, "no such format"))
     with pytest.raises(ValueError):
         detector.eval(ExternalDataset(tmp_path, "auto"))
-    with pytest.raises(opendr.InvalidInput):
-        detector.eval([(Image(np.zeros((3, 8, 8), np.uint8)), Category(1))])
+    with pytest.raises(ValueError, match="BoundingBoxList, not a Category"):
+        detector.eval([(Image(np.zeros((3, 64, 64), np.uint8)), Category(1))])

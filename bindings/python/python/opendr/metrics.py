@@ -13,12 +13,15 @@ Numbers equal those of the reference tools that docs/metrics.md names.
 from __future__ import annotations
 
 import json
-from typing import Any, Optional
+from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from opendr import _opendr
 from opendr.engine.target import BaseTarget
 
-__all__ = ["Metric", "names", "tables"]
+if TYPE_CHECKING:
+    from opendr.engine.datasets import DatasetIterator
+
+__all__ = ["Metric", "evaluate", "names", "tables"]
 
 
 def names() -> list[str]:
@@ -80,3 +83,22 @@ class Metric:
         """The numbers by name, and under ``"report"`` all there is: tables and figures."""
         report = json.loads(self._metric.finish())
         return {**report.get("scalars", {}), "report": report}
+
+
+def evaluate(infer: Callable[..., Any], dataset: DatasetIterator, metric: str, **params: Any) -> dict[str, Any]:
+    """Measures any function on a data set.
+
+    Args:
+        infer: From the data of a sample to a target.
+        dataset: Pairs of datum and target; a tuple of data for a function of several.
+        metric: One of ``names()``.
+        params: Parameters of the metric.
+
+    Returns:
+        As :meth:`Metric.result`.
+    """
+    counted = Metric(metric, **params)
+    for at in range(len(dataset)):
+        data, truth = dataset[at]
+        counted.update(infer(*data) if isinstance(data, tuple) else infer(data), truth, at=at)
+    return counted.result()

@@ -98,13 +98,13 @@ class ExternalDataset(Dataset):
         self._dataset_type = dataset_type
 
     def open(
-        self, split: Optional[str] = None, target: Optional[type[BaseTarget]] = None, skip_broken: bool = False
+        self, split: Optional[str] = None, target: Union[None, str, type[BaseTarget]] = None, skip_broken: bool = False
     ) -> OpenDataset:
         """Opens it, to read its samples one by one; pictures are read when they are asked for.
 
         Args:
             split: The part, as the data set calls it: ``"val2017"``, ``"train"``, ...
-            target: The class of the targets that are wanted, where annotations can be read as several, e.g.
+            target: The class of the targets that are wanted, or its name, where annotations can be read as several, e.g.
                 ``PoseList`` of COCO.
             skip_broken: Whether what is broken is left out, and listed in ``problems``.
 
@@ -128,12 +128,12 @@ class OpenDataset(DatasetIterator):
         self,
         dataset: ExternalDataset,
         split: Optional[str] = None,
-        target: Optional[type[BaseTarget]] = None,
+        target: Union[None, str, type[BaseTarget]] = None,
         skip_broken: bool = False,
     ) -> None:
         from opendr._opendr import Dataset as Native
 
-        kind = None if target is None else target.__name__
+        kind = target.__name__ if isinstance(target, type) else target
         self._native = Native(dataset.path, dataset.dataset_type, split, kind, skip_broken)
 
     def __getitem__(self, idx: int) -> Any:

@@ -205,15 +205,29 @@ class Learner(BaseLearner):
         self._cannot("fit")
 
     def eval(self, dataset: Dataset) -> dict[str, Any]:
-        """Measures on ``dataset``.
+        """Measures on ``dataset``, a ``DatasetIterator`` of pairs of datum and target, by the metric of the learner's task.
 
         Returns:
-            Statistics of the answers.
+            The numbers by name, and under ``"report"`` all there is.
 
         Raises:
-            opendr.Unsupported: This learner cannot.
+            opendr.Unsupported: The learner has no task, or its task no metric.
         """
-        self._cannot("eval")
+        from opendr import _opendr
+        from opendr.engine.datasets import DatasetIterator, ExternalDataset
+        from opendr.metrics import evaluate
+
+        task = getattr(self, "task", None)
+        if task is None:
+            self._cannot("eval")
+        metric = _opendr.metric_of(task)
+        if isinstance(dataset, ExternalDataset):
+            truth = next(table["truth"] for table in _opendr.metrics() if table["name"] == metric)
+            dataset = dataset.open(target=truth)
+        if not isinstance(dataset, DatasetIterator):
+            raise TypeError(f"dataset should be a DatasetIterator or an ExternalDataset, not {type(dataset).__name__}")
+        self.reset()
+        return evaluate(self.infer, dataset, metric)
 
 
 class LearnerRL(BaseLearner):
