@@ -22,14 +22,20 @@ impl<'a> JsonPiece<'a> {
     /// `Format`, naming line, byte and key: `line 3, byte 120, key "bbox[2]": ...`.
     pub fn parse<T: Deserialize<'a>>(&self) -> Result<T> {
         serde_json::from_slice(self.bytes).map_err(|error| {
-            let place = self.place(&error);
-            let (offset, line) = (self.offset + place as u64, self.line + error.line().max(1) as u64 - 1);
             let text = error.to_string();
             let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);
-            let path = path_at(self.bytes, place);
-            let key = if path.is_empty() { path } else { format!(", key {path:?}") };
-            Error::format(format!("line {line}, byte {offset}{key}: {what}"))
+            self.error_at(self.place(&error), what)
         })
+    }
+
+    /// An error at byte `place` of the value: `line 3, byte 120, key "bbox[2]": ...`.
+    pub fn error_at(&self, place: usize, what: &str) -> Error {
+        let place = place.min(self.bytes.len());
+        let lines = self.bytes[..place].iter().filter(|byte| **byte == b'\n').count();
+        let (offset, line) = (self.offset + place as u64, self.line + lines as u64);
+        let path = path_at(self.bytes, place);
+        let key = if path.is_empty() { path } else { format!(", key {path:?}") };
+        Error::format(format!("line {line}, byte {offset}{key}: {what}"))
     }
 
     /// The byte of the value that `error` is about.

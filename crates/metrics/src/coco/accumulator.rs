@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result, map_in_order};
 
 use super::curve::{Curve, Ranked};
 use super::matching::{Detection, Matching, Truth};
-use super::protocol::{AREAS, Protocol, THRESHOLDS};
+use super::protocol::{AREAS, AreaRange, Protocol, THRESHOLDS};
 use super::summary::{ClassOutcome, Outcome};
 
 /// Counts objects and detections, picture by picture, for classes that `K` tells apart.
@@ -44,8 +44,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         }
     }
 
-    /// Counts the objects and detections of one class in picture number `picture`, and tells the average precision over
-    /// all thresholds in it; `None` when no object counts.
+    /// Counts the objects and detections of one class in picture number `picture`.
     ///
     /// `overlap(detection, truth)` is asked for the detections that are within the limit only.
     ///
@@ -57,8 +56,50 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         picture: u32,
         truths: &[Truth],
         detections: &[Detection],
-        mut overlap: impl FnMut(usize, usize) -> Result<f64>,
+        overlap: impl FnMut(usize, usize) -> Result<f64>,
+    ) -> Result<()> {
+        self.rank(detections)?;
+        self.compare(truths.len(), overlap)?;
+        if !self.classes.contains_key(class) {
+            self.classes.insert(class.clone(), Class::default());
+        }
+        let Some(kept) = self.classes.get_mut(class) else { return Ok(()) };
+        let verdicts = self.matching.verdicts(self.protocol.areas, truths, &self.sorted, &self.overlaps);
+        let ranked = verdicts.iter().zip(&self.sorted).zip(0..).map(|((verdict, detection), rank)| Ranked {
+            score: detection.score,
+            picture,
+            rank,
+            verdict: *verdict,
+        });
+        kept.ranked.extend(ranked);
+        for (count, area) in kept.truths.iter_mut().zip(self.protocol.areas) {
+            *count += counting(truths, area);
+        }
+        Ok(())
+    }
+
+    /// As [`Accumulator::add`], and tells the average precision over all thresholds in this picture alone; `None` when
+    /// no object counts.
+    ///
+    /// # Errors
+    /// As [`Accumulator::add`].
+    pub fn add_rated(
+        &mut self,
+        class: &K,
+        picture: u32,
+        truths: &[Truth],
+        detections: &[Detection],
+        overlap: impl FnMut(usize, usize) -> Result<f64>,
     ) -> Result<Option<f64>> {
+        self.add(class, picture, truths, detections, overlap)?;
+        let ranked = self.classes.get(class).map_or(&[][..], |kept| &kept.ranked);
+        let alone = &ranked[ranked.len() - self.sorted.len()..];
+        let count = counting(truths, &self.protocol.areas[0]);
+        Ok((count > 0).then(|| Curve::of(alone, 0, count).mean()))
+    }
+
+    /// Sorts the detections by falling score, in their order where scores are equal.
+    fn rank(&mut self, detections: &[Detection]) -> Result<()> {
         if detections.iter().any(|detection| detection.score.is_nan()) {
             return Err(Error::invalid_input(
                 "a detection has a score that is no number; give it one or leave it out",
@@ -72,32 +113,19 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         self.order.extend(0..detections.len());
         self.order.sort_by(falling);
         self.order.truncate(self.protocol.most() as usize);
+        self.sorted.clear();
+        self.sorted.extend(self.order.iter().map(|index| detections[*index]));
+        Ok(())
+    }
+
+    fn compare(&mut self, truths: usize, mut overlap: impl FnMut(usize, usize) -> Result<f64>) -> Result<()> {
         self.overlaps.clear();
         for detection in &self.order {
-            for truth in 0..truths.len() {
+            for truth in 0..truths {
                 self.overlaps.push(overlap(*detection, truth)?);
             }
         }
-        self.sorted.clear();
-        self.sorted.extend(self.order.iter().map(|index| detections[*index]));
-        let verdicts = self.matching.verdicts(self.protocol.areas, truths, &self.sorted, &self.overlaps);
-        if !self.classes.contains_key(class) {
-            self.classes.insert(class.clone(), Class::default());
-        }
-        let Some(kept) = self.classes.get_mut(class) else { return Ok(None) };
-        let start = kept.ranked.len();
-        kept.ranked.extend(verdicts.iter().zip(&self.sorted).zip(0..).map(|((verdict, detection), rank)| {
-            Ranked { score: detection.score, picture, rank, verdict: *verdict }
-        }));
-        let counting = |at: usize| {
-            let area = self.protocol.areas[at];
-            truths.iter().filter(|truth| !truth.ignored && area.contains(truth.area)).count() as u64
-        };
-        for at in 0..self.protocol.areas.len() {
-            kept.truths[at] += counting(at);
-        }
-        let alone = counting(0);
-        Ok((alone > 0).then(|| Curve::of(&kept.ranked[start..], 0, alone).mean()))
+        Ok(())
     }
 
     /// Counts what `other` counted.
@@ -147,4 +175,9 @@ impl Class {
         };
         protocol.limits.iter().map(recall).collect()
     }
+}
+
+/// Objects that count in a range of area.
+fn counting(truths: &[Truth], area: &AreaRange) -> u64 {
+    truths.iter().filter(|truth| !truth.ignored && area.contains(truth.area)).count() as u64
 }

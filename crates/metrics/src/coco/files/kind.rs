@@ -1,0 +1,156 @@
+//! What is compared: boxes, masks or persons.
+
+use opendr_engine::target::Rle;
+use opendr_engine::{Error, Result};
+
+use super::entry::{Entry, Fields, Region, needed};
+use crate::coco::keypoints::area_around;
+use crate::coco::overlap::{JOINTS, Mask, Person, box_overlap, check_box, keypoint_similarity};
+
+/// What is compared, and what is kept for it.
+pub(super) trait Kind: 'static {
+    /// Fields of records that are read.
+    const FIELDS: Fields;
+    /// An annotated object as it is kept.
+    type There: Send + Sync;
+    /// An annotated object as it is compared.
+    type Object;
+    /// A detection.
+    type Found: Send + Sync;
+
+    /// Reads an object.
+    fn there(entry: &mut Entry) -> Result<Self::There>;
+
+    /// Makes an object ready, in a picture of `[height, width]` pixels, and tells its area unless the file states it.
+    fn object(there: &Self::There, size: Option<[u32; 2]>) -> Result<(Self::Object, f64)>;
+
+    /// Reads a detection, and tells its area.
+    fn found(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Self::Found, f64)>;
+
+    /// How much they overlap.
+    fn overlap(found: &Self::Found, object: &Self::Object, crowd: bool) -> Result<f64>;
+
+    /// Whether an object counts neither way though it is no crowd.
+    fn is_ignored(_: &Entry) -> bool {
+        false
+    }
+}
+
+pub(super) struct Boxes;
+
+impl Kind for Boxes {
+    const FIELDS: Fields = Fields { segmentation: false, keypoints: false };
+    type There = [f64; 4];
+    type Object = [f64; 4];
+    type Found = [f64; 4];
+
+    fn there(entry: &mut Entry) -> Result<[f64; 4]> {
+        bounds(entry)
+    }
+
+    fn object(there: &[f64; 4], _: Option<[u32; 2]>) -> Result<([f64; 4], f64)> {
+        Ok((*there, there[2] * there[3]))
+    }
+
+    fn found(entry: &mut Entry, _: Option<[u32; 2]>) -> Result<([f64; 4], f64)> {
+        let bounds = bounds(entry)?;
+        Ok((bounds, bounds[2] * bounds[3]))
+    }
+
+    fn overlap(found: &[f64; 4], object: &[f64; 4], crowd: bool) -> Result<f64> {
+        Ok(box_overlap(*found, *object, crowd))
+    }
+}
+
+fn bounds(entry: &Entry) -> Result<[f64; 4]> {
+    let bounds = needed(entry.bounds, "bbox")?;
+    check_box(bounds, "record")?;
+    Ok(bounds)
+}
+
+pub(super) struct Masks;
+
+impl Kind for Masks {
+    const FIELDS: Fields = Fields { segmentation: true, keypoints: false };
+    type There = Region;
+    type Object = Mask;
+    type Found = Mask;
+
+    fn there(entry: &mut Entry) -> Result<Region> {
+        needed(entry.region.take(), "segmentation")
+    }
+
+    fn object(there: &Region, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
+        let mask = mask(there, size)?;
+        let area = mask.area() as f64;
+        Ok((mask, area))
+    }
+
+    /// A detection without a mask is its box, as in pycocotools.
+    fn found(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
+        let region = match (entry.region.take(), entry.bounds) {
+            (None, Some([left, top, width, height])) => {
+                let [right, bottom] = [left + width, top + height];
+                Region::Polygons(vec![vec![left, top, left, bottom, right, bottom, right, top]])
+            }
+            (region, _) => needed(region, "segmentation")?,
+        };
+        Self::object(&region, size)
+    }
+
+    fn overlap(found: &Mask, object: &Mask, crowd: bool) -> Result<f64> {
+        found.overlap(object, crowd)
+    }
+}
+
+fn mask(region: &Region, size: Option<[u32; 2]>) -> Result<Mask> {
+    let rle: Rle = match (region, size) {
+        (Region::Polygons(_), None) => {
+            return Err(Error::format(
+                "an outline in a picture without \"height\" and \"width\"; state them",
+            ));
+        }
+        (_, size) => region.mask(size.unwrap_or_default())?,
+    };
+    Ok(Mask::from(rle))
+}
+
+pub(super) struct Persons;
+
+impl Kind for Persons {
+    const FIELDS: Fields = Fields { segmentation: false, keypoints: true };
+    type There = Box<Person>;
+    type Object = Box<Person>;
+    type Found = Box<[[f64; 2]; JOINTS]>;
+
+    fn there(entry: &mut Entry) -> Result<Box<Person>> {
+        let numbers = needed(entry.keypoints.take(), "keypoints")?;
+        let bounding_box = bounds(entry)?;
+        let area = entry.area.unwrap_or(bounding_box[2] * bounding_box[3]);
+        let joints = std::array::from_fn(|at| [numbers[3 * at], numbers[3 * at + 1], numbers[3 * at + 2]]);
+        Ok(Box::new(Person { joints, bounding_box, area }))
+    }
+
+    fn object(there: &Box<Person>, _: Option<[u32; 2]>) -> Result<(Box<Person>, f64)> {
+        Ok((there.clone(), there.area))
+    }
+
+    fn found(entry: &mut Entry, _: Option<[u32; 2]>) -> Result<(Self::Found, f64)> {
+        let numbers = needed(entry.keypoints.take(), "keypoints")?;
+        let joints = Box::new(std::array::from_fn(|at| [numbers[3 * at], numbers[3 * at + 1]]));
+        let area = area_around(&joints);
+        Ok((joints, area))
+    }
+
+    fn overlap(found: &Self::Found, object: &Box<Person>, _: bool) -> Result<f64> {
+        Ok(keypoint_similarity(found, object))
+    }
+
+    fn is_ignored(entry: &Entry) -> bool {
+        match (entry.keypoint_count, &entry.keypoints) {
+            (Some(count), _) => count == 0,
+            (None, Some(numbers)) => numbers.as_chunks::<3>().0.iter().all(|[_, _, visible]| *visible <= 0.0),
+            (None, None) => true,
+        }
+    }
+}

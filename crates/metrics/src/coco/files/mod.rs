@@ -1,0 +1,176 @@
+//! From two of COCO's JSON files to its numbers: annotations, and results of a detector.
+//!
+//! Both files are read a block at a time; what is kept of a box is 64 bytes, whatever the file says besides. Numbers keep
+//! all their digits.
+
+mod batches;
+mod entry;
+mod kind;
+mod results;
+#[cfg(test)]
+mod tests;
+mod text;
+mod truth;
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use opendr_engine::{Result, ResultExt, map_in_order};
+
+use super::accumulator::Accumulator;
+use super::protocol::Protocol;
+use super::summary::Outcome;
+use crate::Report;
+use kind::{Boxes, Kind, Masks, Persons};
+use results::Results;
+use truth::Truths;
+
+/// Pictures that one thread matches at once.
+const PICTURES: u32 = 64;
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CocoKind {
+    /// Boxes (`bbox`).
+    Boxes,
+    /// Masks (`segm`).
+    Masks,
+    /// Persons by their key points (`keypoints`).
+    Keypoints,
+}
+
+/// How two files are compared.
+#[derive(Debug, Clone)]
+pub struct CocoFiles {
+    /// What is compared.
+    pub kind: CocoKind,
+    /// Whether a detection must name the class of the object; key points always must.
+    pub use_classes: bool,
+    /// At most this many detections a picture and class are counted.
+    pub max_detections: u32,
+    /// Threads that work at once.
+    pub threads: usize,
+}
+
+impl CocoFiles {
+    /// As pycocotools compares: with classes, at most 100 detections a picture and class (20 persons); on all cores.
+    pub fn new(kind: CocoKind) -> Self {
+        let max_detections = if kind == CocoKind::Keypoints { 20 } else { 100 };
+        let threads = std::thread::available_parallelism().map_or(1, usize::from);
+        Self { kind, use_classes: true, max_detections, threads }
+    }
+
+    /// Compares the results with the annotations.
+    ///
+    /// # Errors
+    /// `NotFound`, `Io`, or `Format` with file, line, byte and key.
+    pub fn compare(&self, annotations: &Path, results: &Path) -> Result<CocoComparison> {
+        match self.kind {
+            CocoKind::Boxes => self.run::<Boxes>(annotations, results),
+            CocoKind::Masks => self.run::<Masks>(annotations, results),
+            CocoKind::Keypoints => self.run::<Persons>(annotations, results),
+        }
+    }
+
+    fn run<K: Kind>(&self, annotations: &Path, results: &Path) -> Result<CocoComparison> {
+        let threads = self.threads.max(1);
+        let truths = Truths::<K>::read(annotations, threads)?;
+        let results = Results::read(results, &truths, threads)?;
+        let fresh = || {
+            Accumulator::new(match self.kind {
+                CocoKind::Keypoints => Protocol::keypoints(self.max_detections),
+                _ => Protocol::objects(self.max_detections),
+            })
+        };
+        let by_class = self.use_classes || self.kind == CocoKind::Keypoints;
+        let mut parts: Vec<_> = (0..threads).map(|_| fresh()).collect();
+        let count = truths.pictures() as u32;
+        let starts = (0..count).step_by(PICTURES as usize);
+        map_in_order(
+            &mut parts,
+            starts,
+            |part, start| {
+                (start..count.min(start + PICTURES))
+                    .try_for_each(|at| add(part, at, &truths, &results, by_class))
+            },
+            |done| done,
+        )?;
+        let mut whole = fresh();
+        parts.into_iter().for_each(|part| whole.merge(part));
+        Ok(CocoComparison {
+            pictures: truths.pictures() as u64,
+            objects: truths.objects() as u64,
+            detections: results.detections() as u64,
+            objects_of_nothing: truths.of_nothing,
+            detections_of_other_classes: results.of_other_classes,
+            classes: truths.classes,
+            outcome: whole.finish(threads),
+        })
+    }
+}
+
+/// The class of all, where classes are one.
+const ANY: i64 = 0;
+
+fn add<K: Kind>(
+    part: &mut Accumulator<i64>,
+    at: u32,
+    truths: &Truths<K>,
+    results: &Results<K>,
+    by_class: bool,
+) -> Result<()> {
+    let mut there: Vec<_> = truths.of_picture(at).iter().collect();
+    let mut found: Vec<_> = results.of_picture(at).collect();
+    // With classes as one, too, pycocotools takes class after class.
+    there.sort_by_key(|annotation| annotation.class);
+    found.sort_by_key(|detection| detection.class);
+    let (mut there, mut found) = (&there[..], &found[..]);
+    while let Some(first) =
+        there.first().map(|one| one.class).into_iter().chain(found.first().map(|one| one.class)).min()
+    {
+        let class = if by_class { first } else { ANY };
+        let of_class = |other: i64| !by_class || other == first;
+        let (these, others) = there.split_at(there.partition_point(|one| of_class(one.class)));
+        let (those, rest) = found.split_at(found.partition_point(|one| of_class(one.class)));
+        (there, found) = (others, rest);
+        let mut objects = Vec::with_capacity(these.len());
+        let mut matched = Vec::with_capacity(these.len());
+        for annotation in these {
+            let (object, area) = K::object(&annotation.there, truths.size(at))
+                .context(|| format!("annotation of class {first} in picture {at} (by number, from 0)"))?;
+            objects.push(object);
+            matched.push(annotation.truth(area));
+        }
+        let detections: Vec<_> = those.iter().map(|one| one.detection).collect();
+        part.add(&class, at, &matched, &detections, |detection, truth| {
+            K::overlap(&those[detection].found, &objects[truth], matched[truth].crowd)
+        })?;
+    }
+    Ok(())
+}
+
+/// What came out of a comparison of two files.
+#[derive(Debug, Clone)]
+pub struct CocoComparison {
+    /// The numbers.
+    pub outcome: Outcome<i64>,
+    /// Names of the classes by number.
+    pub classes: BTreeMap<i64, String>,
+    /// Pictures of the annotations.
+    pub pictures: u64,
+    /// Annotated objects, crowds among them.
+    pub objects: u64,
+    /// Detections that were read.
+    pub detections: u64,
+    /// Annotations that were left out, since their picture or class is not listed.
+    pub objects_of_nothing: u64,
+    /// Detections that were left out, since the annotations do not list their class.
+    pub detections_of_other_classes: u64,
+}
+
+impl CocoComparison {
+    /// The numbers, a table by class, precision-recall curves.
+    pub fn report(&self) -> Report {
+        self.outcome.report(|class| self.classes.get(class).cloned().unwrap_or_else(|| class.to_string()))
+    }
+}

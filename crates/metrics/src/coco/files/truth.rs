@@ -1,0 +1,195 @@
+//! A file of annotations: `instances_*.json`, `person_keypoints_*.json`.
+
+use std::collections::{BTreeMap, HashMap};
+use std::fs::File;
+use std::path::Path;
+
+use opendr_engine::{JsonStream, Result, ResultExt, map_in_order};
+use serde::Deserialize;
+
+use super::batches::{Batch, Batches};
+use super::entry::{Entry, needed};
+use super::kind::Kind;
+use crate::coco::matching::Truth;
+
+/// An annotated object.
+pub(super) struct Annotation<S> {
+    picture: i64,
+    /// Category number.
+    pub class: i64,
+    /// Square pixels, where the file states them.
+    pub area: Option<f64>,
+    pub crowd: bool,
+    pub ignored: bool,
+    pub there: S,
+}
+
+impl<S> Annotation<S> {
+    /// What it is matched as, with `own` square pixels unless the file states them.
+    pub(super) fn truth(&self, own: f64) -> Truth {
+        Truth { area: self.area.unwrap_or(own), crowd: self.crowd, ignored: self.ignored }
+    }
+}
+
+/// A picture of the data set.
+#[derive(Deserialize)]
+struct Picture {
+    id: i64,
+    height: Option<u32>,
+    width: Option<u32>,
+}
+
+#[derive(Deserialize)]
+struct Category {
+    id: i64,
+    name: Option<String>,
+}
+
+/// What a file of annotations says.
+pub(super) struct Truths<K: Kind> {
+    /// Numbers of the pictures in rising order: their order in every tie.
+    pictures: HashMap<i64, u32>,
+    /// `[height, width]` by the order of pictures.
+    sizes: Vec<Option<[u32; 2]>>,
+    /// Names by number.
+    pub classes: BTreeMap<i64, String>,
+    /// By picture, in the order of the file.
+    annotations: Vec<Annotation<K::There>>,
+    /// First annotation of each picture, and the end.
+    starts: Vec<usize>,
+    /// Annotations of pictures or classes that the file does not list.
+    pub of_nothing: u64,
+}
+
+impl<K: Kind> Truths<K> {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// `NotFound`, `Io`, or `Format` with file, line, byte and key.
+    pub(super) fn read(path: &Path, threads: usize) -> Result<Self> {
+        Self::from_file(path, threads).context(|| format!("reading {}", path.display()))
+    }
+
+    fn from_file(path: &Path, threads: usize) -> Result<Self> {
+        let mut json = JsonStream::new(File::open(path)?);
+        let (mut pictures, mut classes) = (BTreeMap::new(), BTreeMap::new());
+        let mut annotations = None;
+        let mut listed = [false; 2];
+        json.begin_object()?;
+        while let Some(key) = json.key()? {
+            match key.as_str() {
+                "images" => {
+                    listed[0] = true;
+                    each(&mut json, |picture: Picture| {
+                        pictures.insert(picture.id, picture.height.zip(picture.width).map(|(h, w)| [h, w]));
+                    })?;
+                }
+                "categories" => {
+                    listed[1] = true;
+                    each(&mut json, |category: Category| {
+                        let name = category.name.unwrap_or_else(|| category.id.to_string());
+                        classes.insert(category.id, name);
+                    })?;
+                }
+                "annotations" => annotations = Some(read_annotations::<K>(&mut json, threads)?),
+                _ => json.skip()?,
+            }
+        }
+        json.end()?;
+        for (key, listed) in ["images", "categories"].into_iter().zip(listed) {
+            needed(listed.then_some(()), key)?;
+        }
+        Ok(Self::sorted(pictures, classes, needed(annotations, "annotations")?))
+    }
+
+    fn sorted(
+        pictures: BTreeMap<i64, Option<[u32; 2]>>,
+        classes: BTreeMap<i64, String>,
+        mut annotations: Vec<Annotation<K::There>>,
+    ) -> Self {
+        let all = annotations.len();
+        let sizes: Vec<_> = pictures.values().copied().collect();
+        let pictures: HashMap<i64, u32> = pictures.into_keys().zip(0..).collect();
+        annotations
+            .retain(|entry| pictures.contains_key(&entry.picture) && classes.contains_key(&entry.class));
+        annotations.sort_by_key(|entry| entry.picture);
+        let of_nothing = (all - annotations.len()) as u64;
+        let mut starts = vec![0; sizes.len() + 1];
+        for entry in &annotations {
+            starts[pictures[&entry.picture] as usize + 1] += 1;
+        }
+        for at in 0..sizes.len() {
+            starts[at + 1] += starts[at];
+        }
+        Self { pictures, sizes, classes, annotations, starts, of_nothing }
+    }
+
+    /// How many pictures there are.
+    pub(super) fn pictures(&self) -> usize {
+        self.sizes.len()
+    }
+
+    /// How many objects there are.
+    pub(super) fn objects(&self) -> usize {
+        self.annotations.len()
+    }
+
+    /// The place of picture `id` in the order.
+    pub(super) fn place(&self, id: i64) -> Option<u32> {
+        self.pictures.get(&id).copied()
+    }
+
+    /// `[height, width]` of the picture at `place`, where the file states them.
+    pub(super) fn size(&self, place: u32) -> Option<[u32; 2]> {
+        self.sizes.get(place as usize).copied().flatten()
+    }
+
+    /// The objects of the picture at `place`.
+    pub(super) fn of_picture(&self, place: u32) -> &[Annotation<K::There>] {
+        let place = place as usize;
+        &self.annotations[self.starts[place]..self.starts[place + 1]]
+    }
+}
+
+/// Reads every record of the array that comes next.
+fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<File>, mut take: impl FnMut(T)) -> Result<()> {
+    json.begin_array()?;
+    while json.more()? {
+        take(json.value()?.parse()?);
+    }
+    Ok(())
+}
+
+fn read_annotations<K: Kind>(
+    json: &mut JsonStream<File>,
+    threads: usize,
+) -> Result<Vec<Annotation<K::There>>> {
+    let mut annotations = Vec::new();
+    let batches = Batches::new(json)?;
+    let work = |(): &mut (), batch: Result<Batch>| -> Result<Vec<_>> {
+        batch?
+            .pieces()
+            .map(|piece| {
+                let mut entry = Entry::read(&piece, K::FIELDS)?;
+                annotation::<K>(&mut entry).map_err(|error| piece.error_at(0, error.message()))
+            })
+            .collect()
+    };
+    map_in_order(&mut vec![(); threads], batches, work, |batch| -> Result<()> {
+        annotations.extend(batch?);
+        Ok(())
+    })?;
+    Ok(annotations)
+}
+
+fn annotation<K: Kind>(entry: &mut Entry) -> Result<Annotation<K::There>> {
+    let ignored = entry.crowd || K::is_ignored(entry);
+    Ok(Annotation {
+        picture: needed(entry.picture, "image_id")?,
+        class: needed(entry.class, "category_id")?,
+        area: entry.area,
+        crowd: entry.crowd,
+        ignored,
+        there: K::there(entry)?,
+    })
+}
