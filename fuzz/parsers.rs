@@ -4,18 +4,20 @@ use opendr_engine::Value;
 use opendr_engine::data::Image;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::{BoundingBox3DList, TrackingAnnotationList};
+use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 
 /// A parser of bytes from outside: it may refuse them, it may not panic.
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 6] = [
+pub const PARSERS: [(&str, Parser); 7] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("card_toml", card_toml),
     ("picture", picture),
     ("target_json", target_json),
     ("label_text", label_text),
+    ("coco_files", coco_files),
 ];
 
 fn manifest_json(bytes: &[u8]) {
@@ -62,6 +64,19 @@ fn label_text(bytes: &[u8]) {
     if let Ok(text) = std::str::from_utf8(bytes) {
         TrackingAnnotationList::from_mot_text(text).ok();
         BoundingBox3DList::from_kitti_text(text).ok();
+    }
+}
+
+/// What is compared by the first byte, the annotations up to the first zero byte, then the results.
+fn coco_files(bytes: &[u8]) {
+    let [kind, texts @ ..] = bytes else { return };
+    let kind = [CocoKind::Boxes, CocoKind::Masks, CocoKind::Keypoints][usize::from(*kind) % 3];
+    let end = texts.iter().position(|byte| *byte == 0).unwrap_or(texts.len());
+    let results = texts.get(end + 1..).unwrap_or_default();
+    let files = CocoFiles { threads: 1, ..CocoFiles::new(kind) };
+    if let Ok(done) = files.compare_texts(&texts[..end], results) {
+        assert!(done.outcome.stats().iter().all(|number| *number == -1.0 || (0.0..=1.0 + 1e-9).contains(number)));
+        done.report();
     }
 }
 

@@ -35,6 +35,7 @@ mod success;
 mod tracking_frame;
 mod transcription;
 mod verification;
+mod voc;
 
 pub use any::{AnyMetric, MetricEntry};
 pub use calibration::{Calibration, CalibrationBin};
@@ -66,3 +67,4 @@ pub use success::{
 pub use tracking_frame::TrackingFrame;
 pub use transcription::{Transcription, TranscriptionParams, words_of_text};
 pub use verification::{FoldAccuracy, Verification, VerificationParams};
+pub use voc::{Voc, VocParams};

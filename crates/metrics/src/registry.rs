@@ -26,6 +26,7 @@ pub const fn metrics() -> &'static [MetricEntry] {
             MetricEntry::of::<crate::Segmentation>(),
             MetricEntry::of::<crate::Transcription>(),
             MetricEntry::of::<crate::Verification>(),
+            MetricEntry::of::<crate::Voc>(),
         ]
     }
 }

@@ -50,7 +50,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
     ///
     /// # Errors
     /// `InvalidInput` for a score that is NaN, and errors of `overlap`; nothing has been counted then.
-    pub fn add(
+    pub fn count(
         &mut self,
         class: &K,
         picture: u32,
@@ -78,12 +78,12 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         Ok(())
     }
 
-    /// As [`Accumulator::add`], and tells the average precision over all thresholds in this picture alone; `None` when
+    /// As [`Accumulator::count`], and tells the average precision over all thresholds in this picture alone; `None` when
     /// no object counts.
     ///
     /// # Errors
-    /// As [`Accumulator::add`].
-    pub fn add_rated(
+    /// As [`Accumulator::count`].
+    pub fn add(
         &mut self,
         class: &K,
         picture: u32,
@@ -91,11 +91,11 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
     ) -> Result<Option<f64>> {
-        self.add(class, picture, truths, detections, overlap)?;
+        self.count(class, picture, truths, detections, overlap)?;
         let ranked = self.classes.get(class).map_or(&[][..], |kept| &kept.ranked);
         let alone = &ranked[ranked.len() - self.sorted.len()..];
-        let count = counting(truths, &self.protocol.areas[0]);
-        Ok((count > 0).then(|| Curve::of(alone, 0, count).mean()))
+        let objects = counting(truths, &self.protocol.areas[0]);
+        Ok((objects > 0).then(|| Curve::of(alone, 0, objects).mean()))
     }
 
     /// Sorts the detections by falling score, in their order where scores are equal.

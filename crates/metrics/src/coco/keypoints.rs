@@ -51,8 +51,7 @@ impl Metric for CocoKeypoints {
         let (truths, persons): (Vec<Truth>, Vec<Person>) = annotated.into_iter().unzip();
         let similarity =
             |detection: usize, truth: usize| Ok(keypoint_similarity(&detected[detection], &persons[truth]));
-        let quality =
-            self.accumulator.add_rated(&(), picture_number(at)?, &truths, &detections, similarity)?;
+        let quality = self.accumulator.add(&(), picture_number(at)?, &truths, &detections, similarity)?;
         Ok(quality.unwrap_or_else(|| quality_of_nothing(&detections)))
     }
 

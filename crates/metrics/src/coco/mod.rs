@@ -17,6 +17,8 @@ mod picture;
 mod protocol;
 mod segmentation;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 pub use accumulator::Accumulator;
 pub use detection::{CocoDetection, CocoDetectionParams};

@@ -52,7 +52,7 @@ impl Pictures {
             let (found, there) = (of_class(&found), of_class(&there));
             let some = |indices: &[usize]| indices.iter().map(|at| detections[*at]).collect::<Vec<_>>();
             let truths: Vec<_> = there.iter().map(|at| truths[*at]).collect();
-            let quality = self.accumulator.add_rated(
+            let quality = self.accumulator.add(
                 class.unwrap_or(&ClassKey::Any),
                 at,
                 &truths,

@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::protocol::{Protocol, RECALLS, THRESHOLDS, recalls};
+use crate::average::mean;
 use crate::{Curves, Figure, Line, Report, Table};
 
 /// What the numbers are.
@@ -137,10 +138,4 @@ impl<K> Outcome<K> {
 
 fn mean_recall(curve: &Curve) -> f64 {
     curve.recall.iter().sum::<f64>() / THRESHOLDS as f64
-}
-
-fn mean(numbers: impl IntoIterator<Item = f64>) -> Option<f64> {
-    let (sum, count) =
-        numbers.into_iter().fold((0.0, 0u32), |(sum, count), number| (sum + number, count + 1));
-    (count > 0).then(|| sum / f64::from(count))
 }

@@ -1,5 +1,6 @@
 //! Masks from outlines, pixel for pixel as COCO's tools fill them.
 
+use super::overlap::pixels;
 use crate::target::Rle;
 use crate::{Error, Result};
 
@@ -22,11 +23,7 @@ impl Rle {
     }
 
     fn from_polygon(height: u32, width: u32, polygon: &[f64]) -> Result<Self> {
-        let pixels = height.checked_mul(width).ok_or_else(|| {
-            Error::invalid_input(format!(
-                "a mask of {height}x{width} pixels is too big; scale the picture down"
-            ))
-        })?;
+        let pixels = pixels(height, width)?;
         let points = scaled(polygon)?;
         let mut crossings = Crossings { height, width, last: None, ends: Vec::new() };
         if points.len() >= 3 {

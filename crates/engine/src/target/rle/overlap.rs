@@ -36,8 +36,9 @@ impl Rle {
     /// The mask of what belongs to either object.
     ///
     /// # Errors
-    /// `InvalidInput` for masks of different sizes.
+    /// `InvalidInput` for masks of different sizes, and of 2^32 pixels or more.
     pub fn union(&self, other: &Self) -> Result<Self> {
+        pixels(self.height, self.width)?;
         let (mut counts, mut inside) = (vec![0], false);
         self.walk(other, |run, [this, that]| {
             if (this || that) != inside {
@@ -79,6 +80,16 @@ impl Rle {
         }
         Ok(())
     }
+}
+
+/// Pixels of a picture.
+///
+/// # Errors
+/// `InvalidInput` when a run could be longer than a number of 32 bits tells.
+pub(super) fn pixels(height: u32, width: u32) -> Result<u32> {
+    height.checked_mul(width).ok_or_else(|| {
+        Error::invalid_input(format!("a mask of {height}x{width} pixels is too big; scale the picture down"))
+    })
 }
 
 #[cfg(test)]

@@ -13,6 +13,8 @@ mod text;
 mod truth;
 
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use opendr_engine::{Result, ResultExt, map_in_order};
@@ -24,6 +26,9 @@ use crate::Report;
 use kind::{Boxes, Kind, Masks, Persons};
 use results::Results;
 use truth::Truths;
+
+/// A file, and what is said when it cannot be read.
+type Named<R> = (R, String);
 
 /// Pictures that one thread matches at once.
 const PICTURES: u32 = 64;
@@ -65,6 +70,22 @@ impl CocoFiles {
     /// # Errors
     /// `NotFound`, `Io`, or `Format` with file, line, byte and key.
     pub fn compare(&self, annotations: &Path, results: &Path) -> Result<CocoComparison> {
+        let open = |path: &Path| -> Result<_> {
+            let name = format!("reading {}", path.display());
+            Ok((File::open(path).context(|| &name)?, name))
+        };
+        self.dispatch(open(annotations)?, open(results)?)
+    }
+
+    /// As [`CocoFiles::compare`], from open files or from memory.
+    ///
+    /// # Errors
+    /// As [`CocoFiles::compare`].
+    pub fn compare_texts(&self, annotations: impl Read, results: impl Read) -> Result<CocoComparison> {
+        self.dispatch((annotations, "reading annotations".into()), (results, "reading results".into()))
+    }
+
+    fn dispatch(&self, annotations: Named<impl Read>, results: Named<impl Read>) -> Result<CocoComparison> {
         match self.kind {
             CocoKind::Boxes => self.run::<Boxes>(annotations, results),
             CocoKind::Masks => self.run::<Masks>(annotations, results),
@@ -72,10 +93,14 @@ impl CocoFiles {
         }
     }
 
-    fn run<K: Kind>(&self, annotations: &Path, results: &Path) -> Result<CocoComparison> {
+    fn run<K: Kind>(
+        &self,
+        annotations: Named<impl Read>,
+        results: Named<impl Read>,
+    ) -> Result<CocoComparison> {
         let threads = self.threads.max(1);
-        let truths = Truths::<K>::read(annotations, threads)?;
-        let results = Results::read(results, &truths, threads)?;
+        let truths = Truths::<K>::read(annotations.0, threads).context(|| annotations.1)?;
+        let results = Results::read(results.0, &truths, threads).context(|| results.1)?;
         let fresh = || {
             Accumulator::new(match self.kind {
                 CocoKind::Keypoints => Protocol::keypoints(self.max_detections),
@@ -137,14 +162,15 @@ fn add<K: Kind>(
         let mut matched = Vec::with_capacity(these.len());
         for annotation in these {
             let (object, area) = K::object(&annotation.there, truths.size(at))
-                .context(|| format!("annotation of class {first} in picture {at} (by number, from 0)"))?;
+                .context(|| format!("an annotation of image {}", truths.id(at)))?;
             objects.push(object);
             matched.push(annotation.truth(area));
         }
         let detections: Vec<_> = those.iter().map(|one| one.detection).collect();
-        part.add(&class, at, &matched, &detections, |detection, truth| {
+        part.count(&class, at, &matched, &detections, |detection, truth| {
             K::overlap(&those[detection].found, &objects[truth], matched[truth].crowd)
-        })?;
+        })
+        .context(|| format!("image {}", truths.id(at)))?;
     }
     Ok(())
 }

@@ -1,9 +1,8 @@
 //! A file of results: a list of detections.
 
-use std::fs::File;
-use std::path::Path;
+use std::io::Read;
 
-use opendr_engine::{Error, JsonPiece, JsonStream, Result, ResultExt, map_in_order};
+use opendr_engine::{Error, JsonPiece, JsonStream, Result, map_in_order};
 
 use super::batches::{Batch, Batches};
 use super::entry::{Entry, needed};
@@ -36,13 +35,9 @@ impl<K: Kind> Results<K> {
     /// Reads the file.
     ///
     /// # Errors
-    /// `NotFound`, `Io`, or `Format` with file, line, byte and key.
-    pub(super) fn read(path: &Path, truths: &Truths<K>, threads: usize) -> Result<Self> {
-        Self::from_file(path, truths, threads).context(|| format!("reading {}", path.display()))
-    }
-
-    fn from_file(path: &Path, truths: &Truths<K>, threads: usize) -> Result<Self> {
-        let mut json = JsonStream::new(File::open(path)?);
+    /// `Io`, or `Format` with line, byte and key.
+    pub(super) fn read(file: impl Read, truths: &Truths<K>, threads: usize) -> Result<Self> {
+        let mut json = JsonStream::new(file);
         let mut batches = Batches::new(&mut json)?;
         let first = batches.next().transpose()?;
         // As in pycocotools, the first detection tells whether areas are those of boxes.

@@ -1,10 +1,9 @@
 //! A file of annotations: `instances_*.json`, `person_keypoints_*.json`.
 
 use std::collections::{BTreeMap, HashMap};
-use std::fs::File;
-use std::path::Path;
+use std::io::Read;
 
-use opendr_engine::{JsonStream, Result, ResultExt, map_in_order};
+use opendr_engine::{JsonStream, Result, map_in_order};
 use serde::Deserialize;
 
 use super::batches::{Batch, Batches};
@@ -49,8 +48,8 @@ struct Category {
 pub(super) struct Truths<K: Kind> {
     /// Numbers of the pictures in rising order: their order in every tie.
     pictures: HashMap<i64, u32>,
-    /// `[height, width]` by the order of pictures.
-    sizes: Vec<Option<[u32; 2]>>,
+    /// Number and `[height, width]` by the order of pictures.
+    listed: Vec<(i64, Option<[u32; 2]>)>,
     /// Names by number.
     pub classes: BTreeMap<i64, String>,
     /// By picture, in the order of the file.
@@ -65,13 +64,9 @@ impl<K: Kind> Truths<K> {
     /// Reads the file.
     ///
     /// # Errors
-    /// `NotFound`, `Io`, or `Format` with file, line, byte and key.
-    pub(super) fn read(path: &Path, threads: usize) -> Result<Self> {
-        Self::from_file(path, threads).context(|| format!("reading {}", path.display()))
-    }
-
-    fn from_file(path: &Path, threads: usize) -> Result<Self> {
-        let mut json = JsonStream::new(File::open(path)?);
+    /// `Io`, or `Format` with line, byte and key.
+    pub(super) fn read(file: impl Read, threads: usize) -> Result<Self> {
+        let mut json = JsonStream::new(file);
         let (mut pictures, mut classes) = (BTreeMap::new(), BTreeMap::new());
         let mut annotations = None;
         let mut listed = [false; 2];
@@ -108,25 +103,25 @@ impl<K: Kind> Truths<K> {
         mut annotations: Vec<Annotation<K::There>>,
     ) -> Self {
         let all = annotations.len();
-        let sizes: Vec<_> = pictures.values().copied().collect();
-        let pictures: HashMap<i64, u32> = pictures.into_keys().zip(0..).collect();
+        let listed: Vec<_> = pictures.into_iter().collect();
+        let pictures: HashMap<i64, u32> = listed.iter().map(|(id, _)| *id).zip(0..).collect();
         annotations
             .retain(|entry| pictures.contains_key(&entry.picture) && classes.contains_key(&entry.class));
         annotations.sort_by_key(|entry| entry.picture);
         let of_nothing = (all - annotations.len()) as u64;
-        let mut starts = vec![0; sizes.len() + 1];
+        let mut starts = vec![0; listed.len() + 1];
         for entry in &annotations {
             starts[pictures[&entry.picture] as usize + 1] += 1;
         }
-        for at in 0..sizes.len() {
+        for at in 0..listed.len() {
             starts[at + 1] += starts[at];
         }
-        Self { pictures, sizes, classes, annotations, starts, of_nothing }
+        Self { pictures, listed, classes, annotations, starts, of_nothing }
     }
 
     /// How many pictures there are.
     pub(super) fn pictures(&self) -> usize {
-        self.sizes.len()
+        self.listed.len()
     }
 
     /// How many objects there are.
@@ -141,7 +136,12 @@ impl<K: Kind> Truths<K> {
 
     /// `[height, width]` of the picture at `place`, where the file states them.
     pub(super) fn size(&self, place: u32) -> Option<[u32; 2]> {
-        self.sizes.get(place as usize).copied().flatten()
+        self.listed.get(place as usize).and_then(|(_, size)| *size)
+    }
+
+    /// The number of the picture at `place`.
+    pub(super) fn id(&self, place: u32) -> i64 {
+        self.listed.get(place as usize).map_or(-1, |(id, _)| *id)
     }
 
     /// The objects of the picture at `place`.
@@ -152,7 +152,7 @@ impl<K: Kind> Truths<K> {
 }
 
 /// Reads every record of the array that comes next.
-fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<File>, mut take: impl FnMut(T)) -> Result<()> {
+fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<impl Read>, mut take: impl FnMut(T)) -> Result<()> {
     json.begin_array()?;
     while json.more()? {
         take(json.value()?.parse()?);
@@ -161,7 +161,7 @@ fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<File>, mut take: impl 
 }
 
 fn read_annotations<K: Kind>(
-    json: &mut JsonStream<File>,
+    json: &mut JsonStream<impl Read>,
     threads: usize,
 ) -> Result<Vec<Annotation<K::There>>> {
     let mut annotations = Vec::new();
