@@ -31,19 +31,37 @@ opendr_engine::choices! {
 impl VectorDistance {
     /// Between vectors of the same length; a vector of zeros is at cosine distance 1 of every other.
     pub fn between(self, one: &[f32], other: &[f32]) -> f64 {
-        let pairs = || one.iter().zip(other).map(|(one, other)| (f64::from(*one), f64::from(*other)));
+        self.between_of_lengths((one, length(one)), (other, length(other)))
+    }
+
+    fn between_of_lengths(self, one: (&[f32], f64), other: (&[f32], f64)) -> f64 {
         match self {
-            Self::Euclidean => pairs().map(|(one, other)| (one - other).powi(2)).sum::<f64>().sqrt(),
+            Self::Euclidean => sum(one.0, other.0, |one, other| (one - other) * (one - other)).sqrt(),
             Self::Cosine => {
-                let [product, first, second] =
-                    pairs().fold([0.0; 3], |[product, first, second], (one, other)| {
-                        [product + one * other, first + one * one, second + other * other]
-                    });
-                let lengths = (first * second).sqrt();
+                let lengths = one.1 * other.1;
+                let product = sum(one.0, other.0, |one, other| one * other);
                 1.0 - if lengths > 0.0 { product / lengths } else { 0.0 }
             }
         }
     }
+}
+
+fn length(vector: &[f32]) -> f64 {
+    sum(vector, vector, |one, other| one * other).sqrt()
+}
+
+/// The sum of `term` over pairs, in eight parts that do not wait for each other.
+fn sum(one: &[f32], other: &[f32], term: impl Fn(f64, f64) -> f64) -> f64 {
+    let (ones, rest) = one.as_chunks::<8>();
+    let (others, rest_of_others) = other.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (one, other) in ones.iter().zip(others) {
+        for (sum, (one, other)) in sums.iter_mut().zip(one.iter().zip(other)) {
+            *sum += term(f64::from(*one), f64::from(*other));
+        }
+    }
+    let rest = rest.iter().zip(rest_of_others).map(|(one, other)| term(f64::from(*one), f64::from(*other)));
+    sums.into_iter().chain(rest).sum()
 }
 
 /// What a user may set.
@@ -89,17 +107,19 @@ impl Retrieval {
     /// the first ranks first. A query that has no match at all does not count.
     ///
     /// # Errors
-    /// `InvalidInput` when a distance is NaN or the numbers of pictures and distances differ.
-    pub fn add(&mut self, query: &Subject, gallery: &[Subject], distances: &[f64]) -> Result<()> {
-        if gallery.len() != distances.len() || distances.iter().any(|distance| distance.is_nan()) {
-            let (pictures, given) = (gallery.len(), distances.len());
-            return Err(Error::invalid_input(format!(
-                "{given} distances for {pictures} pictures; give one for each, and no NaN"
-            )));
+    /// `InvalidInput` when a distance is NaN.
+    pub fn add<'a>(
+        &mut self,
+        query: &Subject,
+        gallery: impl IntoIterator<Item = (&'a Subject, f64)>,
+    ) -> Result<()> {
+        let mut ranked = Vec::new();
+        for (subject, distance) in gallery.into_iter().filter(|(subject, _)| !subject.is_passed_over(query)) {
+            if distance.is_nan() {
+                return Err(Error::invalid_input("the distance between two pictures is NaN; give numbers"));
+            }
+            ranked.push((distance, subject.identity == query.identity));
         }
-        let searched = gallery.iter().zip(distances).filter(|(subject, _)| !subject.is_passed_over(query));
-        let mut ranked: Vec<(f64, bool)> =
-            searched.map(|(subject, distance)| (*distance, subject.identity == query.identity)).collect();
         ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
         let matches = ranked.iter().enumerate().filter(|(_, (_, same))| *same).map(|(rank, _)| rank);
         let Some(first) = matches.clone().next() else {
@@ -139,6 +159,14 @@ struct Picture {
     at: usize,
     subject: Subject,
     vector: Vector,
+    /// Of the vector.
+    length: f64,
+}
+
+impl Picture {
+    fn vector_with_length(&self) -> (&[f32], f64) {
+        (self.vector.as_slice(), self.length)
+    }
 }
 
 /// Collects vectors; their distances are measured at the end.
@@ -155,22 +183,20 @@ impl Reidentification {
         pictures.sort_by_key(|picture| picture.at);
         let queries = self.params.queries;
         let mut retrieval = Retrieval::default();
-        for query in pictures.iter().filter(|picture| queries == 0 || picture.at < queries) {
+        let asked =
+            |picture: &&&Picture| (queries == 0 || picture.at < queries) && picture.subject.identity != JUNK;
+        for query in pictures.iter().filter(asked) {
             let searched = pictures.iter().filter(|picture| match queries {
                 0 => picture.at != query.at,
                 _ => picture.at >= queries,
             });
-            let (gallery, distances): (Vec<Subject>, Vec<f64>) = searched
-                .map(|picture| {
-                    let distance =
-                        self.params.distance.between(query.vector.as_slice(), picture.vector.as_slice());
-                    (picture.subject.clone(), distance)
-                })
-                .unzip();
-            if query.subject.identity != JUNK {
-                // Vectors are finite, hence no distance is NaN.
-                retrieval.add(&query.subject, &gallery, &distances).ok();
-            }
+            let far = |picture: &&Picture| {
+                self.params
+                    .distance
+                    .between_of_lengths(query.vector_with_length(), picture.vector_with_length())
+            };
+            // Vectors are finite, hence no distance is NaN.
+            retrieval.add(&query.subject, searched.map(|picture| (&picture.subject, far(picture)))).ok();
         }
         retrieval
     }
@@ -204,7 +230,8 @@ impl Metric for Reidentification {
             )));
         }
         let subject = Subject { identity: truth.class, camera: truth.header.frame_id.clone() };
-        self.pictures.push(Picture { at, subject, vector: prediction.clone() });
+        let length = self::length(numbers);
+        self.pictures.push(Picture { at, subject, vector: prediction.clone(), length });
         Ok(1.0)
     }
 
@@ -261,15 +288,16 @@ mod tests {
             subject(2, "a"),
         ];
         let mut retrieval = Retrieval::default();
+        let with = |distances: [f64; 6]| gallery.iter().zip(distances).collect::<Vec<_>>();
         // Ranked: 7 of the same camera and -1 are passed over, 1 is wrong, then 7, 2, 7.
-        retrieval.add(&subject(7, "a"), &gallery, &[0.0, 0.2, 0.3, 0.1, 0.5, 0.4]).unwrap();
+        retrieval.add(&subject(7, "a"), with([0.0, 0.2, 0.3, 0.1, 0.5, 0.4])).unwrap();
         assert_eq!(retrieval.mean_average_precision(), Some((1.0 / 2.0 + 2.0 / 4.0) / 2.0));
         assert_eq!([1, 2, 9].map(|rank| retrieval.match_rate(rank)), [0.0, 1.0, 1.0].map(Some));
         // Only the same camera has this one.
-        retrieval.add(&subject(2, "a"), &gallery, &[0.0; 6]).unwrap();
+        retrieval.add(&subject(2, "a"), with([0.0; 6])).unwrap();
         assert_eq!((retrieval.queries(), retrieval.without_match), (1, 1));
-        assert!(retrieval.add(&subject(2, "a"), &gallery, &[0.0; 5]).is_err());
-        assert!(retrieval.add(&subject(2, "a"), &gallery, &[f64::NAN; 6]).is_err());
+        assert!(retrieval.add(&subject(2, "a"), with([f64::NAN; 6])).is_err());
+        assert_eq!((retrieval.queries(), retrieval.without_match), (1, 1));
     }
 
     #[test]
@@ -278,6 +306,7 @@ mod tests {
         assert_eq!(VectorDistance::Cosine.between(&[0.0, 3.0], &[4.0, 0.0]), 1.0);
         assert_eq!(VectorDistance::Cosine.between(&[2.0, 0.0], &[4.0, 0.0]), 0.0);
         assert_eq!(VectorDistance::Cosine.between(&[0.0, 0.0], &[4.0, 0.0]), 1.0);
+        assert_eq!(VectorDistance::Euclidean.between(&[1.0; 100], &[2.0; 100]), 10.0);
     }
 
     #[test]
