@@ -170,7 +170,7 @@ fn header_bytes(number: &str, count: usize, shape: &[usize]) -> Result<Vec<u8>> 
 }
 
 /// The numbers of an array whose first axis ran fastest, now with the last axis fastest.
-fn c_from_fortran(numbers: &[f64], shape: &[usize]) -> Vec<f64> {
+pub(crate) fn c_from_fortran(numbers: &[f64], shape: &[usize]) -> Vec<f64> {
     let mut at = vec![0usize; shape.len()];
     let mut ordered = Vec::with_capacity(numbers.len());
     for _ in 0..numbers.len() {

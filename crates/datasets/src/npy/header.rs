@@ -24,7 +24,7 @@ enum Kind {
 }
 
 impl NpyType {
-    fn from_descr(descr: &str) -> Result<Self> {
+    pub(crate) fn from_descr(descr: &str) -> Result<Self> {
         let refused = || {
             Error::unsupported(format!(
                 "an array of type {descr:.40?} is not read; save it as integers or floats of 16 to 64 bits"
@@ -56,7 +56,7 @@ impl NpyType {
     }
 
     /// The numbers in `data`; integers over 2^53 are rounded.
-    pub(super) fn numbers(self, data: &[u8]) -> Vec<f64> {
+    pub(crate) fn numbers(self, data: &[u8]) -> Vec<f64> {
         data.chunks_exact(self.bytes).map(|bytes| self.number(bytes)).collect()
     }
 

@@ -1,0 +1,141 @@
+//! Python's pickles as far as they are data: numbers, texts, lists, dictionaries and NumPy arrays.
+//!
+//! Nothing is run: what names any other function or class is refused. Data sets of skeletons are handed around so.
+
+use std::collections::HashMap;
+
+use opendr_engine::{Error, Result};
+
+use crate::npy::NpyType;
+
+mod machine;
+
+use machine::Machine;
+
+/// How deep a value may be asked for within another.
+const MAX_AXES: usize = 32;
+
+/// Number of a value of a [`Pickle`].
+type Id = usize;
+
+/// A value; those within others are told by their numbers, so that sharing and cycles cost nothing.
+#[derive(Debug, Clone)]
+enum Item {
+    None,
+    Whole(i64),
+    Float(f64),
+    Text(String),
+    Bytes(Vec<u8>),
+    List(Vec<Id>),
+    Dictionary(Vec<(Id, Id)>),
+    /// Module and name.
+    Global(String, String),
+    Type(NpyType, String),
+    Array(Vec<usize>, NpyType, bool, Vec<u8>),
+    /// An array that is still to be filled.
+    Unfilled,
+}
+
+/// The values of a pickle.
+#[derive(Debug)]
+pub(crate) struct Pickle {
+    items: Vec<Item>,
+    root: Id,
+}
+
+/// A value within a [`Pickle`].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Pickled<'a> {
+    pickle: &'a Pickle,
+    id: Id,
+}
+
+impl Pickle {
+    /// Reads the bytes of a pickle of protocol 2 to 5.
+    ///
+    /// # Errors
+    /// `Format` with the byte for what is no pickle or is cut off; `Unsupported` for code.
+    pub(crate) fn parse(bytes: &[u8]) -> Result<Self> {
+        let mut machine = Machine {
+            bytes,
+            at: 0,
+            items: Vec::new(),
+            stack: Vec::new(),
+            marks: Vec::new(),
+            memo: HashMap::new(),
+        };
+        let root = machine.run()?;
+        Ok(Self { items: machine.items, root })
+    }
+
+    /// The whole.
+    pub(crate) fn root(&self) -> Pickled<'_> {
+        Pickled { pickle: self, id: self.root }
+    }
+}
+
+impl<'a> Pickled<'a> {
+    fn item(self) -> &'a Item {
+        self.pickle.items.get(self.id).unwrap_or(&Item::None)
+    }
+
+    fn of(self, id: Id) -> Self {
+        Self { id, ..self }
+    }
+
+    /// The value of `key`.
+    pub(crate) fn get(self, key: &str) -> Option<Self> {
+        let Item::Dictionary(entries) = self.item() else { return None };
+        let found = entries.iter().rev().find(|(name, _)| self.of(*name).text() == Some(key));
+        found.map(|(_, value)| self.of(*value))
+    }
+
+    /// Keys and values, where keys are texts.
+    pub(crate) fn entries(self) -> Vec<(&'a str, Self)> {
+        let Item::Dictionary(entries) = self.item() else { return Vec::new() };
+        entries.iter().filter_map(|(key, value)| Some((self.of(*key).text()?, self.of(*value)))).collect()
+    }
+
+    /// The values of a list or tuple.
+    pub(crate) fn list(self) -> Option<Vec<Self>> {
+        let Item::List(values) = self.item() else { return None };
+        Some(values.iter().map(|id| self.of(*id)).collect())
+    }
+
+    /// A text.
+    pub(crate) fn text(self) -> Option<&'a str> {
+        match self.item() {
+            Item::Text(text) => Some(text),
+            Item::Bytes(bytes) => std::str::from_utf8(bytes).ok(),
+            _ => None,
+        }
+    }
+
+    /// A whole number.
+    pub(crate) fn whole(self) -> Option<i64> {
+        match self.item() {
+            Item::Whole(number) => Some(*number),
+            Item::Float(number) => Some(*number as i64),
+            Item::Array(shape, ..) if shape.iter().all(|side| *side == 1) => {
+                self.array()?.1.first().map(|number| *number as i64)
+            }
+            _ => None,
+        }
+    }
+
+    /// Shape and numbers of an array, last axis fastest.
+    pub(crate) fn array(self) -> Option<(Vec<usize>, Vec<f64>)> {
+        let Item::Array(shape, number, fortran_order, bytes) = self.item() else { return None };
+        let numbers = number.numbers(bytes);
+        let numbers = if *fortran_order { crate::npy::c_from_fortran(&numbers, shape) } else { numbers };
+        Some((shape.clone(), numbers))
+    }
+}
+
+#[cold]
+fn refused(what: &str) -> Error {
+    Error::unsupported(format!("the pickle names {what:.80?}, which is code; save its data as .npy"))
+}
+
+#[cfg(test)]
+mod tests;

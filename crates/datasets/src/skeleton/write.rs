@@ -1,0 +1,90 @@
+//! Any skeletons as one array.
+
+use std::path::Path;
+
+use opendr_engine::data::SkeletonSequence;
+use opendr_engine::dataset::DatasetIterator;
+use opendr_engine::{Error, Progress, Result, Unit, Value};
+
+use crate::folder::{path_inside, write_file};
+use crate::{Problem, Problems, WriteOptions, npy_from_f32, npy_from_i64};
+
+/// Numbers that are held until they are written: eight gigabytes.
+const MAX_NUMBERS: usize = 2 << 30;
+
+/// `PART_data.npy`, `PART_label.npy` and, where classes have names, `label_map.txt`. All recordings must have as many
+/// channels, joints and persons; shorter ones are filled up with zeros.
+pub(super) fn write(
+    dataset: &dyn DatasetIterator,
+    path: &Path,
+    options: &WriteOptions,
+    problems: &Problems,
+    progress: &dyn Progress,
+) -> Result<()> {
+    let part = options.split.as_deref().unwrap_or("train");
+    let data = path_inside(path, &format!("{part}_data.npy")).map_err(Error::invalid_param)?;
+    progress.begin("writing skeletons", Some(dataset.len() as u64), Unit::Items);
+    let (mut sequences, mut labels) = (Vec::new(), Vec::new());
+    for index in 0..dataset.len() {
+        if progress.stopped() {
+            break;
+        }
+        match recording(dataset, index, sequences.first()) {
+            Ok((sequence, class)) => {
+                sequences.push(sequence);
+                labels.push(class);
+            }
+            Err(error) => {
+                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
+            }
+        }
+        progress.advance(1);
+    }
+    progress.end();
+    let frames = sequences.iter().map(|sequence: &SkeletonSequence| sequence.shape()[2]).max().unwrap_or(0);
+    let [_, channels, _, joints, persons] = sequences.first().map_or([1; 5], SkeletonSequence::shape);
+    let shape = [sequences.len(), channels, frames, joints, persons];
+    let count = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
+    let count = count.filter(|count| *count <= MAX_NUMBERS).ok_or_else(|| {
+        Error::invalid_input(format!("an array of shape {shape:?} is too large; write fewer samples"))
+    })?;
+    let mut numbers = Vec::with_capacity(count);
+    for sequence in &sequences {
+        for channel in sequence.as_slice().chunks(sequence.shape()[2] * joints * persons) {
+            let end = numbers.len() + frames * joints * persons;
+            numbers.extend(channel);
+            numbers.resize(end, 0.0);
+        }
+    }
+    write_file(&data, &npy_from_f32(&numbers, &shape)?)?;
+    write_file(&path.join(format!("{part}_label.npy")), &npy_from_i64(&labels, &[labels.len()])?)?;
+    let names: String = dataset.classes().iter().map(|name| format!("{name}\n")).collect();
+    if names.is_empty() { Ok(()) } else { write_file(&path.join("label_map.txt"), names.as_bytes()) }
+}
+
+fn recording(
+    dataset: &dyn DatasetIterator,
+    index: usize,
+    first: Option<&SkeletonSequence>,
+) -> Result<(SkeletonSequence, i64)> {
+    let sample = dataset.get(index)?;
+    let (Some(Value::SkeletonSequence(sequence)), Some(Value::Category(category))) =
+        (sample.data.into_iter().next(), sample.target)
+    else {
+        return Err(Error::invalid_input(
+            "no skeletons with a class; this format holds SkeletonSequence and Category",
+        ));
+    };
+    let side = |sequence: &SkeletonSequence| {
+        let [samples, channels, _, joints, persons] = sequence.shape();
+        [samples, channels, joints, persons]
+    };
+    let wanted = first.map_or(side(&sequence), side);
+    if side(&sequence) != wanted || wanted.first() != Some(&1) {
+        return Err(Error::invalid_input(format!(
+            "{:?} samples, channels, joints and persons instead of {wanted:?}, one sample each",
+            side(&sequence)
+        )));
+    }
+    Ok((sequence, category.class))
+}
