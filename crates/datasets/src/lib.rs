@@ -31,6 +31,7 @@ mod skeleton;
 mod speech_commands;
 mod stats;
 mod voc;
+mod ucr;
 mod wav;
 mod wfdb;
 mod wider_face;
@@ -56,6 +57,7 @@ pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
 pub use speech_commands::{SpeechCommands, SpeechSplit, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
 pub use voc::Voc;
+pub use ucr::{TsHeader, Ucr, series_from_line, series_from_ts_line};
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
 pub use wfdb::{
     Wfdb, WfdbAnnotation, WfdbHeader, WfdbRecord, WfdbSignal, annotations_from_atr, atr_from_annotations,

@@ -28,6 +28,7 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::Wfdb>(),
     FormatEntry::of::<crate::ImageNet>(),
     FormatEntry::of::<crate::Skeletons>(),
+    FormatEntry::of::<crate::Ucr>(),
 ];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.
