@@ -20,6 +20,10 @@ mod imagenet;
 mod kitti;
 mod label_png;
 pub mod loader;
+mod hands;
+mod kitti;
+mod lfw;
+mod market1501;
 mod mot;
 mod npy;
 mod pickle;
@@ -45,10 +49,13 @@ pub use coco::{Coco, CocoPanoptic};
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use imagenet::ImageNet;
+pub use hands::Hands;
 pub use kitti::{
     Kitti, KittiTracking, calibration_from_kitti, kitti_from_calibration, open_kitti_calibration,
     open_velodyne, velodyne_from_cloud,
 };
+pub use lfw::Lfw;
+pub use market1501::{Market1501, MarketPerson};
 pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use problems::{Place, Problem, Problems};

@@ -29,6 +29,9 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::ImageNet>(),
     FormatEntry::of::<crate::Skeletons>(),
     FormatEntry::of::<crate::Ucr>(),
+    FormatEntry::of::<crate::Lfw>(),
+    FormatEntry::of::<crate::Market1501>(),
+    FormatEntry::of::<crate::Hands>(),
 ];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.

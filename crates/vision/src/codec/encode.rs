@@ -131,7 +131,7 @@ fn format_of(path: &Path) -> Result<ImageFormat> {
 }
 
 /// Writes a file beside `path` and renames it; on failure nothing is left behind.
-fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+pub(super) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     let name = path.file_name().ok_or_else(|| Error::invalid_input("no file name in the path"))?;
     let mut temporary = name.to_owned();
     temporary.push(format!(".{}.partial", std::process::id()));

@@ -4,6 +4,7 @@
 //! the path and what was found there.
 
 mod decode;
+mod depth;
 mod encode;
 mod finding;
 mod jpeg;
@@ -11,4 +12,5 @@ mod orientation;
 mod size;
 
 pub use decode::{Decoder, decode, open};
+pub use depth::save_depth;
 pub use encode::{Encoder, save};

@@ -1,0 +1,72 @@
+//! The label file of one subject of HANDS.
+
+use std::path::Path;
+
+use opendr_engine::Result;
+
+use crate::fields::lines;
+use crate::folder::{path_inside, read_text};
+use crate::hands::Gesture;
+use crate::{Problem, Problems};
+
+/// What is written for a gesture that is not shown.
+const NOT_SHOWN: &str = "[0 0 0 0]";
+
+/// The rows of `SubjectN.txt`: colour, depth, and for every gesture of the first line its box, or `[0 0 0 0]`. Of the
+/// files only the last part counts, as HANDS writes the folders of its authors. Missing files are told when `checked`.
+pub(super) fn read(path: &Path, subject: &str, checked: bool, problems: &Problems) -> Result<Vec<Gesture>> {
+    let folder = path.join(subject);
+    let list = folder.join(format!("{subject}.txt"));
+    let text = read_text(&list)?;
+    let mut rows = lines(&text);
+    let names: Vec<&str> =
+        rows.next().map(|(_, line)| line.split(',').skip(2).map(str::trim).collect()).unwrap_or_default();
+    let mut gestures = Vec::new();
+    for (number, line) in rows {
+        let gesture = row(&folder, subject, &names, line).and_then(|gesture| {
+            let missing =
+                [&gesture.colour, &gesture.depth].into_iter().find(|file| checked && !file.is_file());
+            missing.map_or(Ok(()), |file| Err(format!("names {}, which is missing", file.display())))?;
+            Ok(gesture)
+        });
+        match gesture {
+            Ok(gesture) => gestures.push(gesture),
+            Err(message) => problems.report(Problem::at_line(&list, number, message))?,
+        }
+    }
+    Ok(gestures)
+}
+
+fn row(folder: &Path, subject: &str, names: &[&str], line: &str) -> Result<Gesture, String> {
+    let fields: Vec<&str> = line.split(',').map(str::trim).collect();
+    let [colour, depth, boxes @ ..] = fields.as_slice() else {
+        return Err(format!("has {} fields instead of {}", fields.len(), names.len() + 2));
+    };
+    if boxes.len() != names.len() {
+        return Err(format!("has {} boxes where the first line names {} gestures", boxes.len(), names.len()));
+    }
+    let mut shown = Vec::new();
+    for (name, place) in names.iter().zip(boxes).filter(|(_, place)| **place != NOT_SHOWN) {
+        let numbers = place.strip_prefix('[').and_then(|rest| rest.strip_suffix(']'));
+        let numbers: Option<Vec<f32>> = numbers.map(|numbers| {
+            numbers
+                .split_whitespace()
+                .filter_map(|number| number.parse().ok())
+                .filter(|n: &f32| n.is_finite())
+                .collect()
+        });
+        if numbers.is_none_or(|numbers| numbers.len() != 4) {
+            return Err(format!("has {place:.40?} as the box of {name}; give [left top width height]"));
+        }
+        shown.push(*name);
+    }
+    if shown.is_empty() {
+        return Err("shows no gesture; drop it".to_owned());
+    }
+    let last = |name: &str| name.rsplit(['\\', '/']).next().unwrap_or_default().to_owned();
+    Ok(Gesture {
+        colour: path_inside(&folder.join(subject), &last(colour))?,
+        depth: path_inside(&folder.join(format!("{subject}_Depth")), &last(depth).replace("color", "depth"))?,
+        class: shown.join("_AND_"),
+    })
+}
