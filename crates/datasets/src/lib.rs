@@ -16,13 +16,13 @@ mod folder;
 mod format;
 #[doc(hidden)]
 pub mod fuzzing;
+mod hands;
 mod imagenet;
 mod kitti;
-mod label_png;
-pub mod loader;
-mod hands;
 mod kitti;
+mod label_png;
 mod lfw;
+pub mod loader;
 mod market1501;
 mod mot;
 mod npy;
@@ -34,8 +34,8 @@ mod registry;
 mod skeleton;
 mod speech_commands;
 mod stats;
-mod voc;
 mod ucr;
+mod voc;
 mod wav;
 mod wfdb;
 mod wider_face;
@@ -48,8 +48,8 @@ pub use cityscapes::Cityscapes;
 pub use coco::{Coco, CocoPanoptic};
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
-pub use imagenet::ImageNet;
 pub use hands::Hands;
+pub use imagenet::ImageNet;
 pub use kitti::{
     Kitti, KittiTracking, calibration_from_kitti, kitti_from_calibration, open_kitti_calibration,
     open_velodyne, velodyne_from_cloud,
@@ -63,8 +63,8 @@ pub use registry::{find, formats, open, recognise};
 pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
 pub use speech_commands::{SpeechCommands, SpeechSplit, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
-pub use voc::Voc;
 pub use ucr::{TsHeader, Ucr, series_from_line, series_from_ts_line};
+pub use voc::Voc;
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
 pub use wfdb::{
     Wfdb, WfdbAnnotation, WfdbHeader, WfdbRecord, WfdbSignal, annotations_from_atr, atr_from_annotations,
