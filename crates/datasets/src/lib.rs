@@ -19,7 +19,6 @@ pub mod fuzzing;
 mod hands;
 mod imagenet;
 mod kitti;
-mod kitti;
 mod label_png;
 mod lfw;
 pub mod loader;

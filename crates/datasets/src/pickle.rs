@@ -90,12 +90,6 @@ impl<'a> Pickled<'a> {
         found.map(|(_, value)| self.of(*value))
     }
 
-    /// Keys and values, where keys are texts.
-    pub(crate) fn entries(self) -> Vec<(&'a str, Self)> {
-        let Item::Dictionary(entries) = self.item() else { return Vec::new() };
-        entries.iter().filter_map(|(key, value)| Some((self.of(*key).text()?, self.of(*value)))).collect()
-    }
-
     /// The values of a list or tuple.
     pub(crate) fn list(self) -> Option<Vec<Self>> {
         let Item::List(values) = self.item() else { return None };
