@@ -75,7 +75,9 @@ fn coco_files(bytes: &[u8]) {
     let results = texts.get(end + 1..).unwrap_or_default();
     let files = CocoFiles { threads: 1, ..CocoFiles::new(kind) };
     if let Ok(done) = files.compare_texts(&texts[..end], results) {
-        assert!(done.outcome.stats().iter().all(|number| *number == -1.0 || (0.0..=1.0 + 1e-9).contains(number)));
+        assert!(
+            done.outcome.stats().iter().all(|number| *number == -1.0 || (0.0..=1.0 + 1e-9).contains(number))
+        );
         done.report();
     }
 }

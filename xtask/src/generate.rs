@@ -4,13 +4,13 @@ use crate::python_package;
 use crate::shell::{Result, command, root, step, target};
 use crate::test::TEST_LEARNER;
 
-/// Writes the type stubs of Python, `docs/learners.md` and the C headers; tests fail when these are stale.
+/// Writes the type stubs of Python, `docs/{learners,metrics,datasets}.md` and the C headers; tests fail when these are stale.
 pub fn run() -> Result<()> {
     let folder = target().join("generate");
     python_package::build(&folder)?;
     let mut stubs = command("python3");
     stubs.arg(root().join("bindings/python/stubs.py")).env("PYTHONPATH", &folder);
-    step("stubs and docs/learners.md", &mut stubs)?;
+    step("stubs and pages", &mut stubs)?;
     let mut headers = command("cargo");
     headers
         .args(["test", "--package", "opendr-c", TEST_LEARNER, "--test", "header"])

@@ -44,6 +44,7 @@ pub fn run() -> Result<()> {
     )?;
     step("release build", &mut cargo(&["build", "--release"]))?;
     step("tests from outside", &mut pytest(&outside, "tests/python", &environment))?;
+    references(&environment)?;
     let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
     let wheel = python.install_wheel()?;
     step(
@@ -54,6 +55,22 @@ pub fn run() -> Result<()> {
     parity::run(&python, &prefix, |pytest| environment.apply(pytest))?;
     println!("\nall checks passed");
     Ok(())
+}
+
+/// Metrics and data sets beside the tools that papers cite.
+fn references(environment: &Environment) -> Result<()> {
+    let requirements = ["tests/metrics/requirements.txt", "tests/datasets/requirements.txt"];
+    let alone = Some("tests/metrics/requirements_without_dependencies.txt");
+    let python = Python::install_all("reference-venv", &requirements, alone)?;
+    let mut build = command("cargo");
+    build.args(["build", "--package", "opendr-metrics", "--package", "opendr-datasets", "--examples"]);
+    step("runners of metrics and data sets", &mut build)?;
+    let examples = target().join("debug/examples");
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", "tests/metrics", "tests/datasets"]);
+    pytest.env("OPENDR_METRICS_COMPUTE", examples.join("compute")).env("OPENDR_EXAMPLES", &examples);
+    environment.apply(&mut pytest);
+    step("tests beside the reference tools", &mut pytest)
 }
 
 /// The learner that every surface is tested with is in every build for tests.

@@ -1,7 +1,7 @@
 //! What the tests need beyond Rust, Python and npm.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, command, is_installed, root, step, target};
 
@@ -23,16 +23,30 @@ impl Python {
     /// Makes the environment `name` under the build folder, or brings it up to date when the requirements have
     /// changed.
     pub fn install(name: &str, requirements: &str) -> Result<Self> {
+        Self::install_all(name, &[requirements], None)
+    }
+
+    /// As [`Python::install`] of several files; of the packages of `alone`, what they depend on is left out.
+    pub fn install_all(name: &str, requirements: &[&str], alone: Option<&str>) -> Result<Self> {
         let python = Self { folder: target().join(name) };
-        let requirements = root().join(requirements);
-        let wanted = fs::read_to_string(&requirements).map_err(|error| error.to_string())?;
+        let files: Vec<_> = requirements.iter().chain(&alone).map(|file| root().join(file)).collect();
+        let wanted = files.iter().map(fs::read_to_string).collect::<std::io::Result<String>>();
+        let wanted = wanted.map_err(|error| error.to_string())?;
         let stamp = python.folder.join("requirements.installed");
         if fs::read_to_string(&stamp).ok().as_deref() == Some(wanted.as_str()) {
             return Ok(python);
         }
         step("python environment", command("python3").args(["-m", "venv", "--clear"]).arg(&python.folder))?;
-        let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "-r"];
-        step("python packages", command(python.program()).args(pip).arg(&requirements))?;
+        let pip = || {
+            let mut pip = command(python.program());
+            pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
+            pip
+        };
+        let (with, without) = files.split_at(requirements.len());
+        step("python packages", pip().args(with.iter().flat_map(|file| [Path::new("-r"), file.as_path()])))?;
+        for file in without {
+            step("python packages, alone", pip().arg("--no-deps").arg("-r").arg(file))?;
+        }
         fs::write(&stamp, wanted).map_err(|error| error.to_string())?;
         Ok(python)
     }

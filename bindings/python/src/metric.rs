@@ -2,9 +2,9 @@
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use opendr::{Error, Task};
 use opendr::metrics::{AnyMetric, MetricEntry, find};
 use opendr::params::ParamMap;
+use opendr::{Error, Task};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
