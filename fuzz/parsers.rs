@@ -10,7 +10,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 7] = [
+pub const PARSERS: [(&str, Parser); 10] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("card_toml", card_toml),
@@ -18,6 +18,9 @@ pub const PARSERS: [(&str, Parser); 7] = [
     ("target_json", target_json),
     ("label_text", label_text),
     ("coco_files", coco_files),
+    ("coco_json", coco_json),
+    ("voc_xml", voc_xml),
+    ("yolo_text", yolo_text),
 ];
 
 fn manifest_json(bytes: &[u8]) {
@@ -80,6 +83,18 @@ fn coco_files(bytes: &[u8]) {
         );
         done.report();
     }
+}
+
+fn coco_json(bytes: &[u8]) {
+    opendr_datasets::fuzzing::coco_json(bytes);
+}
+
+fn voc_xml(bytes: &[u8]) {
+    opendr_datasets::fuzzing::voc_xml(&String::from_utf8_lossy(bytes));
+}
+
+fn yolo_text(bytes: &[u8]) {
+    opendr_datasets::fuzzing::yolo_text(&String::from_utf8_lossy(bytes));
 }
 
 /// Feeds the parser called `name`.

@@ -37,9 +37,7 @@ def made_up(folder, seed=0):
             pixels = np.asfortranarray(random.random((height, width)) < 0.4, np.uint8)
             packed = coco_mask.encode(pixels)
             packed["counts"] = packed["counts"].decode()
-            flat = np.diff(np.flatnonzero(np.diff(np.concatenate([[0], pixels.ravel("F"), [2]]), prepend=0)))
             plain = {"size": [height, width], "counts": runs(pixels)}
-            assert flat.sum() <= height * width
             outline = [[x, y, x + w, y, x + w, y + h], [x, y, x + 1, y + h, x, y + h]]
             annotations.append({
                 "id": 1000 + len(annotations) * 3,
@@ -105,7 +103,7 @@ def test_classes_are_in_the_order_of_their_ids(data, tmp_path):
 
 def test_real_key_points_round_trip(data, test_data, tmp_path):
     source = test_data / "mmpose_samples/coco/test_coco.json"
-    data.convert("coco", source, "coco", tmp_path, "--split", "val", "--target", "PoseList")
+    data.convert("coco", source, "coco", tmp_path, "--to-split", "val", "--target", "PoseList")
     before, after = load(source), load(tmp_path / "annotations/person_keypoints_val.json")
     assert sorted(after.imgs) == sorted(before.imgs)
     assert after.dataset["categories"][0]["keypoints"] == before.dataset["categories"][0]["keypoints"]
@@ -140,7 +138,7 @@ def test_panoptic_keeps_segments(data, test_data, tmp_path):
     (source / "val2017").mkdir()
     for picture in truth["images"]:
         shutil.copy(test_data / "coco128/images/val2017" / picture["file_name"], source / "val2017")
-    data.convert("coco_panoptic", source, "coco_panoptic", tmp_path / "out", "--split", "val")
+    data.convert("coco_panoptic", source, "coco_panoptic", tmp_path / "out", "--to-split", "val")
     written = json.loads((tmp_path / "out/annotations/panoptic_val.json").read_text())
     categories = {category["id"]: category["name"] for category in truth["categories"]}
     assert {category["id"]: category["name"] for category in written["categories"]} == categories

@@ -11,8 +11,8 @@ use opendr_datasets::{OpenOptions, Problems, WriteOptions, find, open};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::{Error, Result, Silent, ValueType};
 
-const USAGE: &str =
-    "print FORMAT PATH, or convert FORMAT PATH TO OUT; --split NAME, --target TYPE, --skip-broken";
+const USAGE: &str = "print FORMAT PATH, or convert FORMAT PATH TO OUT; --split NAME, --to-split NAME, --target TYPE, \
+                     --skip-broken";
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -35,7 +35,8 @@ fn main() -> Result<()> {
     match words[..] {
         ["print", format, path] => print(&*dataset(format, path)?)?,
         ["convert", format, path, to, out] => {
-            let written = WriteOptions { split: after("--split"), link: false };
+            let written =
+                WriteOptions { split: after("--to-split").or_else(|| options.split.clone()), link: false };
             (find(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)?;
         }
         _ => return Err(Error::invalid_param(USAGE)),

@@ -28,3 +28,26 @@ pub fn yolo_text(text: &str) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+
+    #[test]
+    fn corpora_are_refused_or_read() {
+        let corpora = Path::new(&std::env::var("CARGO_MANIFEST_DIR").unwrap()).join("../../fuzz/corpus");
+        let parsers: [(&str, fn(&[u8])); 3] = [
+            ("coco_json", coco_json),
+            ("voc_xml", |bytes| voc_xml(&String::from_utf8_lossy(bytes))),
+            ("yolo_text", |bytes| yolo_text(&String::from_utf8_lossy(bytes))),
+        ];
+        for (name, parse) in parsers {
+            let files: Vec<_> = fs::read_dir(corpora.join(name)).unwrap().collect();
+            assert!(!files.is_empty(), "{name} has an empty corpus");
+            files.into_iter().for_each(|file| parse(&fs::read(file.unwrap().path()).unwrap()));
+        }
+    }
+}

@@ -11,6 +11,7 @@ pub(super) struct Categories {
     classes: Classes,
     /// Key points of each class, 0 where it has none.
     keypoints: Vec<usize>,
+    things: Vec<bool>,
 }
 
 impl Categories {
@@ -23,6 +24,7 @@ impl Categories {
             ids: records.iter().map(|record| record.id).collect(),
             classes: records.iter().map(name).collect(),
             keypoints: records.iter().map(|record| record.keypoints.len()).collect(),
+            things: records.iter().map(|record| record.isthing).collect(),
         }
     }
 
@@ -44,5 +46,10 @@ impl Categories {
     /// How many key points an object of a class has; 0 when the file does not tell.
     pub fn keypoints(&self, class: usize) -> usize {
         self.keypoints.get(class).copied().unwrap_or(0)
+    }
+
+    /// Whether objects of a class are told apart.
+    pub fn is_thing(&self, class: usize) -> bool {
+        self.things.get(class).copied().unwrap_or(true)
     }
 }

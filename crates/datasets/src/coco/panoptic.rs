@@ -1,6 +1,6 @@
 //! COCO panoptic: which pixel belongs to which thing or stuff, a PNG for each picture, told apart in one JSON file.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
@@ -23,8 +23,11 @@ use crate::label_png::{IGNORED, LabelMap};
 use crate::picture_files::{PictureWriter, Placed, open_picture, split_name, write_each};
 use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
-/// A COCO panoptic data set: a box with its mask for every segment, things and stuff, or a map of classes (255 where
-/// there is no segment).
+/// What the class is multiplied with in maps of labels, as the metric of panoptic quality takes them.
+const LABEL_DIVISOR: u32 = 1000;
+
+/// A COCO panoptic data set: a box with its mask for every segment, things and stuff, or a map of labels (class times
+/// 1000 plus number of the object; class 255 where there is no segment).
 #[derive(Debug)]
 pub struct CocoPanoptic {
     folder: PathBuf,
@@ -129,19 +132,24 @@ impl CocoPanoptic {
         Ok(BoundingBoxList { image_id: Some(self.picture(index)?.id), classes: self.classes(), ..boxes })
     }
 
-    fn class_map(&self, index: usize) -> Result<Heatmap> {
+    /// Class times 1000 plus number of the object: from 1, 0 for crowds and for stuff.
+    fn label_map(&self, index: usize) -> Result<Heatmap> {
         let (record, map) = self.segments(index)?;
-        let class = |at: usize| {
-            let segment = record.segments_info.get(at)?;
-            self.index.categories.class(segment.category_id).map(|class| class as u32)
-        };
-        let classes: Vec<_> =
-            (0..record.segments_info.len()).map(|at| class(at).unwrap_or(IGNORED)).collect();
-        let labels = map.places.iter().map(|place| match place {
-            None => IGNORED,
-            Some(at) => classes[*at as usize],
-        });
-        LabelMap { size: map.size, labels: labels.collect() }.into_heatmap(self.classes())
+        let (mut labels, mut counts) = (Vec::new(), HashMap::new());
+        for SegmentRecord { category_id, iscrowd, .. } in &record.segments_info {
+            let class = self.index.categories.class(*category_id).unwrap_or_default();
+            let next = counts.entry(class).or_insert(u32::from(self.index.categories.is_thing(class)));
+            let object = if *iscrowd { 0 } else { std::mem::replace(next, *next + 1) };
+            if object >= LABEL_DIVISOR {
+                return Err(Error::unsupported(format!(
+                    "over {LABEL_DIVISOR} objects of a class; read boxes"
+                )));
+            }
+            labels.push(class as u32 * LABEL_DIVISOR + object);
+        }
+        let label = |place: &Option<u32>| place.map_or(IGNORED * LABEL_DIVISOR, |at| labels[at as usize]);
+        LabelMap { size: map.size, labels: map.places.iter().map(label).collect() }
+            .into_heatmap(self.classes())
     }
 }
 
@@ -159,7 +167,7 @@ impl DatasetIterator for CocoPanoptic {
 
     fn target(&self, index: usize) -> Result<Option<Value>> {
         Ok(Some(match self.target {
-            ValueType::Heatmap => self.class_map(index)?.into(),
+            ValueType::Heatmap => self.label_map(index)?.into(),
             _ => self.boxes(index)?.into(),
         }))
     }
@@ -229,13 +237,13 @@ impl Format for CocoPanoptic {
             Some(other) => {
                 let other = other.name();
                 return Err(Error::unsupported(format!(
-                    "panoptic masks are read as boxes or class maps, not as {other}"
+                    "panoptic masks are read as boxes or label maps, not as {other}"
                 )));
             }
         };
         let index = Index::new::<Record>(file, problems)?;
         if target == ValueType::Heatmap && index.categories.ids().len() > IGNORED as usize {
-            return Err(Error::unsupported("over 255 categories do not fit a map of classes; read boxes"));
+            return Err(Error::unsupported("over 255 categories do not fit a map of labels; read boxes"));
         }
         let source = Source::new(file)?;
         let first = index.pictures.first().map(|picture| source.file_name(picture)).transpose()?;
@@ -325,7 +333,7 @@ mod tests {
         let folder = TemporaryFolder::new();
         let json = format!(
             r#"{{"images":[{{"id":9,"file_name":"a.png","width":3,"height":2}}],"annotations":[{{"image_id":9,
-            "file_name":"a.png","segments_info":[{segments}]}}],"categories":[{{"id":184,"name":"tree"}},{{"id":1,"name":"person"}}]}}"#
+            "file_name":"a.png","segments_info":[{segments}]}}],"categories":[{{"id":184,"name":"tree","isthing":0}},{{"id":1,"name":"person"}}]}}"#
         );
         folder.write("annotations/panoptic_val.json", json);
         folder.picture("val/a.png", 3, 2);
@@ -349,8 +357,8 @@ mod tests {
         let areas: Vec<_> = list.boxes.iter().map(|found| found.segment.as_deref().unwrap()).collect();
         assert_eq!((areas[0].area, areas[0].iscrowd, areas[1].area), (2.0, true, 3.0));
         assert_eq!((list.image_id, dataset.class_ids()), (Some(9), vec![1, 184]));
-        let map = open(folder.path(), Some(ValueType::Heatmap)).unwrap().class_map(0).unwrap();
-        assert_eq!(map.to_string(), "[[  1   1 255]\n [  0   1   0]]");
+        let map = open(folder.path(), Some(ValueType::Heatmap)).unwrap().label_map(0).unwrap();
+        assert_eq!(map.to_string(), "[[  1000   1000 255000]\n [     0   1000      0]]");
         CocoPanoptic::write(&dataset, other.path(), &WriteOptions::default(), &Problems::strict(), &Silent)
             .unwrap();
         let again = open(other.path(), None).unwrap();

@@ -25,6 +25,13 @@ pub(super) struct CategoryRecord {
     pub name: Option<String>,
     #[serde(default)]
     pub keypoints: Vec<String>,
+    /// Of panoptic files: whether its objects are told apart.
+    #[serde(default = "yes", deserialize_with = "flag")]
+    pub isthing: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// An entry of `annotations` of instances or key points.
