@@ -41,6 +41,46 @@ fn subsets_keep_names_and_order() {
 }
 
 #[test]
+fn parts_have_nothing_in_common_and_follow_from_the_seed() {
+    let numbers = Numbers(10, AtomicUsize::new(0));
+    let [train, val] = Subset::split(&numbers, 0.7, 5).unwrap();
+    assert_eq!((train.len(), val.len()), (7, 3));
+    let mut all = [train.indices(), val.indices()].concat();
+    all.sort_unstable();
+    assert_eq!(all, (0..10).collect::<Vec<_>>());
+    let again = |seed| Subset::split(&numbers, 0.7, seed).unwrap()[1].indices().to_vec();
+    assert_eq!(again(5), val.indices());
+    assert!((6..20).any(|seed| again(seed) != val.indices()));
+    assert!(Subset::split(&numbers, 1.5, 0).is_err());
+    let shuffled = Subset::shuffled(&numbers, 3);
+    assert_eq!(shuffled.indices(), Subset::shuffled(&numbers, 3).indices());
+    assert_ne!(shuffled.indices(), (0..10).collect::<Vec<_>>());
+}
+
+#[test]
+fn sequences_are_not_split() {
+    struct Videos;
+    impl Dataset for Videos {}
+    impl DatasetIterator for Videos {
+        fn len(&self) -> usize {
+            12
+        }
+
+        fn get(&self, _index: usize) -> Result<Sample> {
+            Ok(Sample { data: Vec::new(), target: None })
+        }
+
+        fn sequence(&self, index: usize) -> Option<usize> {
+            Some(index / 4)
+        }
+    }
+    let [train, val] = Subset::split(&Videos, 0.5, 1).unwrap();
+    assert_eq!((train.len(), val.len()), (8, 4));
+    let video = val.indices()[0] / 4;
+    assert!(val.indices().iter().all(|index| index / 4 == video));
+}
+
+#[test]
 fn cached_samples_are_read_once() {
     let numbers = Numbers(3, AtomicUsize::new(0));
     let cached = CachedDatasetIterator::new(&numbers);
