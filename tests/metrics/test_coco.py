@@ -4,10 +4,13 @@ import contextlib
 import copy
 import io
 import json
+import os
+import subprocess
 
 import hotcoco
 import numpy as np
 import pytest
+from conftest import ROOT
 from pycocotools import mask as masks
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
@@ -21,6 +24,19 @@ METRICS = {
 }
 CASES = 200
 WIDTH, HEIGHT = 320, 240
+
+
+@pytest.fixture(scope="session")
+def coco_files():
+    """The numbers of pairs of files, by crates/metrics/examples/coco_files.rs."""
+    program = os.environ.get("OPENDR_METRICS_COCO_FILES")
+    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-metrics", "--example", "coco_files"]
+
+    def run(kind, *paths):
+        done = subprocess.run([*command, kind, *paths], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
+        return [json.loads(line) for line in done.stdout.splitlines()]
+
+    return run
 
 
 def reference(truth, results, kind, use_classes=True):
@@ -256,6 +272,27 @@ def test_classes_as_one(compute, kind):
     reports = compute(*(case(*pair, kind, use_classes=False) for pair in cases))
     for pair, report in zip(cases, reports, strict=True):
         assert_equal(report, reference(*pair, kind, use_classes=False), kind)
+
+
+@pytest.mark.parametrize("kind", METRICS)
+def test_files(coco_files, tmp_path, kind):
+    """Numbers keep all their digits; areas are those of boxes where the first result has one."""
+    rng = np.random.default_rng(12)
+    make = random_persons if kind == "keypoints" else random_objects
+    paths, wanted = [], []
+    for at in range(CASES):
+        truth, results = make(rng, kind)
+        if kind != "bbox" and rng.random() < 0.3:
+            for result in results:
+                result["bbox"] = random_box(rng)
+        for entry in results:
+            entry["score"] += round(rng.random() * 1e-9, 12)
+        pair = [tmp_path / f"{at}_truth.json", tmp_path / f"{at}_results.json"]
+        for path, content in zip(pair, (truth, results), strict=True):
+            path.write_text(json.dumps(content, indent=int(rng.integers(0, 2)) or None))
+        paths += pair
+        wanted.append(reference(truth, results, kind))
+    np.testing.assert_allclose(coco_files(kind, *paths), wanted, rtol=0, atol=1e-6)
 
 
 def test_parts_do_not_matter(compute):
