@@ -207,7 +207,7 @@ impl WavFormat {
 
     fn audio(self, body: &[u8], start: usize) -> Result<Audio> {
         let width = self.encoding.bytes();
-        if body.len() % (width * self.channels) != 0 {
+        if !body.len().is_multiple_of(width * self.channels) {
             return Err(Error::format(format!(
                 "byte {start}: {} bytes are no whole number of {}-byte instants; the file is cut off",
                 body.len(),

@@ -5,6 +5,7 @@
 
 mod answers;
 mod classes;
+mod coco_results;
 mod evaluation;
 mod figure;
 mod journal;
@@ -17,6 +18,7 @@ mod worst;
 
 pub use answers::{Answers, Lines};
 pub use classes::ClassMap;
+pub use coco_results::{is_coco_results, score_coco_results};
 pub use evaluation::{Evaluation, Subject};
 pub use figure::svg_from_figure;
 pub use open::open_for;

@@ -51,6 +51,21 @@ pub struct Outcome {
 impl Outcome {
     /// Writes `report.json`, an SVG file for each figure, and a sheet of the worst samples into a folder.
     pub(crate) fn write(&mut self, dataset: &dyn DatasetIterator, folder: &Path) -> Result<()> {
+        self.write_report(folder)?;
+        if let Some(sheet) = worst_sheet(&self.worst, dataset)? {
+            let path = folder.join("worst.png");
+            opendr_vision::save(&sheet, &path)?;
+            self.written.push(path);
+        }
+        Ok(())
+    }
+
+    /// Writes `report.json` and an SVG file for each figure into a folder, which is made where it is not there.
+    ///
+    /// # Errors
+    /// `Io` when a file cannot be written.
+    pub fn write_report(&mut self, folder: &Path) -> Result<()> {
+        fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
         let json = serde_json::to_string_pretty(self)
             .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
         let mut files = vec![("report.json".to_owned(), json + "\n")];
@@ -61,11 +76,6 @@ impl Outcome {
         for (name, text) in files {
             let path = folder.join(name);
             fs::write(&path, text).context(|| format!("writing {}", path.display()))?;
-            self.written.push(path);
-        }
-        if let Some(sheet) = worst_sheet(&self.worst, dataset)? {
-            let path = folder.join("worst.png");
-            opendr_vision::save(&sheet, &path)?;
             self.written.push(path);
         }
         Ok(())

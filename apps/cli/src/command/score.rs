@@ -7,7 +7,7 @@ use opendr::dataset::ExternalDataset;
 use opendr::datasets::{self, OpenOptions, Problems};
 use opendr::evaluation::{self, Answers, Evaluation, Lines, Subject};
 use opendr::metrics::{self, MetricEntry};
-use opendr::{Error, Result};
+use opendr::{Error, Result, inference};
 
 use crate::command::eval;
 use crate::exit::Outcome;
@@ -54,7 +54,18 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let problems = dataset_flags::problems(matches);
     let external = dataset_flags::external(matches);
     let path = matches.get_one::<PathBuf>("answers").cloned().unwrap_or_default();
-    let dataset = evaluation::open_for(metric, &external, dataset_flags::split(matches), &problems)?;
+    let split = dataset_flags::split(matches);
+    if evaluation::is_coco_results(&path)? {
+        let params = eval::metric_params(metric, matches)?;
+        let threads = inference::default_threads()?;
+        let mut outcome =
+            evaluation::score_coco_results(metric, &params, &path, external.path(), split, threads)?;
+        if let Some(folder) = matches.get_one::<PathBuf>("out") {
+            outcome.write_report(folder)?;
+        }
+        return eval::tell(&outcome, matches, &problems, &bar);
+    }
+    let dataset = evaluation::open_for(metric, &external, split, &problems)?;
     let answers = match path.extension().and_then(|extension| extension.to_str()) {
         Some("jsonl") => Answers::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
         _ => Answers::from_dataset(open(&path, &external, metric, matches, &problems)?, dataset.as_ref()),

@@ -99,6 +99,26 @@ pub(crate) fn index_bytes(bytes: &[u8]) -> Result<usize> {
     Ok(index.annotations.len())
 }
 
+impl Coco {
+    /// The JSON file of the annotations that [`Coco::open`](Format::open) reads.
+    ///
+    /// # Errors
+    /// `NotFound` when there is none, or none of the part.
+    pub fn annotation_file(path: &Path, options: &OpenOptions) -> Result<PathBuf> {
+        let files = locate::annotation_files(path);
+        if files.is_empty() {
+            let wanted = "no annotation file (*.json)";
+            return Err(Error::not_found(format!("{wanted} in {} or its annotations/", path.display())));
+        }
+        let kinds = match options.target {
+            Some(ValueType::PoseList) => ["person_keypoints_", "instances_"],
+            _ => ["instances_", "person_keypoints_"],
+        };
+        let file = locate::choose(&files, options.split.as_deref(), &kinds);
+        file.cloned().context(|| path.display().to_string())
+    }
+}
+
 fn name_begins(file: &Path, beginnings: &[&str]) -> bool {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     beginnings.iter().any(|beginning| name.starts_with(beginning))
@@ -178,17 +198,7 @@ impl Format for Coco {
     }
 
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
-        let files = locate::annotation_files(path);
-        if files.is_empty() {
-            let wanted = "no annotation file (*.json)";
-            return Err(Error::not_found(format!("{wanted} in {} or its annotations/", path.display())));
-        }
-        let kinds = match options.target {
-            Some(ValueType::PoseList) => ["person_keypoints_", "instances_"],
-            _ => ["instances_", "person_keypoints_"],
-        };
-        let file = locate::choose(&files, options.split.as_deref(), &kinds)
-            .context(|| path.display().to_string())?;
+        let file = &Self::annotation_file(path, options)?;
         let target = match options.target {
             None if name_begins(file, &["person_keypoints_"]) => ValueType::PoseList,
             None | Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,

@@ -1,0 +1,84 @@
+//! Files of results as COCO's server takes them.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use std::time::Instant;
+
+use opendr_datasets::{Coco, OpenOptions};
+use opendr_engine::params::{ParamMap, ParamValue};
+use opendr_engine::{Error, Result, ResultExt};
+use opendr_metrics::MetricEntry;
+use opendr_metrics::coco::files::{CocoFiles, CocoKind};
+
+use crate::Outcome;
+
+/// Bytes that tell what a file is.
+const HEAD: u64 = 4096;
+
+/// Compares a file of COCO's results with the annotations of a COCO data set, number for number as they stand in the files,
+/// on `threads` threads: the way that is as fast as reading them.
+///
+/// # Errors
+/// `Unsupported` for a metric that is none of COCO's; `NotFound` without annotations; `Format` with the place in the file.
+pub fn score_coco_results(
+    metric: &MetricEntry,
+    params: &ParamMap,
+    results: &Path,
+    dataset: &Path,
+    split: Option<String>,
+    threads: usize,
+) -> Result<Outcome> {
+    let begun = Instant::now();
+    let kind = match metric.name {
+        "coco_detection" => CocoKind::Boxes,
+        "coco_segmentation" => CocoKind::Masks,
+        "coco_keypoints" => CocoKind::Keypoints,
+        other => {
+            return Err(Error::unsupported(format!(
+                "a file of COCO's results is measured by coco_detection, coco_segmentation or coco_keypoints, not by {other}"
+            )));
+        }
+    };
+    // Checks the parameters.
+    metric.make(params)?;
+    let options = OpenOptions { split, target: Some(metric.truth) };
+    let annotations = Coco::annotation_file(dataset, &options)?;
+    let mut files = CocoFiles { threads, ..CocoFiles::new(kind) };
+    if let Some(ParamValue::Bool(use_classes)) = params.get("use_classes") {
+        files.use_classes = *use_classes;
+    }
+    if let Some(most) = params.get("max_detections").and_then(ParamValue::as_int) {
+        files.max_detections = u32::try_from(most).unwrap_or(u32::MAX);
+    }
+    let found = files.compare(&annotations, results)?;
+    let pictures = usize::try_from(found.pictures).unwrap_or(usize::MAX);
+    Ok(Outcome {
+        learner: results.display().to_string(),
+        dataset: annotations.display().to_string(),
+        metric: metric.name.to_owned(),
+        samples: pictures,
+        counted: pictures,
+        skipped: 0,
+        complete: true,
+        seconds: begun.elapsed().as_secs_f64(),
+        report: found.report(),
+        worst: Vec::new(),
+        problems: Vec::new(),
+        written: Vec::new(),
+    })
+}
+
+/// Whether a file is a list in JSON, as COCO's results are.
+///
+/// # Errors
+/// `Io` when it cannot be read.
+pub fn is_coco_results(path: &Path) -> Result<bool> {
+    if !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+        return Ok(false);
+    }
+    let context = || format!("opening {}", path.display());
+    let mut head = Vec::new();
+    File::open(path).context(context)?.take(HEAD).read_to_end(&mut head).context(context)?;
+    Ok(head.trim_ascii_start().first() == Some(&b'['))
+}
