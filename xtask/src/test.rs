@@ -68,7 +68,9 @@ fn references(environment: &Environment) -> Result<()> {
     let examples = target().join("debug/examples");
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra", "tests/metrics", "tests/datasets"]);
-    pytest.env("OPENDR_METRICS_COMPUTE", examples.join("compute")).env("OPENDR_EXAMPLES", &examples);
+    pytest
+        .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
+        .env("OPENDR_DATASETS_DATA", examples.join("data"));
     environment.apply(&mut pytest);
     step("tests beside the reference tools", &mut pytest)
 }

@@ -122,6 +122,9 @@ fn read_annotations(path: &Path, length: Option<usize>) -> Result<Vec<WfdbAnnota
     Ok(annotations)
 }
 
+/// A record that was read.
+type ReadRecord = Arc<(WfdbHeader, Timeseries)>;
+
 /// WFDB records: a sample is a whole record without target, or, where beats are annotated and the target is a
 /// `Category` (the default), one beat with its kind by the classes of AAMI EC57 (N, S, V, F, Q).
 ///
@@ -132,7 +135,7 @@ pub struct Wfdb {
     records: Vec<PathBuf>,
     beats: Option<Beats>,
     /// The records that beats were cut from last.
-    kept: Mutex<Vec<(usize, Arc<(WfdbHeader, Timeseries)>)>>,
+    kept: Mutex<Vec<(usize, ReadRecord)>>,
 }
 
 impl Wfdb {
@@ -142,7 +145,7 @@ impl Wfdb {
     }
 
     /// Record number `record`, which is kept for the next beat.
-    fn record(&self, record: usize) -> Result<Arc<(WfdbHeader, Timeseries)>> {
+    fn record(&self, record: usize) -> Result<ReadRecord> {
         let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((_, found)) = lock().iter().find(|(number, _)| *number == record) {
             return Ok(Arc::clone(found));
