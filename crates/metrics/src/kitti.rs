@@ -37,7 +37,7 @@ impl Kitti {
     /// Counts picture number `at`; how well boxes of the same class cover each other in space, 0 to 1.
     ///
     /// # Errors
-    /// `InvalidInput` for more than 4096 boxes, and for one whose numbers are not finite.
+    /// `InvalidInput` for more than 1024 boxes, and for one whose numbers are not finite.
     pub fn count(&mut self, at: usize, found: &[KittiObject], truth: &[KittiObject]) -> Result<f64> {
         let frame = Frame::new(at, found, truth)?;
         let coverage = frame.coverage;

@@ -8,7 +8,7 @@ use opendr_engine::{Error, Result};
 use crate::image_overlap::image_overlap;
 
 /// Pairs of one picture, so that a hostile list cannot ask for all memory.
-const MOST_PAIRS: usize = 1 << 24;
+const MOST_PAIRS: usize = 1 << 22;
 
 /// Identities of one picture and the overlap of every pair.
 #[derive(Debug, Clone, Default, PartialEq)]

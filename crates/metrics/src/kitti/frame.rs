@@ -7,7 +7,7 @@ use super::rules::{KittiOverlap, ObjectKind, Role, Rules, SMALLEST_LEAST_OVERLAP
 use crate::{StandingBox, image_cover, image_overlap};
 
 /// Boxes of one picture: more are a mistake, and their overlaps would fill the memory.
-const MOST_BOXES: usize = 4096;
+const MOST_BOXES: usize = 1024;
 
 #[derive(Debug, Clone, Copy)]
 struct Found {
