@@ -12,7 +12,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 @pytest.fixture(scope="session")
 def compute():
-    """Computes cases `{"metric": .., "params": .., "samples": ..}` and gives their reports, as crates/metrics/examples/compute.rs."""
+    """Computes cases `{"metric": .., "params": .., "samples": ..}` by crates/metrics/examples/compute.rs."""
     program = os.environ.get("OPENDR_METRICS_COMPUTE")
     command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-metrics", "--example", "compute"]
 

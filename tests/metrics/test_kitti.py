@@ -137,12 +137,13 @@ def placed(name, x, z, rotation_y, size, occluded=0, truncated=0.0, confidence=0
 
 def dont_care(random):
     left, top = random.uniform(0, 1000), random.uniform(120, 200)
+    right, bottom = left + random.uniform(50, 300), top + random.uniform(30, 120)
     return {
         "name": "DontCare",
         "truncated": -1,
         "occluded": -1,
         "alpha": -10,
-        "bbox2d": [round(edge, 2) for edge in (left, top, left + random.uniform(50, 300), top + random.uniform(30, 120))],
+        "bbox2d": [round(edge, 2) for edge in (left, top, right, bottom)],
         "dimensions": [-1, -1, -1],
         "location": [-1000, -1000, -1000],
         "rotation_y": -10,

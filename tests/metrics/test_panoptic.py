@@ -161,6 +161,29 @@ def test_random_pictures(compute, tmp_path, seed):
     assert 0.1 < report["scalars"]["pq"] < 0.9
 
 
+def test_void_as_torchmetrics(compute):
+    """Without crowds, which torchmetrics does not know, and void answers, which it does not count as missed."""
+    torch = pytest.importorskip("torch")
+    detection = pytest.importorskip("torchmetrics.detection")
+    random = np.random.default_rng(5)
+    things, stuff = [1, 2, 3], [20, 21, 22]
+    metric = detection.PanopticQuality(
+        things=set(things), stuffs=set(stuff), allow_unknown_preds_category=True, return_sq_and_rq=True
+    ).double()
+    pictures = []
+    for _ in range(30):
+        truth = random_truth(random, things, stuff)
+        truth[np.isin(truth, np.array(things) * DIVISOR)] += 50
+        found = random_answer(random, truth, things, stuff)
+        found[found == VOID * DIVISOR] = stuff[-1] * DIVISOR
+        pictures.append((found, truth))
+        sides = [np.stack([side // DIVISOR, side % DIVISOR], axis=-1).astype(np.int64)[None] for side in (found, truth)]
+        metric.update(*(torch.from_numpy(side) for side in sides))
+    (report,) = compute(case(pictures, things))
+    wanted = dict(zip(["pq", "sq", "rq"], metric.compute().tolist()))
+    assert {key: report["scalars"][key] for key in wanted} == pytest.approx(wanted, abs=1e-6)
+
+
 def masks_of(labels, things, is_truth):
     """The same segments as boxes with masks."""
     ids, table = segments_of(labels, things, is_truth)
