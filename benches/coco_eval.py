@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """COCO's evaluation of boxes beside pycocotools, faster-coco-eval and hotcoco, in one run, on the same machine.
 
-    cargo build --release -p opendr-metrics --example coco_files
-    benches/coco_eval.py --program target/release/examples/coco_files [--threads 2] [--rounds 5]
+    cargo build --release
+    benches/coco_eval.py [--program target/release/opendr] [--threads 2] [--rounds 5]
 
 From two JSON files on disk to the twelve numbers: 5,000 synthetic pictures, 36,000 objects of 80 classes, 100 detections
 a picture. Seconds of the whole process for ours, without start and imports for the others. Needs numpy, pycocotools,
@@ -79,16 +79,21 @@ def write_files(truth, results):
     results.write_text(json.dumps(found))
 
 
+#: In the order of pycocotools.
+NUMBERS = ["map", "map50", "map75", "map_small", "map_medium", "map_large"]
+NUMBERS += ["mar1", "mar10", "mar", "mar_small", "mar_medium", "mar_large"]
+
+
 def ours(program, threads, truth, results):
     start = time.perf_counter()
-    process = subprocess.Popen(
-        [program, "bbox", "--threads", str(threads), truth, results], stdout=subprocess.PIPE, text=True
-    )
+    command = [program, "score", results, truth, "--metric", "coco_detection", "--threads", str(threads), "--json"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     answer = process.stdout.read()
     _, status, usage = os.wait4(process.pid, 0)
     seconds = time.perf_counter() - start
     assert status == 0
-    return [seconds, usage.ru_maxrss / 1024, json.loads(answer)]
+    scalars = json.loads(answer)["scalars"]
+    return [seconds, usage.ru_maxrss / 1024, [scalars.get(name, -1.0) for name in NUMBERS]]
 
 
 def peer(name, truth, results):
@@ -98,7 +103,7 @@ def peer(name, truth, results):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--program", default="target/release/examples/coco_files")
+    parser.add_argument("--program", default="target/release/opendr")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--without", nargs="*", default=[], choices=PEERS, help="slow peers to leave out")

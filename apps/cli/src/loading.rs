@@ -32,11 +32,7 @@ pub fn flags() -> [Arg; 5] {
             .default_value("auto")
             .value_name("DEVICE")
             .help(format!("Where to run: {}", Device::NAMES.join(", "))),
-        Arg::new("threads")
-            .long("threads")
-            .value_parser(value_parser!(u16))
-            .value_name("N")
-            .help("Threads that work on pictures, 0 for all cores [env: OPENDR_THREADS]"),
+        threads(),
         Arg::new("model")
             .long("model")
             .value_parser(value_parser!(PathBuf))
@@ -45,6 +41,15 @@ pub fn flags() -> [Arg; 5] {
         offline(),
         quiet(),
     ]
+}
+
+/// The flag that says how many cores may be used.
+pub fn threads() -> Arg {
+    Arg::new("threads")
+        .long("threads")
+        .value_parser(value_parser!(u16))
+        .value_name("N")
+        .help("Threads that work, 0 for all cores [env: OPENDR_THREADS]")
 }
 
 /// The flag that keeps off the network.

@@ -40,7 +40,7 @@ pub fn grammar() -> Command {
                 .help("The format of the answers; by default the data set's"),
         )
         .args(eval::metric_flags())
-        .arg(loading::quiet())
+        .args([loading::threads(), loading::quiet()])
         .after_help(EXAMPLES)
 }
 
