@@ -10,6 +10,7 @@ mod index;
 mod locate;
 mod panoptic;
 mod record;
+mod results;
 mod segment_map;
 mod source;
 #[cfg(test)]
@@ -29,6 +30,7 @@ use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 use index::{Entry, Index, Picture};
 pub use panoptic::CocoPanoptic;
 use record::AnnotationRecord;
+pub use results::coco_results;
 use source::Source;
 
 /// Keys that only an annotation file begins with.
@@ -91,12 +93,11 @@ impl Coco {
     }
 }
 
-/// Indexes the annotation file in `bytes`; how many annotations it has. For the fuzzers.
-pub(crate) fn index_bytes(bytes: &[u8]) -> Result<usize> {
-    let problems = Problems::skipping();
-    let index =
-        Index::from_reader::<AnnotationRecord, _>(Cursor::new(bytes), Path::new("a.json"), &problems)?;
-    Ok(index.annotations.len())
+/// Indexes the annotation file in `bytes`, as instances and as panoptic segments. For the fuzzers.
+pub(crate) fn index_bytes(bytes: &[u8]) {
+    let (problems, path) = (Problems::skipping(), Path::new("a.json"));
+    let _ = Index::from_reader::<AnnotationRecord, _>(Cursor::new(bytes), path, &problems);
+    let _ = Index::from_reader::<panoptic::Record, _>(Cursor::new(bytes), path, &problems);
 }
 
 impl Coco {
@@ -105,7 +106,10 @@ impl Coco {
     /// # Errors
     /// `NotFound` when there is none, or none of the part.
     pub fn annotation_file(path: &Path, options: &OpenOptions) -> Result<PathBuf> {
-        let files = locate::annotation_files(path);
+        let mut files = locate::annotation_files(path);
+        if !path.is_file() {
+            files.retain(|file| !name_begins(file, &["captions_", "panoptic_", "stuff_", "image_info_"]));
+        }
         if files.is_empty() {
             let wanted = "no annotation file (*.json)";
             return Err(Error::not_found(format!("{wanted} in {} or its annotations/", path.display())));

@@ -39,7 +39,7 @@ pub struct CocoPanoptic {
 
 /// An entry of `annotations`.
 #[derive(Debug, Serialize, Deserialize)]
-struct Record {
+pub(super) struct Record {
     image_id: i64,
     file_name: String,
     segments_info: Vec<SegmentRecord>,

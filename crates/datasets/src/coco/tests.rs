@@ -96,6 +96,24 @@ fn what_is_written_is_read() {
 }
 
 #[test]
+fn results_have_the_files_own_numbers() {
+    let scratch = small();
+    let coco = open(scratch.path(), &Problems::strict()).unwrap();
+    let mut found = BoundingBoxList::from(vec![BoundingBox::new(1, 1.0, 2.0, 3.0, 4.0, 0.5)]);
+    let entries = |found: &BoundingBoxList| {
+        let entries = coco_results(&coco, 1, found)?;
+        Ok::<_, Error>(
+            entries.iter().map(|entry| (entry.image_id, entry.category_id.clone())).collect::<Vec<_>>(),
+        )
+    };
+    assert_eq!(entries(&found).unwrap(), [(Some(7), Name::Index(90))]);
+    found.classes = ["person", "dog"].into_iter().collect();
+    assert_eq!(entries(&found).unwrap(), [(Some(7), Name::Index(18))]);
+    found.boxes[0].name = Name::Index(0);
+    assert!(entries(&found).unwrap_err().to_string().contains("no class \"person\""));
+}
+
+#[test]
 fn poses_keep_visibility_and_region() {
     let scratch = TemporaryFolder::new();
     let points: Vec<f32> = (0..17).flat_map(|at| [at as f32, 2.0, (at % 3) as f32]).collect();

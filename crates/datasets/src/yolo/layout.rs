@@ -75,6 +75,12 @@ impl Layout {
             return Ok(layout);
         };
         let keys = Keys::new(&file, &read_text(&file)?)?;
+        if keys.get("kpt_shape").is_some() {
+            let file = file.display();
+            return Err(Error::unsupported(format!(
+                "{file}: YOLO's key points are not read; convert them to COCO"
+            )));
+        }
         layout.name_classes(&file, &keys)?;
         let parts: Vec<_> = keys.names().filter(|name| SPLITS.contains(name)).map(str::to_owned).collect();
         let base = base_of(&root, &keys);

@@ -97,6 +97,8 @@ fn lists_name_pictures_inside_only() {
     let yolo = Yolo::open(folder.path(), &OpenOptions::default(), &problems).unwrap();
     assert_eq!((yolo.len(), problems.count(), yolo.class_ids()), (1, 1, vec![1, 3]));
     assert_eq!(boxes(&yolo, 0).unwrap().boxes[0].name, Name::Index(1));
+    folder.write("data.yaml", "val: images/val\nkpt_shape: [17, 3]\nnames: [person]\n");
+    assert!(open(folder.path(), None).unwrap_err().to_string().contains("key points are not read"));
 }
 
 #[cfg(unix)]
