@@ -60,7 +60,7 @@ impl Metric for Voc {
     const ABOUT: &'static str =
         "Pascal VOC's average precision of boxes; that of faces, some of them ignored";
     const NUMBERS: &'static [(&'static str, &'static str)] =
-        &[("map", "average precision, the mean over classes that have objects")];
+        &[("map", "Average precision, the mean over classes that have objects.")];
     const RANKS: bool = true;
     type Params = VocParams;
     type Prediction = BoundingBoxList;
