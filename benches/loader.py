@@ -24,7 +24,7 @@ from torchvision import tv_tensors
 from torchvision.io import decode_jpeg, read_file
 from torchvision.transforms import v2
 
-SIDE, ROUNDS = 416, 5
+SIDE, ROUNDS = 416, 3
 
 
 def transforms(crop, hue, antialias):

@@ -2,7 +2,7 @@
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::{Field, ParamMap, Params};
-use opendr_engine::{Random, Result};
+use opendr_engine::{Error, Random, Result};
 
 use crate::augment::Others;
 
@@ -50,7 +50,26 @@ impl AugmentEntry {
             name: A::NAME,
             about: A::ABOUT,
             fields: A::FIELDS,
-            make: |params| Ok(Box::new(A::from_map(params)?)),
+            make: |params| {
+                let augmentation = A::from_map(params)?;
+                check(&augmentation)?;
+                Ok(Box::new(augmentation))
+            },
         }
     }
+}
+
+/// Checks every parameter, and that no `min_...` is over its `max_...`.
+pub(super) fn check<A: Augmentation>(augmentation: &A) -> Result<()> {
+    augmentation.check()?;
+    let params = augmentation.to_map();
+    for (name, low) in &params {
+        let high_name = name.strip_prefix("min_").map(|rest| format!("max_{rest}"));
+        if let Some(high) = high_name.and_then(|high| params.get(&high))
+            && low.as_float() > high.as_float()
+        {
+            return Err(Error::invalid_param(format!("{name} = {low} is over its largest value, {high}; give less")));
+        }
+    }
+    Ok(())
 }

@@ -4,6 +4,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Random, Result, ResultExt};
 
+use crate::augment::augmentation::check;
 use crate::augment::{Augment, Augmentation, Others, find_augmentation};
 
 /// Augmentations in the order in which they are applied, each with its probability.
@@ -43,7 +44,7 @@ impl Pipeline {
     /// # Errors
     /// `InvalidParam` when the probability or a parameter is out of its range.
     pub fn sometimes<A: Augmentation>(self, probability: f32, augmentation: A) -> Result<Self> {
-        augmentation.check().context(|| A::NAME)?;
+        check(&augmentation).context(|| A::NAME)?;
         self.push(A::NAME, probability, Box::new(augmentation))
     }
 

@@ -95,5 +95,5 @@ fn follow_runs(runs: &Rle, map: &PictureMap) -> Result<Rle> {
     let [height, width] = runs.size();
     let map = map.for_size([width as usize, height as usize]);
     let [columns, rows] = map.output_size();
-    Rle::from_mask(&nearest_plane(&runs.mask()?, &map, false), rows as u32, columns as u32)
+    Rle::from_mask(&nearest_plane(&runs.mask()?, &map, false)?, rows as u32, columns as u32)
 }

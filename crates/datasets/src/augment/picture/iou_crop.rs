@@ -3,7 +3,7 @@
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::target::BoundingBox;
-use opendr_engine::{Error, Random, Result, Value};
+use opendr_engine::{Random, Result, Value};
 
 use crate::augment::picture::{Border, PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
@@ -84,12 +84,6 @@ impl Augmentation for IouCrop {
 
 impl Augment for IouCrop {
     fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        if self.min_scale > self.max_scale || self.min_ratio > self.max_ratio {
-            return Err(Error::invalid_param(format!(
-                "scales from {} to {} and ratios from {} to {}: give the smaller first",
-                self.min_scale, self.max_scale, self.min_ratio, self.max_ratio
-            )));
-        }
         let size = picture_size(sample)?;
         let mut boxes = Vec::new();
         retain_boxes(sample, |found| {

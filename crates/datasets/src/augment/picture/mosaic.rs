@@ -8,6 +8,7 @@ use opendr_engine::{Error, Random, Result, Value};
 
 use crate::augment::picture::border::Border;
 use crate::augment::picture::targets::follow;
+use crate::augment::picture::warp::check_size;
 use crate::augment::picture::{PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
 
@@ -43,6 +44,7 @@ impl Augment for Mosaic {
             let share = random.uniform(self.margin, 1.0 - self.margin);
             ((side as f32 * share) as usize).clamp(1, side - 1)
         });
+        check_size(size, 3)?;
         let mut canvas = vec![0u8; self.width * self.height * 3];
         let mut whole: Option<Sample> = None;
         // The quarter that the sample itself takes is as random as the others.

@@ -2,7 +2,7 @@
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Random, Result};
 
 use crate::augment::picture::{Border, PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
@@ -55,7 +55,7 @@ impl RandomResizedCrop {
                 return [corner[0], corner[1], sides[0], sides[1]];
             }
         }
-        let ratio = (width / height).clamp(self.min_ratio, self.max_ratio);
+        let ratio = (width / height).max(self.min_ratio).min(self.max_ratio);
         let sides = [width.min(height * ratio), height.min(width / ratio)];
         let sides = [0, 1].map(|axis| (sides[axis].round() as usize).clamp(1, size[axis]));
         [(size[0] - sides[0]) / 2, (size[1] - sides[1]) / 2, sides[0], sides[1]]
@@ -69,12 +69,6 @@ impl Augmentation for RandomResizedCrop {
 
 impl Augment for RandomResizedCrop {
     fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        if self.min_area > self.max_area || self.min_ratio > self.max_ratio {
-            return Err(Error::invalid_param(format!(
-                "areas from {} to {} and ratios from {} to {}: give the smaller first",
-                self.min_area, self.max_area, self.min_ratio, self.max_ratio
-            )));
-        }
         let (size, wanted) = (picture_size(sample)?, [self.width, self.height]);
         let window = self.window(size, random);
         let map = PictureMap::window(size, window, [0, 0, self.width, self.height], wanted);

@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result, Value};
 use crate::augment::picture::border::Border;
 use crate::augment::picture::boxes::follow_box;
 use crate::augment::picture::map::PictureMap;
-use crate::augment::picture::warp::nearest_plane;
+use crate::augment::picture::warp::{check_size, nearest_plane};
 
 /// Maps whatever stands in a picture; what says something of the whole (a class, a text) stays.
 pub(super) fn follow(target: &mut Value, map: &PictureMap, border: &Border) -> Result<()> {
@@ -103,8 +103,8 @@ fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> R
     let map = map.for_size([width, height]);
     let [columns, rows] = map.output_size();
     let values = match heatmap.values() {
-        HeatmapValues::Labels(labels) => HeatmapValues::Labels(each_plane(labels, &map, border.label).into()),
-        HeatmapValues::Scores(scores) => HeatmapValues::Scores(each_plane(scores, &map, 0.0).into()),
+        HeatmapValues::Labels(labels) => HeatmapValues::Labels(each_plane(labels, &map, border.label)?.into()),
+        HeatmapValues::Scores(scores) => HeatmapValues::Scores(each_plane(scores, &map, 0.0)?.into()),
     };
     let shape: Vec<usize> = shape[..shape.len() - 2].iter().copied().chain([rows, columns]).collect();
     let mut moved = Heatmap::new(values, &shape)?;
@@ -114,10 +114,14 @@ fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> R
     Ok(())
 }
 
-fn each_plane<T: Copy>(values: &[T], map: &PictureMap, fill: T) -> Vec<T> {
+fn each_plane<T: Copy>(values: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>> {
     let [width, height] = map.input_size();
-    let planes = values.chunks_exact((width * height).max(1));
-    planes.flat_map(|plane| nearest_plane(plane, map, fill)).collect()
+    let mut moved = Vec::new();
+    for plane in values.chunks_exact((width * height).max(1)) {
+        check_size(map.output_size(), values.len() / plane.len())?;
+        moved.extend(nearest_plane(plane, map, fill)?);
+    }
+    Ok(moved)
 }
 
 #[cfg(test)]

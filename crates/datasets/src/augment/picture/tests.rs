@@ -11,7 +11,7 @@ use opendr_engine::{ErrorKind, Random, Result, Value};
 use proptest::prelude::*;
 
 use super::*;
-use crate::augment::{Augment, Others, augmentations};
+use crate::augment::{Augment, Others, Pipeline, augmentations};
 
 /// What stands in the picture is brighter than this; ground and filling are darker.
 const BRIGHT: u8 = 180;
@@ -394,7 +394,29 @@ fn what_cannot_follow_is_refused() {
     let refused = Flip::default().apply(&mut empty, &mut Random::new(0), &Others::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidInput);
     let mut sample = painted([40, 30], [5, 5, 20, 20]);
-    let huge = Resize { width: 65535, height: 65535 };
-    let refused = huge.apply(&mut sample, &mut Random::new(0), &Others::none());
+    let huge: [&dyn Augment; 2] = [
+        &Resize { width: 65535, height: 65535 },
+        &Mosaic { width: 65535, height: 65535, ..Default::default() },
+    ];
+    for augment in huge {
+        let refused = augment.apply(&mut sample, &mut Random::new(0), &Others::of(&Shelf(2)));
+        assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
+    }
+    // A label map of another resolution grows with the picture, here far too much.
+    let mut sample = painted([1, 1], [0, 0, 1, 1]);
+    sample.target = Some(Heatmap::from_labels(vec![0; 1 << 16], &[1 << 8, 1 << 8]).unwrap().into());
+    let refused = Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &Others::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
+}
+
+#[test]
+fn parameters_are_checked() {
+    let turned = Blur { min_deviation: 2.0, max_deviation: 1.0 };
+    let error = Pipeline::default().then(turned).err().unwrap();
+    assert_eq!(error.to_string(), "blur: min_deviation = 2 is over its largest value, 1; give less");
+    assert!(Pipeline::default().sometimes(1.5, Flip::default()).is_err());
+    let params = ParamMap::from([("width".to_owned(), 0i64.into())]);
+    let error = Pipeline::default().by_name("resize", 1.0, &params).err().unwrap();
+    assert_eq!(error.kind(), ErrorKind::InvalidParam);
+    assert_eq!(Pipeline::default().by_name("blur", 1.0, &ParamMap::new()).unwrap().names(), ["blur"]);
 }

@@ -16,12 +16,7 @@ const MAX_SAMPLES: usize = 1 << 28;
 /// (and become RGB or grey, `HWC`), and other samples, which measure, are taken from the nearest.
 pub(super) fn warp(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
     let [width, height] = map.output_size();
-    let samples = width.saturating_mul(height).saturating_mul(image.channels());
-    if samples == 0 || samples > MAX_SAMPLES {
-        return Err(Error::invalid_param(format!(
-            "a picture would become {width}x{height} pixels; ask for at least one and at most {MAX_SAMPLES} samples"
-        )));
-    }
+    check_size([width, height], image.channels())?;
     let placing = spans(map);
     let warped = match (image.pixels(), placing) {
         (pixels, Some(spans)) if spans.iter().all(Span::keeps_size) => {
@@ -47,9 +42,21 @@ pub(super) fn warp(image: &Image, map: &PictureMap, level: u8) -> Result<Image> 
     Ok(warped.with_header(image.header.clone()))
 }
 
+/// Refuses pictures without a pixel and those that are too large.
+pub(super) fn check_size([width, height]: [usize; 2], channels: usize) -> Result<()> {
+    match width.saturating_mul(height).saturating_mul(channels) {
+        1..=MAX_SAMPLES => Ok(()),
+        _ => Err(Error::invalid_param(format!(
+            "a picture or label map would become {width}x{height} of {channels} channels; ask for at least one pixel \
+             and at most {MAX_SAMPLES} samples"
+        ))),
+    }
+}
+
 /// A plane of single samples under `map`, each place as the nearest; `fill` where there is none.
-pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &PictureMap, fill: T) -> Vec<T> {
+pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>> {
     let [width, height] = map.output_size();
+    check_size([width, height], 1)?;
     let mut out = vec![fill; width * height];
     match spans(map) {
         Some(spans) if spans.iter().all(Span::keeps_size) => {
@@ -57,7 +64,7 @@ pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &PictureMap, fill: T) -> 
         }
         _ => Nearest::new(map).write(plane, map.input_size()[0], 1, &mut out),
     }
-    out
+    Ok(out)
 }
 
 /// How the pixels of a plane come into another.
