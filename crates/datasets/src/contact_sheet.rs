@@ -1,22 +1,22 @@
 //! What a data set looks like: pictures with their annotations.
 
+use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::{Error, Result, Value};
 use opendr_vision::draw::{self, Style, draw};
 
+use crate::curve::curve;
+use crate::from_above::from_above;
 use crate::{Problem, Problems};
 
 /// Side of a picture, pixels.
 const SIDE: usize = 300;
 
-/// Every sample of a data set that has a picture, drawn with its annotation and named; some six in a row.
+/// Every sample of a data set that can be looked at, drawn with its annotation and named; some six in a row.
 ///
 /// # Errors
 /// `Unsupported` when no sample has a picture; the first sample that cannot be read, unless `problems` skips them.
-pub fn contact_sheet(
-    dataset: &dyn DatasetIterator,
-    problems: &Problems,
-) -> Result<opendr_engine::data::Image> {
+pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Result<Image> {
     let mut pictures = Vec::new();
     for at in 0..dataset.len() {
         match dataset.get(at) {
@@ -38,15 +38,72 @@ pub fn contact_sheet(
     draw::contact_sheet(&pictures, columns, SIDE)
 }
 
-/// The first picture of a sample with its target drawn onto it.
-pub fn picture_with_target(sample: &Sample) -> Option<opendr_engine::data::Image> {
-    let mut picture = sample.data.iter().find_map(|datum| match datum {
-        Value::Image(image) => Some(image.clone()),
-        _ => None,
-    })?;
+/// The first datum of a sample that can be looked at, with its target drawn onto it: a picture as it is, sound and time
+/// series as curves, a point cloud as seen from above; `None` where there is none of these.
+pub fn picture_with_target(sample: &Sample) -> Option<Image> {
+    let mut picture = sample.data.iter().find_map(|datum| picture_of(datum, sample.target.as_ref()))?;
+    // Twice as thick: the picture is made smaller after.
+    let style = Style { confidences: false, scale: 2.0, ..Style::default() };
+    for datum in &sample.data {
+        if let Value::ImageWithDetections(both) = datum {
+            draw(&mut picture, &both.boxes, &style);
+        }
+    }
     if let Some(target) = &sample.target {
-        // Twice as thick: the picture is made smaller after.
-        draw(&mut picture, target, &Style { confidences: false, scale: 2.0, ..Style::default() });
+        draw(&mut picture, target, &style);
     }
     Some(picture)
+}
+
+fn picture_of(datum: &Value, target: Option<&Value>) -> Option<Image> {
+    match datum {
+        Value::Image(image) => Some(image.clone()),
+        Value::ImageWithDetections(both) => Some(both.image.clone()),
+        Value::Audio(audio) => curve(&audio.mono(), 1).ok(),
+        Value::Timeseries(series) => curve(series.as_slice(), series.shape()[1]).ok(),
+        other => from_above(other, target).ok().flatten(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::data::{Audio, PointCloud};
+    use opendr_engine::dataset::Dataset;
+    use opendr_engine::target::{BoundingBox, BoundingBoxList, Category};
+
+    use super::*;
+
+    struct Mixed;
+
+    impl Dataset for Mixed {}
+
+    impl DatasetIterator for Mixed {
+        fn len(&self) -> usize {
+            4
+        }
+
+        fn get(&self, index: usize) -> Result<Sample> {
+            let black = || Image::from_rgb8(vec![0; 64 * 48 * 3], 64, 48);
+            let boxes = BoundingBoxList::from(vec![BoundingBox::new("cat", 8.0, 8.0, 30.0, 30.0, 1.0)]);
+            let (datum, target): (Value, Value) = match index {
+                0 => (black()?.into(), boxes.into()),
+                1 => (Audio::new(vec![0.0, 0.5, -0.5], 1, 8000)?.into(), Category::new(3, None).into()),
+                2 => (PointCloud::new(vec![1.0, 2.0, 3.0], [1, 3])?.into(), Category::new(0, None).into()),
+                _ => return Err(Error::format("cut off")),
+            };
+            Ok(Sample { data: vec![datum], target: Some(target) })
+        }
+    }
+
+    #[test]
+    fn whatever_can_be_seen_is_on_the_sheet() {
+        let sample = Mixed.get(0).unwrap();
+        let drawn = picture_with_target(&sample).unwrap();
+        assert!(drawn.chw_u8().iter().any(|level| *level > 100));
+        let problems = Problems::skipping();
+        let sheet = contact_sheet(&Mixed, &problems).unwrap();
+        assert!(sheet.width() > 3 * SIDE && sheet.width() < 4 * SIDE && problems.count() == 1);
+        assert!(contact_sheet(&Mixed, &Problems::strict()).is_err());
+        assert!(picture_with_target(&Sample { data: vec![], target: None }).is_none());
+    }
 }

@@ -11,9 +11,11 @@ mod cityscapes;
 mod class_table;
 mod coco;
 mod contact_sheet;
+mod curve;
 mod fields;
 mod folder;
 mod format;
+mod from_above;
 #[doc(hidden)]
 pub mod fuzzing;
 mod hands;

@@ -68,7 +68,9 @@ pub(super) fn check<A: Augmentation>(augmentation: &A) -> Result<()> {
         if let Some(high) = high_name.and_then(|high| params.get(&high))
             && low.as_float() > high.as_float()
         {
-            return Err(Error::invalid_param(format!("{name} = {low} is over its largest value, {high}; give less")));
+            return Err(Error::invalid_param(format!(
+                "{name} = {low} is over its largest value, {high}; give less"
+            )));
         }
     }
     Ok(())

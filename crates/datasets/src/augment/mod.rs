@@ -5,7 +5,7 @@
 
 mod audio;
 mod augmentation;
-mod cloud;
+pub(crate) mod cloud;
 mod others;
 mod picture;
 mod pipeline;

@@ -51,3 +51,18 @@ pub fn find_augmentation(name: &str) -> Result<&'static AugmentEntry> {
         Error::not_found(format!("no augmentation {name:?}; there are {}", names.join(", ")))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_page_lists_every_augmentation() {
+        let Ok(folder) = std::env::var("CARGO_MANIFEST_DIR") else { return };
+        let page = std::fs::read_to_string(folder + "/../../docs/augmentation.md").unwrap();
+        for entry in augmentations() {
+            let row = format!("| `{}` | {} | ", entry.name, entry.about);
+            assert!(page.contains(&row), "docs/augmentation.md lacks {row:?}");
+        }
+    }
+}

@@ -12,7 +12,7 @@ pub(super) fn contains(found: &BoundingBox3D, place: [f64; 3]) -> bool {
 }
 
 /// The corners, floor first, in the camera's frame.
-pub(super) fn corners(found: &BoundingBox3D) -> [[f64; 3]; 8] {
+pub(crate) fn corners(found: &BoundingBox3D) -> [[f64; 3]; 8] {
     let (sine, cosine) = f64::from(found.rotation_y).sin_cos();
     let [length, height, width] = found.dimensions.map(f64::from);
     let [x, y, z] = found.location.map(f64::from);

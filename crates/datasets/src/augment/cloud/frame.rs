@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result, Value};
 
 /// Places in the camera's frame from those in the lidar's: `turn * place + shift`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Frame {
+pub(crate) struct Frame {
     turn: [[f64; 3]; 3],
     back: [[f64; 3]; 3],
     shift: [f64; 3],
@@ -23,7 +23,7 @@ impl Frame {
     ///
     /// # Errors
     /// `InvalidInput` for a calibration that cannot be inverted.
-    pub(super) fn of(datum: &Value) -> Result<Self> {
+    pub(crate) fn of(datum: &Value) -> Result<Self> {
         match datum {
             Value::PointCloudWithCalibration(both) => Self::calibrated(&both.calibration),
             _ => Ok(Self::NOMINAL),
@@ -48,7 +48,7 @@ impl Frame {
         [0, 1, 2].map(|axis| turned[axis] + self.shift[axis])
     }
 
-    pub(super) fn lidar_from_camera(&self, place: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn lidar_from_camera(&self, place: [f64; 3]) -> [f64; 3] {
         times(&self.back, [0, 1, 2].map(|axis| place[axis] - self.shift[axis]))
     }
 

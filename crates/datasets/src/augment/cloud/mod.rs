@@ -14,8 +14,10 @@ mod scene;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use boxes::corners;
 pub use drop_points::DropPoints;
 pub use flip::CloudFlip;
+pub(crate) use frame::Frame;
 pub use jitter_points::JitterPoints;
 pub use paste_objects::PasteObjects;
 pub use rotate::CloudRotate;

@@ -30,8 +30,9 @@ impl Augment for Letterbox {
     fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
         let (size, wanted) = (picture_size(sample)?, [self.width, self.height]);
         let scale = (0..2).map(|axis| wanted[axis] as f64 / size[axis] as f64).fold(f64::INFINITY, f64::min);
-        let sides = [0, 1].map(|axis| ((size[axis] as f64 * scale).round() as usize).clamp(1, wanted[axis]));
-        let corner = [0, 1].map(|axis| (wanted[axis] - sides[axis]) / 2);
+        let sides =
+            [0, 1].map(|axis| ((size[axis] as f64 * scale).round() as usize).min(wanted[axis]).max(1));
+        let corner = [0, 1].map(|axis| wanted[axis].saturating_sub(sides[axis]) / 2);
         let rectangle = [corner[0], corner[1], sides[0], sides[1]];
         let map = PictureMap::window(size, [0, 0, size[0], size[1]], rectangle, wanted);
         transform(sample, &map, &Border { level: self.level.min(255) as u8, ..Border::default() })

@@ -40,11 +40,11 @@ impl Augmentation for Mosaic {
 impl Augment for Mosaic {
     fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
         let size = [self.width, self.height];
+        check_size(size, 3)?;
         let point = size.map(|side| {
             let share = random.uniform(self.margin, 1.0 - self.margin);
-            ((side as f32 * share) as usize).clamp(1, side - 1)
+            ((side as f32 * share) as usize).min(side - 1).max(1)
         });
-        check_size(size, 3)?;
         let mut canvas = vec![0u8; self.width * self.height * 3];
         let mut whole: Option<Sample> = None;
         // The quarter that the sample itself takes is as random as the others.

@@ -103,7 +103,9 @@ fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> R
     let map = map.for_size([width, height]);
     let [columns, rows] = map.output_size();
     let values = match heatmap.values() {
-        HeatmapValues::Labels(labels) => HeatmapValues::Labels(each_plane(labels, &map, border.label)?.into()),
+        HeatmapValues::Labels(labels) => {
+            HeatmapValues::Labels(each_plane(labels, &map, border.label)?.into())
+        }
         HeatmapValues::Scores(scores) => HeatmapValues::Scores(each_plane(scores, &map, 0.0)?.into()),
     };
     let shape: Vec<usize> = shape[..shape.len() - 2].iter().copied().chain([rows, columns]).collect();

@@ -405,7 +405,8 @@ fn what_cannot_follow_is_refused() {
     // A label map of another resolution grows with the picture, here far too much.
     let mut sample = painted([1, 1], [0, 0, 1, 1]);
     sample.target = Some(Heatmap::from_labels(vec![0; 1 << 16], &[1 << 8, 1 << 8]).unwrap().into());
-    let refused = Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &Others::none());
+    let refused =
+        Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &Others::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
 }
 
