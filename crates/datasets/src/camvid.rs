@@ -243,6 +243,7 @@ impl Format for CamVid {
 mod tests {
     use opendr_engine::Silent;
     use opendr_engine::data::Image;
+    use proptest::prelude::*;
 
     use super::*;
     use crate::folder::TemporaryFolder;
@@ -292,5 +293,14 @@ mod tests {
         assert!(error.contains("a_L.png: the colour [64, 192, 0] is of no class"), "{error}");
         folder.write("class_dict.csv", "name,r,g,b\nAnimal,64,128,640\n");
         assert!(open(folder.path()).unwrap_err().to_string().contains("class_dict.csv:2: no name and red"));
+    }
+
+    proptest! {
+        #[test]
+        fn any_table_is_refused_or_read(text in "[a-z0-9, \n\tVoid.-]{0,60}") {
+            let problems = Problems::skipping();
+            let (table, names) = colour_table(Path::new("a.csv"), &text, &problems).unwrap();
+            prop_assert!(table.values().all(|class| *class == IGNORED || (*class as usize) < names.len()));
+        }
     }
 }

@@ -113,7 +113,7 @@ impl Layout {
     }
 
     /// The annotation of a sample.
-    pub fn annotation(&self, name: &str) -> Result<Annotation> {
+    pub fn annotation(&self, name: &str) -> Result<Annotation, Problem> {
         read_annotation(&self.annotations.join(format!("{name}.xml")))
     }
 

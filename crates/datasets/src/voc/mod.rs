@@ -178,8 +178,8 @@ impl Format for Voc {
                 true => Annotation::default(),
                 false => match layout.annotation(&name) {
                     Ok(annotation) => annotation,
-                    Err(error) => {
-                        problems.report(Problem::new(layout.annotations.join(&name), error.to_string()))?;
+                    Err(problem) => {
+                        problems.report(problem)?;
                         continue;
                     }
                 },
@@ -210,7 +210,8 @@ impl Format for Voc {
     }
 }
 
-/// Errors of reading an annotation file, with its path and line.
-fn read_annotation(file: &Path) -> Result<Annotation> {
-    Ok(Annotation::new(file, &read_text(file)?)?)
+/// Reads an annotation file.
+fn read_annotation(file: &Path) -> Result<Annotation, Problem> {
+    let text = read_text(file).map_err(|error| Problem::new(file, error.to_string()))?;
+    Annotation::new(file, &text)
 }
