@@ -140,7 +140,10 @@ impl Format for Skeletons {
         if let Some(part) = chosen(&pickled::parts(path), split)? {
             let file = if path.is_dir() { path.join(format!("{part}.pkl")) } else { path.to_owned() };
             let (poses, found) = PickledPoses::open(&file, names.as_ref())?;
-            return Ok(Self { source: Source::Pickle(file, poses), classes: names.unwrap_or(found) });
+            return Ok(Self {
+                source: Source::Pickle(file, poses),
+                classes: if found.is_empty() { names.unwrap_or_default() } else { found },
+            });
         }
         let (path, layout) = (path.display(), Self::LAYOUT);
         Err(Error::not_found(format!("no skeletons in {path}; they should be {layout}")))

@@ -8,7 +8,7 @@ type Wrong = (u64, String);
 /// Samples of signals that share a file (`group`, in the order of the header), in physical units, and how many there are
 /// of each; NaN where a sample is marked as invalid. `length` instants are wanted, or as many as there are.
 ///
-/// Signals with several samples an instant are averaged, late signals moved to their time (with NaN where nothing
+/// Signals with several samples an instant are averaged (in whole steps), late signals moved to their time (with NaN where nothing
 /// follows), as PhysioNet's `rdsamp` does without `-H`.
 ///
 /// # Errors
@@ -99,12 +99,15 @@ fn check_sums(group: &[WfdbSignal], raw: &[Vec<i32>], frames: usize) -> Result<(
 
 fn physical(signal: &WfdbSignal, raw: &[i32], invalid: Option<i32>, length: usize) -> Vec<f32> {
     let each = signal.samples_per_frame;
-    let value = |step: i32| if Some(step) == invalid { f32::NAN } else { signal.physical(step.into()) };
     let instant = |time: usize| {
-        let start = (time + signal.skew).checked_mul(each)?;
+        let start = time.checked_add(signal.skew)?.checked_mul(each)?;
         let steps = raw.get(start..start.checked_add(each)?)?;
-        let sum: f64 = steps.iter().map(|step| f64::from(value(*step))).sum();
-        Some(if each == 1 { value(*steps.first()?) } else { (sum / each as f64) as f32 })
+        if steps.iter().any(|step| Some(*step) == invalid) {
+            return None;
+        }
+        // Means are steps too: PhysioNet's library and package divide whole numbers.
+        let sum: i64 = steps.iter().copied().map(i64::from).sum();
+        Some(signal.physical(sum / each as i64))
     };
     (0..length).map(|time| instant(time).unwrap_or(f32::NAN)).collect()
 }
