@@ -10,7 +10,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 10] = [
+pub const PARSERS: [(&str, Parser); 17] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("card_toml", card_toml),
@@ -21,6 +21,13 @@ pub const PARSERS: [(&str, Parser); 10] = [
     ("coco_json", coco_json),
     ("voc_xml", voc_xml),
     ("yolo_text", yolo_text),
+    ("wav", wav),
+    ("npy", npy),
+    ("pickle", pickle),
+    ("wfdb", wfdb),
+    ("track_text", track_text),
+    ("series_text", series_text),
+    ("skeleton_text", skeleton_text),
 ];
 
 fn manifest_json(bytes: &[u8]) {
@@ -95,6 +102,34 @@ fn voc_xml(bytes: &[u8]) {
 
 fn yolo_text(bytes: &[u8]) {
     opendr_datasets::fuzzing::yolo_text(&String::from_utf8_lossy(bytes));
+}
+
+fn wav(bytes: &[u8]) {
+    opendr_datasets::fuzzing::wav(bytes);
+}
+
+fn npy(bytes: &[u8]) {
+    opendr_datasets::fuzzing::npy(bytes);
+}
+
+fn pickle(bytes: &[u8]) {
+    opendr_datasets::fuzzing::pickle(bytes);
+}
+
+fn wfdb(bytes: &[u8]) {
+    opendr_datasets::fuzzing::wfdb(bytes);
+}
+
+fn track_text(bytes: &[u8]) {
+    opendr_datasets::fuzzing::track_text(&String::from_utf8_lossy(bytes));
+}
+
+fn series_text(bytes: &[u8]) {
+    opendr_datasets::fuzzing::series_text(&String::from_utf8_lossy(bytes));
+}
+
+fn skeleton_text(bytes: &[u8]) {
+    opendr_datasets::fuzzing::skeleton_text(&String::from_utf8_lossy(bytes));
 }
 
 /// Feeds the parser called `name`.

@@ -9,8 +9,15 @@ import re
 import subprocess
 from pathlib import Path
 
+import cv2
+import motmetrics
 import numpy as np
 import pytest
+import soundfile
+import trackeval
+import wfdb
+from aeon import datasets
+from scipy.io import wavfile
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -19,9 +26,10 @@ class Signals:
     """Reads and writes files, as crates/datasets/examples/signals.rs."""
 
     def __init__(self):
-        examples = os.environ.get("OPENDR_EXAMPLES")
+        # The other example is named, this one lies beside it.
+        data = os.environ.get("OPENDR_DATASETS_DATA")
         cargo = ["cargo", "run", "-q", "-p", "opendr-datasets", "--example", "signals", "--"]
-        self.command = [str(Path(examples) / "signals")] if examples else cargo
+        self.command = [str(Path(data).with_name("signals"))] if data else cargo
 
     def run(self, *arguments):
         done = subprocess.run([*self.command, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True)
@@ -62,7 +70,6 @@ def write_rows(path, rows):
 
 
 def test_mot_truth_is_that_of_motmetrics(signals, tmp_path):
-    motmetrics = pytest.importorskip("motmetrics")
     rows = tracks(np.random.default_rng(1))
     write_rows(tmp_path / "in/train/A/gt/gt.txt", rows)
     wanted = motmetrics.io.loadtxt(tmp_path / "in/train/A/gt/gt.txt", fmt="mot16")
@@ -81,8 +88,6 @@ def test_mot_truth_is_that_of_motmetrics(signals, tmp_path):
 
 
 def test_mot_results_are_loaded_by_motmetrics_and_trackeval(signals, tmp_path):
-    motmetrics = pytest.importorskip("motmetrics")
-    trackeval = pytest.importorskip("trackeval")
     rows = tracks(np.random.default_rng(2))
     write_rows(tmp_path / "results.txt", [[*row[:6], 0.5, -1, -1, -1] for row in rows])
     signals.run("results", tmp_path / "results.txt", tmp_path / "trackers/T/data/A.txt")
@@ -120,7 +125,6 @@ def test_kitti_is_read_and_written(signals, real, tmp_path):
 @pytest.mark.parametrize("subtype", ["PCM_U8", "PCM_16", "PCM_24", "PCM_32", "FLOAT", "DOUBLE", "ULAW", "ALAW"])
 @pytest.mark.parametrize("form", ["WAV", "WAVEX"])
 def test_wav_is_read_as_soundfile_reads_it(signals, tmp_path, subtype, form):
-    soundfile = pytest.importorskip("soundfile")
     sound = np.random.default_rng(3).uniform(-1, 1, (999, 2))
     soundfile.write(tmp_path / "in.wav", sound, 22050, subtype=subtype, format=form)
     signals.run("wav", tmp_path / "in.wav", tmp_path / "out.wav", "Float32")
@@ -131,7 +135,6 @@ def test_wav_is_read_as_soundfile_reads_it(signals, tmp_path, subtype, form):
 @pytest.mark.parametrize("encoding, scale, offset", [
     ("Pcm8", 128, 128), ("Pcm16", 2**15, 0), ("Pcm24", 2**31, 0), ("Pcm32", 2**31, 0), ("Float32", 1, 0), ("Float64", 1, 0)])
 def test_scipy_loads_wav_that_is_written(signals, real, tmp_path, encoding, scale, offset):
-    wavfile = pytest.importorskip("scipy.io.wavfile")
     for path in sorted((real / "speech_commands_v0.02_test/yes").glob("*.wav"))[:5]:
         rate, wanted = wavfile.read(path)
         signals.run("wav", path, tmp_path / "out.wav", encoding)
@@ -201,7 +204,6 @@ def annotations(lines):
 
 @pytest.mark.parametrize("name", ["100", "100_3chan", "03700181", "a103l"])
 def test_wfdb_is_read_as_wfdb_reads_it(signals, real, tmp_path, name):
-    wfdb = pytest.importorskip("wfdb")
     path = real / "ecg/wfdb" / name
     found = annotations(signals.run("wfdb", path, tmp_path))
     wanted = wfdb.rdrecord(str(path))
@@ -222,7 +224,6 @@ def test_wfdb_is_read_as_wfdb_reads_it(signals, real, tmp_path, name):
 
 @pytest.mark.parametrize("form", ["16", "24", "32", "80", "212"])
 def test_wfdb_formats(signals, tmp_path, form):
-    wfdb = pytest.importorskip("wfdb")
     steps = {"80": 100, "212": 2000}.get(form, 30000)
     digital = np.random.default_rng(6).integers(-steps, steps, (501, 3))
     wfdb.wrsamp("r", 250, ["mV", "mV", "NU"], ["a", "b b", "c"], d_signal=digital, fmt=[form] * 3, adc_gain=[200, 100.5, 1],
@@ -238,7 +239,6 @@ def test_wfdb_formats(signals, tmp_path, form):
 
 @pytest.mark.parametrize("features", [1, 3])
 def test_ts_both_ways(signals, tmp_path, features):
-    datasets = pytest.importorskip("aeon.datasets")
     rng = np.random.default_rng(9)
     series = rng.normal(size=(6, features, 11)).astype(np.float32)
     series[2, 0, 3] = np.nan
@@ -274,7 +274,6 @@ def test_pairs_are_those_of_the_table(signals, real, tmp_path):
 
 
 def test_depth_keeps_its_bits(signals, tmp_path):
-    cv2 = pytest.importorskip("cv2")
     depth = np.random.default_rng(10).integers(0, 65536, (9, 7), np.uint16)
     colour = np.random.default_rng(11).integers(0, 256, (9, 7, 3), np.uint8)
     for kind, picture in [("rgb", colour), ("depth", depth)]:

@@ -29,6 +29,54 @@ pub fn yolo_text(text: &str) {
     }
 }
 
+/// WAVE files.
+pub fn wav(bytes: &[u8]) {
+    if let Ok(audio) = crate::audio_from_wav(bytes) {
+        assert!(audio.array().as_slice().iter().all(|sample| sample.is_finite()));
+    }
+}
+
+/// NumPy's `.npy` files.
+pub fn npy(bytes: &[u8]) {
+    if let Ok((shape, numbers)) = crate::array_from_npy(bytes) {
+        assert_eq!(shape.iter().product::<usize>(), numbers.len());
+    }
+}
+
+/// Python's pickles.
+pub fn pickle(bytes: &[u8]) {
+    if let Ok(pickle) = crate::pickle::Pickle::parse(bytes) {
+        let _ = pickle.root().get("pose").and_then(|pose| pose.list()?.first()?.array());
+    }
+}
+
+/// WFDB's header, up to the first zero byte, with its signals, and its annotations.
+pub fn wfdb(bytes: &[u8]) {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    let (text, rest) = bytes.split_at(end);
+    let _ = crate::annotations_from_atr(rest);
+    if let Ok(header) = crate::WfdbHeader::parse(&String::from_utf8_lossy(text)) {
+        let _ = crate::wfdb_samples(&header.signals, header.length, rest);
+    }
+}
+
+/// Labels of MOT and KITTI, and KITTI's calibration.
+pub fn track_text(text: &str) {
+    crate::mot::parse_any(text);
+    crate::kitti::parse_any(text);
+    let _ = crate::calibration_from_kitti(text, Path::new("calib.txt"));
+}
+
+/// Series of the UCR and UEA archives.
+pub fn series_text(text: &str) {
+    crate::ucr::parse_any(text);
+}
+
+/// NTU RGB+D's skeletons.
+pub fn skeleton_text(text: &str) {
+    let _ = crate::skeleton_from_ntu(text);
+}
+
 #[cfg(test)]
 mod tests {
     use std::fs;
@@ -39,7 +87,18 @@ mod tests {
     #[test]
     fn corpora_are_refused_or_read() {
         let corpora = Path::new(&std::env::var("CARGO_MANIFEST_DIR").unwrap()).join("../../fuzz/corpus");
-        for name in ["coco_json", "voc_xml", "yolo_text"] {
+        for name in [
+            "coco_json",
+            "voc_xml",
+            "yolo_text",
+            "wav",
+            "npy",
+            "pickle",
+            "wfdb",
+            "track_text",
+            "series_text",
+            "skeleton_text",
+        ] {
             let files: Vec<_> = fs::read_dir(corpora.join(name)).unwrap().collect();
             assert!(!files.is_empty(), "{name} has an empty corpus");
             for file in files {
@@ -48,7 +107,14 @@ mod tests {
                 match name {
                     "coco_json" => coco_json(&bytes),
                     "voc_xml" => voc_xml(&text),
-                    _ => yolo_text(&text),
+                    "yolo_text" => yolo_text(&text),
+                    "wav" => wav(&bytes),
+                    "npy" => npy(&bytes),
+                    "pickle" => pickle(&bytes),
+                    "wfdb" => wfdb(&bytes),
+                    "track_text" => track_text(&text),
+                    "series_text" => series_text(&text),
+                    _ => skeleton_text(&text),
                 }
             }
         }

@@ -113,5 +113,13 @@ fn folder_with(path: &Path, wanted: Option<&str>, folders: &[&str]) -> Result<Op
     }
 }
 
+/// Feeds every parser of lines, for the fuzzers.
+pub(crate) fn parse_any(text: &str) {
+    for line in text.lines() {
+        let _ = labels::object_from_line(line);
+        let _ = labels::track_from_line(line);
+    }
+}
+
 #[cfg(test)]
 mod tests;

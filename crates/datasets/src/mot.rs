@@ -251,5 +251,14 @@ pub fn write_mot_results(path: impl AsRef<Path>, tracks: &TrackingAnnotationList
     write_file(path.as_ref(), tracks.mot_text().as_bytes())
 }
 
+/// Feeds every parser of lines, for the fuzzers.
+pub(crate) fn parse_any(text: &str) {
+    let _ = sequence::SequenceInfo::parse(text, |_, _| Ok(()));
+    for line in text.lines() {
+        let _ = MotRow::parse(line, row::RowKind::Truth);
+        let _ = MotRow::parse(line, row::RowKind::Detections);
+    }
+}
+
 #[cfg(test)]
 mod tests;

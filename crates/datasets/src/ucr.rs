@@ -247,5 +247,15 @@ impl Ucr {
     }
 }
 
+/// Feeds the parsers of heads and lines, for the fuzzers.
+pub(crate) fn parse_any(text: &str) {
+    let mut header = TsHeader::default();
+    for line in text.lines() {
+        let _ = header.take(line);
+        let _ = (line::label(line, Some(&header)), line::label(line, None), line::looks_like_series(line));
+        let _ = (series_from_ts_line(line, &header), series_from_line(line));
+    }
+}
+
 #[cfg(test)]
 mod tests;
