@@ -114,6 +114,18 @@ fn labelling_programs_write_files_beside_pictures() {
     assert_eq!(open(folder.path(), None).unwrap().get(0).unwrap().data.len(), 1);
 }
 
+#[test]
+fn deep_files_are_refused() {
+    let deep = format!("<annotation>{}{}</annotation>", "<a>".repeat(300_000), "</a>".repeat(300_000));
+    assert_eq!(
+        Annotation::new(Path::new("a.xml"), &deep).map(|annotation| annotation.objects.len()).ok(),
+        Some(0)
+    );
+    assert!(Annotation::new(Path::new("a.xml"), &deep[..deep.len() / 2]).is_err());
+    let wide = format!("<annotation>{}</annotation>", "<a/>".repeat(1_100_000));
+    assert!(Annotation::new(Path::new("a.xml"), &wide).is_err());
+}
+
 proptest! {
     #[test]
     fn mutated_annotations_are_refused_or_read(at in 0usize..500, bytes in "[<>/&a-z0-9\"!\\-]{0,4}", cut in 0usize..5) {
