@@ -20,6 +20,8 @@ use opendr_engine::{Error, Random, Result};
 
 use crate::augment::Pipeline;
 pub use collate::{Collate, Samples};
+use desk::Job;
+use epoch::each_batch;
 pub use epoch::{Batch, Epoch, Skipped};
 pub use image_batch::{ImageBatch, ImageBatches};
 
@@ -67,8 +69,8 @@ pub struct LoaderOptions {
 /// }
 /// # Ok::<(), opendr_engine::Error>(())
 /// ```
-pub struct Loader<C = Samples> {
-    dataset: Arc<dyn DatasetIterator>,
+pub struct Loader<'d, C = Samples> {
+    dataset: Arc<dyn DatasetIterator + 'd>,
     pipeline: Arc<Pipeline>,
     collate: Arc<C>,
     options: LoaderOptions,
@@ -77,19 +79,19 @@ pub struct Loader<C = Samples> {
 /// What separates the stream of random numbers that orders an epoch from those of its samples.
 const ORDER: u64 = u64::MAX;
 
-impl Loader {
-    /// The samples of `dataset` as they are, in batches.
+impl<'d> Loader<'d> {
+    /// The samples of `dataset`, which may be borrowed, as they are, in batches.
     ///
     /// # Errors
     /// `InvalidParam` for an option out of its range.
-    pub fn new(dataset: impl DatasetIterator + 'static, options: LoaderOptions) -> Result<Self> {
+    pub fn new(dataset: impl DatasetIterator + 'd, options: LoaderOptions) -> Result<Self> {
         options.check()?;
         let pipeline = Arc::default();
         Ok(Self { dataset: Arc::new(dataset), pipeline, collate: Arc::new(Samples), options })
     }
 }
 
-impl<C: Collate> Loader<C> {
+impl<'d, C: Collate> Loader<'d, C> {
     /// The same with samples changed by `pipeline`.
     #[must_use]
     pub fn augment(self, pipeline: Pipeline) -> Self {
@@ -98,7 +100,7 @@ impl<C: Collate> Loader<C> {
 
     /// The same with batches made by `collate`.
     #[must_use]
-    pub fn collate<D: Collate>(self, collate: D) -> Loader<D> {
+    pub fn collate<D: Collate>(self, collate: D) -> Loader<'d, D> {
         let Self { dataset, pipeline, options, .. } = self;
         Loader { dataset, pipeline, collate: Arc::new(collate), options }
     }
@@ -119,22 +121,19 @@ impl<C: Collate> Loader<C> {
         self.samples().div_ceil(self.options.batch_size)
     }
 
-    /// All batches of epoch number `epoch`; threads start to work on them right away.
-    pub fn epoch(&self, epoch: u64) -> Epoch<C> {
-        self.epoch_from(epoch, 0)
-    }
-
-    /// The rest of an epoch that was broken off: what `epoch` would give after [`Batch::next_position`].
+    /// Hands the batches of an epoch from `position` on (0 for all) to `each`, on this thread, and tells what was left out:
+    /// for data sets that are borrowed.
     ///
     /// # Errors
-    /// `InvalidInput` for a position past the end.
-    pub fn resume(&self, epoch: u64, position: usize) -> Result<Epoch<C>> {
-        match self.samples() {
-            count if position > count => Err(Error::invalid_input(format!(
-                "an epoch of {count} samples cannot go on at {position}; is this the data set that was left?"
-            ))),
-            _ => Ok(self.epoch_from(epoch, position)),
-        }
+    /// `InvalidInput` for a position past the end; the first error of a sample (unless broken ones are skipped) or of
+    /// `each`, which ends it.
+    pub fn for_each(
+        &self,
+        epoch: u64,
+        position: usize,
+        each: impl FnMut(Batch<C::Batch>) -> Result<()>,
+    ) -> Result<Vec<Skipped>> {
+        each_batch(self.job_from(epoch, position)?, each)
     }
 
     /// The numbers of the samples of an epoch, in its order.
@@ -147,15 +146,41 @@ impl<C: Collate> Loader<C> {
         order
     }
 
-    fn epoch_from(&self, epoch: u64, position: usize) -> Epoch<C> {
-        Epoch::start(desk::Job {
+    /// A whole epoch.
+    fn job(&self, epoch: u64) -> Job<'d, C> {
+        Job {
             dataset: Arc::clone(&self.dataset),
             pipeline: Arc::clone(&self.pipeline),
             collate: Arc::clone(&self.collate),
             options: self.options.clone(),
             order: self.order(epoch),
             epoch,
-            position,
-        })
+            position: 0,
+        }
+    }
+
+    /// The rest of an epoch from `position` on.
+    fn job_from(&self, epoch: u64, position: usize) -> Result<Job<'d, C>> {
+        match self.samples() {
+            count if position > count => Err(Error::invalid_input(format!(
+                "an epoch of {count} samples cannot go on at {position}; is this the data set that was left?"
+            ))),
+            _ => Ok(Job { position, ..self.job(epoch) }),
+        }
+    }
+}
+
+impl<C: Collate> Loader<'static, C> {
+    /// All batches of epoch number `epoch`, for a loop to pull; threads start to work on them right away.
+    pub fn epoch(&self, epoch: u64) -> Epoch<C> {
+        Epoch::start(self.job(epoch))
+    }
+
+    /// The rest of an epoch that was broken off: what it would give after [`Batch::next_position`].
+    ///
+    /// # Errors
+    /// `InvalidInput` for a position past the end.
+    pub fn resume(&self, epoch: u64, position: usize) -> Result<Epoch<C>> {
+        self.job_from(epoch, position).map(Epoch::start)
     }
 }

@@ -13,8 +13,8 @@ use crate::augment::{Augment, Others, Pipeline};
 use crate::loader::{Collate, LoaderOptions, Skipped};
 
 /// The samples of an epoch, or of the rest of one, in batches.
-pub(super) struct Job<C> {
-    pub(super) dataset: Arc<dyn DatasetIterator>,
+pub(super) struct Job<'d, C> {
+    pub(super) dataset: Arc<dyn DatasetIterator + 'd>,
     pub(super) pipeline: Arc<Pipeline>,
     pub(super) collate: Arc<C>,
     pub(super) options: LoaderOptions,
@@ -32,7 +32,7 @@ pub(super) struct Loaded<B> {
     pub(super) skipped: Vec<Skipped>,
 }
 
-impl<C: Collate> Job<C> {
+impl<C: Collate> Job<'_, C> {
     pub(super) fn batches(&self) -> usize {
         (self.order.len() - self.position).div_ceil(self.options.batch_size)
     }
@@ -77,8 +77,8 @@ impl<C: Collate> Job<C> {
 pub(super) type Outcome<B> = Result<Result<Loaded<B>>, Box<dyn Any + Send>>;
 
 /// The job, which of its batches are under way, and those that are ready.
-pub(super) struct Desk<C: Collate> {
-    pub(super) job: Job<C>,
+pub(super) struct Desk<'d, C: Collate> {
+    pub(super) job: Job<'d, C>,
     stopped: AtomicBool,
     state: Mutex<State<C::Batch>>,
     /// There is room for another batch, or the work is over.
@@ -95,11 +95,17 @@ struct State<B> {
     finished: BTreeMap<usize, Outcome<B>>,
 }
 
-impl<C: Collate> Desk<C> {
-    pub(super) fn new(job: Job<C>) -> Self {
+impl<'d, C: Collate> Desk<'d, C> {
+    pub(super) fn new(job: Job<'d, C>) -> Self {
         let state = State { claimed: 0, handed: 0, finished: BTreeMap::new() };
         let (room, ready) = (Condvar::new(), Condvar::new());
         Self { job, stopped: AtomicBool::new(false), state: Mutex::new(state), room, ready }
+    }
+
+    /// How many threads can help.
+    pub(super) fn helpers(&self) -> usize {
+        let LoaderOptions { threads, ahead, .. } = self.job.options;
+        threads.min(ahead).min(self.job.batches())
     }
 
     /// What each thread does until all batches are taken on or the work is stopped.

@@ -2,7 +2,7 @@
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
-use std::thread::{Builder, JoinHandle};
+use std::thread::{self, Builder, JoinHandle};
 
 use opendr_engine::{Error, Result};
 
@@ -33,33 +33,64 @@ pub struct Skipped {
     pub error: Error,
 }
 
+/// Which batch comes next, and what was left out so far.
+#[derive(Debug, Default)]
+pub(super) struct Reading {
+    next: usize,
+    pub(super) skipped: Vec<Skipped>,
+}
+
+impl Reading {
+    /// The next batch that is not empty: made right here when this thread is `alone`.
+    pub(super) fn next<C: Collate>(
+        &mut self,
+        desk: &Desk<'_, C>,
+        alone: bool,
+    ) -> Option<Result<Batch<C::Batch>>> {
+        while self.next < desk.job.batches() {
+            let number = self.next;
+            self.next += 1;
+            let outcome = if alone { desk.work(number) } else { desk.wait_for(number) };
+            let loaded = match outcome.unwrap_or_else(|panic| resume_unwind(panic)) {
+                Ok(loaded) => loaded,
+                Err(error) => return Some(Err(error)),
+            };
+            self.skipped.extend(loaded.skipped);
+            if !loaded.indices.is_empty() {
+                let (epoch, next_position) = (desk.job.epoch, desk.job.end(number));
+                let (content, indices) = (loaded.content, loaded.indices);
+                return Some(Ok(Batch { content, indices, epoch, next_position }));
+            }
+        }
+        None
+    }
+}
+
 /// The batches of an epoch, in order, made ahead by threads that end with it.
 ///
 /// A sample that cannot be read or augmented is an error in place of its batch (unless such are skipped), after which the
 /// next batch comes; a panic of a thread goes on in whoever asks for the batch.
 pub struct Epoch<C: Collate = Samples> {
-    desk: Arc<Desk<C>>,
+    desk: Arc<Desk<'static, C>>,
     threads: Vec<JoinHandle<()>>,
-    next: usize,
-    skipped: Vec<Skipped>,
+    reading: Reading,
 }
 
 impl<C: Collate> Epoch<C> {
-    pub(super) fn start(job: Job<C>) -> Self {
-        let count = job.options.threads.min(job.options.ahead).min(job.batches());
+    pub(super) fn start(job: Job<'static, C>) -> Self {
         let desk = Arc::new(Desk::new(job));
         let start = |_| {
             let desk = Arc::clone(&desk);
             // Where no thread can be had, the others do its work, or whoever asks.
-            Builder::new().name("opendr-loader".to_owned()).spawn(move || desk.serve()).ok()
+            Builder::new().name(THREAD_NAME.to_owned()).spawn(move || desk.serve()).ok()
         };
-        let threads = (0..count).filter_map(start).collect();
-        Self { desk, threads, next: 0, skipped: Vec::new() }
+        let threads = (0..desk.helpers()).filter_map(start).collect();
+        Self { desk, threads, reading: Reading::default() }
     }
 
     /// What was left out so far, in the epoch's order.
     pub fn skipped(&self) -> &[Skipped] {
-        &self.skipped
+        &self.reading.skipped
     }
 }
 
@@ -67,27 +98,11 @@ impl<C: Collate> Iterator for Epoch<C> {
     type Item = Result<Batch<C::Batch>>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        while self.next < self.desk.job.batches() {
-            let number = self.next;
-            self.next += 1;
-            let outcome =
-                if self.threads.is_empty() { self.desk.work(number) } else { self.desk.wait_for(number) };
-            let loaded = match outcome.unwrap_or_else(|panic| resume_unwind(panic)) {
-                Ok(loaded) => loaded,
-                Err(error) => return Some(Err(error)),
-            };
-            self.skipped.extend(loaded.skipped);
-            if !loaded.indices.is_empty() {
-                let (epoch, next_position) = (self.desk.job.epoch, self.desk.job.end(number));
-                let (content, indices) = (loaded.content, loaded.indices);
-                return Some(Ok(Batch { content, indices, epoch, next_position }));
-            }
-        }
-        None
+        self.reading.next(&self.desk, self.threads.is_empty())
     }
 
     fn size_hint(&self) -> (usize, Option<usize>) {
-        (0, Some(self.desk.job.batches() - self.next))
+        (0, Some(self.desk.job.batches() - self.reading.next))
     }
 }
 
@@ -98,5 +113,37 @@ impl<C: Collate> Drop for Epoch<C> {
             // A thread's panics were caught; they have gone to whoever asked for the batch.
             let _ = thread.join();
         }
+    }
+}
+
+const THREAD_NAME: &str = "opendr-loader";
+
+/// Hands the batches of a job to `each` on this thread, while threads that end before this returns make them ahead.
+pub(super) fn each_batch<C: Collate>(
+    job: Job<'_, C>,
+    mut each: impl FnMut(Batch<C::Batch>) -> Result<()>,
+) -> Result<Vec<Skipped>> {
+    let desk = &Desk::new(job);
+    thread::scope(|scope| {
+        // Stopped on the way out, be it an error or a panic of `each`; the scope would wait for ever otherwise.
+        let _stop = Stop(desk);
+        let start = |_: &usize| {
+            Builder::new().name(THREAD_NAME.to_owned()).spawn_scoped(scope, || desk.serve()).is_ok()
+        };
+        let alone = (0..desk.helpers()).filter(start).count() == 0;
+        let mut reading = Reading::default();
+        while let Some(batch) = reading.next(desk, alone) {
+            each(batch?)?;
+        }
+        Ok(reading.skipped)
+    })
+}
+
+/// Stops the work at a desk when it is dropped.
+struct Stop<'a, 'd, C: Collate>(&'a Desk<'d, C>);
+
+impl<C: Collate> Drop for Stop<'_, '_, C> {
+    fn drop(&mut self) {
+        self.0.stop();
     }
 }

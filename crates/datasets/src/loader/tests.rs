@@ -52,7 +52,7 @@ fn options(threads: usize) -> LoaderOptions {
     LoaderOptions { batch_size: 4, threads, ahead: 3, seed: 11, ..LoaderOptions::default() }
 }
 
-fn loader(pictures: Pictures, threads: usize) -> Loader {
+fn loader(pictures: Pictures, threads: usize) -> Loader<'static> {
     Loader::new(pictures, options(threads)).unwrap()
 }
 
@@ -203,4 +203,28 @@ fn batches_of_pictures_are_tensors() {
 fn options_out_of_range_are_refused() {
     let wrong = LoaderOptions { batch_size: 0, ..LoaderOptions::default() };
     assert_eq!(Loader::new(Pictures::new(3), wrong).err().unwrap().kind(), ErrorKind::InvalidParam);
+}
+
+#[test]
+fn borrowed_data_sets_are_loaded_too() {
+    for threads in THREADS {
+        let pictures = Pictures { broken: vec![2], ..Pictures::new(22) };
+        let lenient = LoaderOptions { skip_broken: true, ..options(threads) };
+        let loader = Loader::new(&pictures as &dyn DatasetIterator, lenient).unwrap();
+        let mut seen = Vec::new();
+        let skipped = loader.for_each(1, 4, |batch| {
+            seen.extend(batch.indices);
+            Ok(())
+        });
+        let mut wanted = loader.order(1)[4..].to_vec();
+        assert_eq!(skipped.unwrap().len(), wanted.iter().filter(|index| **index == 2).count());
+        wanted.retain(|index| *index != 2);
+        assert_eq!(seen, wanted);
+        // Neither an error nor a panic of whoever trains leaves threads behind.
+        let enough = loader.for_each(0, 0, |_| Err(Error::invalid_input("enough")));
+        assert_eq!(enough.unwrap_err().message(), "enough");
+        let panic = catch_unwind(AssertUnwindSafe(|| loader.for_each(0, 0, |_| panic!("enough"))));
+        assert!(panic.is_err() && Arc::strong_count(&loader.dataset) == 1);
+        assert_eq!(loader.for_each(0, 23, |_| Ok(())).unwrap_err().kind(), ErrorKind::InvalidInput);
+    }
 }
