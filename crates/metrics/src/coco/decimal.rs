@@ -15,3 +15,14 @@ pub(super) fn f64_from_f32(number: f32) -> f64 {
 pub(super) fn f64_box(found: &opendr_engine::target::BoundingBox) -> [f64; 4] {
     [found.left, found.top, found.width, found.height].map(f64_from_f32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_come_back() {
+        assert_eq!([12.7f32, -0.1, 1e-7, 3.0, 123.45].map(f64_from_f32), [12.7, -0.1, 1e-7, 3.0, 123.45]);
+        assert_eq!(f64_from_f32(f32::INFINITY), f64::INFINITY);
+    }
+}

@@ -103,3 +103,32 @@ fn person(pose: &Pose) -> Result<(Truth, Person)> {
     let joints = std::array::from_fn(|at| [places[at][0], places[at][1], f64::from(u8::from(found[at]))]);
     Ok((truth, Person { joints, bounding_box, area: truth.area }))
 }
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::target::Keypoint;
+
+    use super::*;
+
+    fn pose(skeleton: Skeleton) -> Pose {
+        let place = |name: &&str| match Skeleton::Coco17.joint(name) {
+            Some(at) => Keypoint { x: 10.0 * at as f32, y: 7.0 * (at % 5) as f32, confidence: 1.0 },
+            None => Keypoint::MISSING,
+        };
+        let keypoints = skeleton.joints().iter().map(place).collect();
+        Pose { keypoints, skeleton, confidence: 0.9, ..Pose::default() }
+    }
+
+    #[test]
+    fn joints_of_other_skeletons_are_found_by_name() {
+        let mut metric = CocoKeypoints::new(&CocoKeypointsParams::default()).unwrap();
+        let [answer, truth] =
+            [Skeleton::Opendr18, Skeleton::Coco17].map(|skeleton| vec![pose(skeleton)].into());
+        assert!((metric.update(0, &answer, &truth).unwrap() - 1.0).abs() < 1e-9);
+        // A person without annotated joints counts neither way.
+        let mut nobody = pose(Skeleton::Coco17);
+        nobody.keypoints.iter_mut().for_each(|keypoint| *keypoint = Keypoint::MISSING);
+        assert!((metric.update(1, &Vec::new().into(), &vec![nobody].into()).unwrap() - 1.0).abs() < 1e-9);
+        assert!((metric.finish().statistics.get("mar").unwrap() - 1.0).abs() < 1e-9);
+    }
+}
