@@ -73,13 +73,23 @@ pub(super) fn choose<'a>(files: &'a [PathBuf], split: Option<&str>, kinds: &[&st
     })
 }
 
-/// Whether the beginning of a file holds one of `keys`.
+/// Whether the beginning of a file is that of an object with one of `keys`.
 pub(super) fn begins_with_key(file: &Path, keys: &[&str]) -> bool {
-    let mut head = Vec::new();
-    let read = File::open(file).and_then(|file| file.take(HEAD).read_to_end(&mut head));
-    let text = String::from_utf8_lossy(&head);
-    let object = text.trim_start_matches('\u{feff}').trim_start().starts_with('{');
-    read.is_ok() && object && keys.iter().any(|key| text.contains(&format!("\"{key}\"")))
+    let text = head(file);
+    text.starts_with('{') && keys.iter().any(|key| text.contains(&format!("\"{key}\"")))
+}
+
+/// Whether a file is a list, as files of results are.
+pub(super) fn begins_as_list(file: &Path) -> bool {
+    head(file).starts_with('[')
+}
+
+/// The beginning of a file; nothing when it cannot be read.
+fn head(file: &Path) -> String {
+    let mut bytes = Vec::new();
+    let read = File::open(file).and_then(|file| file.take(HEAD).read_to_end(&mut bytes));
+    let text = if read.is_ok() { String::from_utf8_lossy(&bytes).into_owned() } else { String::new() };
+    text.trim_start_matches('\u{feff}').trim_start().to_owned()
 }
 
 /// The folder that holds the picture `name` of the annotation file `file`; that of the first guess when none does.

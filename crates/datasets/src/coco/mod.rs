@@ -109,6 +109,8 @@ impl Coco {
         let mut files = locate::annotation_files(path);
         if !path.is_file() {
             files.retain(|file| !name_begins(file, &["captions_", "panoptic_", "stuff_", "image_info_"]));
+            // Results may lie beside annotations; what is broken is kept, to be told.
+            files.retain(|file| !locate::begins_as_list(file));
         }
         if files.is_empty() {
             let wanted = "no annotation file (*.json)";

@@ -215,6 +215,10 @@ fn parts_are_chosen() {
     };
     assert_eq!(id(None).unwrap(), 3);
     assert_eq!((id(Some("train")).unwrap(), id(Some("train2017")).unwrap()), (3, 3));
+    let other = TemporaryFolder::new();
+    other.write("test_a.json", "[{\"image_id\": 7}]");
+    other.write("test_b.json", SMALL);
+    assert!(Coco::annotation_file(other.path(), &OpenOptions::default()).unwrap().ends_with("test_b.json"));
     let error = id(Some("test")).unwrap_err().to_string();
     assert!(error.contains("there are: val2017, train2017") || error.contains("val2017"), "{error}");
 }
