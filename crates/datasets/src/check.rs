@@ -1,11 +1,10 @@
 //! Everything of a data set, read once: what is broken, whatever the format.
 
-use std::path::PathBuf;
-
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::target::{BoundingBox, Name, PoseList};
 use opendr_engine::{Progress, Result, Unit, Value, map_in_order};
 
+use crate::problems::file_of;
 use crate::{Problem, Problems};
 
 /// Pixels by which an annotation may leave its picture: those of COCO itself do by fractions.
@@ -29,25 +28,20 @@ pub fn check(
     let read = |(): &mut (), at: usize| {
         let wrong = match dataset.get(at) {
             Ok(sample) => wrong_with(&sample, classes),
-            Err(error) => vec![(None, error.to_string())],
+            Err(error) => return vec![Problem::of(&error, dataset, at)],
         };
-        (at, wrong)
+        let problem = |(key, message)| Problem::at_key(file_of(dataset, at), key, message);
+        wrong.into_iter().map(problem).collect()
     };
-    let done = map_in_order(&mut workers, indices, read, |(at, wrong)| {
+    let done = map_in_order(&mut workers, indices, read, |wrong: Vec<Problem>| {
         progress.advance(1);
-        let file = || dataset.path(at).unwrap_or_else(|| PathBuf::from(dataset.name(at)));
-        wrong.into_iter().try_for_each(|(key, message)| {
-            problems.report(match key {
-                Some(key) => Problem::at_key(file(), key, message),
-                None => Problem::new(file(), message),
-            })
-        })
+        wrong.into_iter().try_for_each(|problem| problems.report(problem))
     });
     progress.end();
     done
 }
 
-type Wrong = Vec<(Option<String>, String)>;
+type Wrong = Vec<(String, String)>;
 
 fn wrong_with(sample: &Sample, classes: usize) -> Wrong {
     let mut wrong = Wrong::new();
@@ -57,7 +51,7 @@ fn wrong_with(sample: &Sample, classes: usize) -> Wrong {
     });
     let mut tell = |key: String, message: Option<String>| {
         if let Some(message) = message {
-            wrong.push((Some(key), message));
+            wrong.push((key, message));
         }
     };
     match &sample.target {

@@ -24,8 +24,7 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
                 pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(at))))
             }
             Err(error) => {
-                let file = dataset.path(at).unwrap_or_else(|| dataset.name(at).into());
-                problems.report(Problem::new(file, error.to_string()))?;
+                problems.report(Problem::of(&error, dataset, at))?;
             }
         }
     }

@@ -4,14 +4,15 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Result};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Problems that are kept word by word; more are counted.
 const MOST_KEPT: usize = 10_000;
 
 /// Where in a file.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
     /// Line, from 1.
@@ -23,12 +24,12 @@ pub enum Place {
 }
 
 /// One broken thing.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Problem {
     /// The file it is in.
     pub file: PathBuf,
     /// Where in the file.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub place: Option<Place>,
     /// What is wrong, the values, what to do.
     pub message: String,
@@ -38,6 +39,12 @@ impl Problem {
     /// A problem of a whole file.
     pub fn new(file: impl Into<PathBuf>, message: impl Into<String>) -> Self {
         Self { file: file.into(), place: None, message: message.into() }
+    }
+
+    /// The problem that an error tells of; an error that names no place is one of the file of sample number `at`.
+    pub fn of(error: &Error, dataset: &dyn DatasetIterator, at: usize) -> Self {
+        let source = std::error::Error::source(error).and_then(|source| source.downcast_ref::<Self>());
+        source.cloned().unwrap_or_else(|| Self::new(file_of(dataset, at), error.to_string()))
     }
 
     /// A problem of one line, from 1.
@@ -56,6 +63,11 @@ impl Problem {
     }
 }
 
+/// The file of a sample, or what the data set calls the sample.
+pub(crate) fn file_of(dataset: &dyn DatasetIterator, at: usize) -> PathBuf {
+    dataset.path(at).unwrap_or_else(|| dataset.name(at).into())
+}
+
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;
@@ -69,9 +81,12 @@ impl fmt::Display for Problem {
     }
 }
 
+impl std::error::Error for Problem {}
+
+/// With the problem as its source, so that [`Problem::of`] finds it again.
 impl From<Problem> for Error {
     fn from(problem: Problem) -> Self {
-        Self::format(problem.to_string())
+        Self::format(problem.to_string()).with_source(problem)
     }
 }
 
@@ -133,6 +148,8 @@ mod tests {
     fn strict_stops_and_skipping_counts() {
         let problem = || Problem::at_line("gt.txt", 7, "10 columns, not 9");
         let error = Problems::strict().report(problem()).unwrap_err();
+        let source = std::error::Error::source(&error).unwrap();
+        assert_eq!(source.downcast_ref::<Problem>(), Some(&problem()));
         assert_eq!(error.to_string(), "gt.txt:7: 10 columns, not 9");
         let problems = Problems::skipping();
         for _ in 0..MOST_KEPT + 5 {

@@ -103,8 +103,7 @@ impl DatasetStats {
             match dataset.target(at) {
                 Ok(target) => stats.count(target.as_ref(), &|name| label(name, &names)),
                 Err(error) => {
-                    let file = dataset.path(at).unwrap_or_else(|| dataset.name(at).into());
-                    problems.report(Problem::new(file, error.to_string()))?;
+                    problems.report(Problem::of(&error, dataset, at))?;
                 }
             }
         }

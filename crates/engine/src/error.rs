@@ -143,11 +143,12 @@ impl fmt::Display for Error {
             write!(f, "{context}: ")?;
         }
         f.write_str(&self.0.message)?;
-        if let Some(source) = &self.0.source {
-            // Some libraries end their messages with a line break.
-            write!(f, " ({})", source.to_string().trim_end())?;
+        let source = self.0.source.as_ref().map(ToString::to_string).unwrap_or_default();
+        // Some libraries end their messages with a line break; some messages quote their source.
+        match source.trim_end() {
+            told if self.0.message.contains(told) => Ok(()),
+            source => write!(f, " ({source})"),
         }
-        Ok(())
     }
 }
 
@@ -197,6 +198,13 @@ mod tests {
         assert_eq!(error.to_string(), "loading nanodet: reading model.json: no key \"files\"");
         assert_eq!(error.kind(), ErrorKind::Format);
         assert_eq!(size_of::<Error>(), size_of::<usize>());
+    }
+
+    #[test]
+    fn a_source_is_told_once() {
+        let of = |source: &str| Error::io("disk full: 3 bytes").with_source(source).to_string();
+        assert_eq!(of("errno 28\n"), "disk full: 3 bytes (errno 28)");
+        assert_eq!(of("disk full"), "disk full: 3 bytes");
     }
 
     #[test]

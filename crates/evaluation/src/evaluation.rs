@@ -133,7 +133,7 @@ impl<'a> Evaluation<'a> {
         let done = (0..dataset.len()).take_while(|_| !self.progress.stopped()).try_for_each(|at| {
             let answer = answers.get(at, self.metric.prediction);
             self.progress.advance(1);
-            tally.count(Line { at, name: dataset.name(at), answer: Answer::from(answer) })
+            tally.count(Line { at, name: dataset.name(at), answer: Answer::of(answer, dataset, at) })
         });
         self.progress.end();
         done?;
@@ -235,7 +235,7 @@ impl<'a> Evaluation<'a> {
             (at, infer(learner.as_mut(), ports, dataset, at, wanted.name()))
         };
         map_in_order(&mut learners[..workers], indices, work, |(at, answer)| {
-            let line = Line { at, name: dataset.name(at), answer: Answer::from(answer) };
+            let line = Line { at, name: dataset.name(at), answer: Answer::of(answer, dataset, at) };
             if let Some(journal) = &mut journal {
                 journal.write(&line)?;
             }
@@ -292,10 +292,7 @@ impl Tally<'_> {
                 self.counted += 1;
                 self.worst.add(at, score, || dataset.name(at), prediction);
             }
-            Err(message) => {
-                let file = dataset.path(at).unwrap_or_else(|| dataset.name(at).into());
-                self.problems.report(Problem::new(file, message))?;
-            }
+            Err(problem) => self.problems.report(problem)?,
         }
         let ends = at + 1 == dataset.len() || dataset.sequence(at) != dataset.sequence(at + 1);
         if dataset.sequence(at).is_some() && ends {
@@ -304,15 +301,21 @@ impl Tally<'_> {
         Ok(())
     }
 
-    fn score(&mut self, line: Line) -> std::result::Result<(f64, Value), String> {
+    fn score(&mut self, line: Line) -> std::result::Result<(f64, Value), Problem> {
+        let (at, dataset) = (line.at, self.dataset);
         let mut prediction = match line.answer {
             Answer::Prediction(prediction) => *prediction,
-            Answer::Error(error) => return Err(error),
+            Answer::Error(problem) => return Err(problem),
         };
-        let truth = self.dataset.target(line.at).map_err(|error| error.to_string())?;
-        let truth = truth.ok_or("the sample has no annotation to compare with")?;
         self.classes.apply(&mut prediction);
-        let counted = self.metric.update(line.at, (&prediction).into(), (&truth).into());
-        counted.map(|score| (score, prediction)).map_err(|error| error.to_string())
+        let counted = dataset.target(at).and_then(|truth| {
+            let truth =
+                truth.ok_or_else(|| Error::invalid_input("the sample has no annotation to compare with"))?;
+            self.metric.update(at, (&prediction).into(), (&truth).into())
+        });
+        match counted {
+            Ok(score) => Ok((score, prediction)),
+            Err(error) => Err(Problem::of(&error, dataset, at)),
+        }
     }
 }

@@ -7,6 +7,8 @@ use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use opendr_datasets::Problem;
+use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Result, ResultExt, Value};
 use serde::{Deserialize, Serialize};
 
@@ -58,14 +60,15 @@ pub struct Line {
 #[serde(rename_all = "snake_case")]
 pub enum Answer {
     Prediction(Box<Value>),
-    Error(String),
+    Error(Problem),
 }
 
-impl From<Result<Value>> for Answer {
-    fn from(answer: Result<Value>) -> Self {
+impl Answer {
+    /// Of sample number `at`.
+    pub fn of(answer: Result<Value>, dataset: &dyn DatasetIterator, at: usize) -> Self {
         match answer {
             Ok(value) => Self::Prediction(Box::new(value)),
-            Err(error) => Self::Error(error.to_string()),
+            Err(error) => Self::Error(Problem::of(&error, dataset, at)),
         }
     }
 }
@@ -177,7 +180,8 @@ mod tests {
         let path = folder.join("predictions.jsonl");
         let (none, mut journal) = read(&path, &heading("a")).unwrap();
         assert!(none.is_empty());
-        let failed = Line { at: 1, name: "1".to_owned(), answer: Answer::Error("broken".to_owned()) };
+        let failed =
+            Line { at: 1, name: "1".to_owned(), answer: Answer::Error(Problem::new("1.jpg", "broken")) };
         journal.write(&line(0)).unwrap();
         journal.write(&failed).unwrap();
         journal.file.write_all(b"{\"at\":2,\"name\":\"2\",\"predic").unwrap();
