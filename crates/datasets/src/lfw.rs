@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::target::{Category, Classes};
-use opendr_engine::{Error, Progress, Result, Unit, Value, ValueType};
+use opendr_engine::{Error, Progress, Result, Value, ValueType};
 
 use crate::fields::{Fields, lines};
 use crate::folder::{
     PICTURES, files_in, has_extension, name_of, past_end, path_inside, read_text, write_file, write_picture,
 };
+use crate::picture_files::write_each;
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 /// By class number.
@@ -136,21 +137,11 @@ impl Format for Lfw {
         problems: &Problems,
         progress: &dyn Progress,
     ) -> Result<()> {
-        progress.begin("writing pairs", Some(dataset.len() as u64), Unit::Items);
         let mut text = String::from("file_x,file_y,Decision\n");
-        for index in 0..dataset.len() {
-            if progress.stopped() {
-                break;
-            }
-            match write_pair(dataset, index, path, options.link) {
-                Ok(line) => text += &line,
-                Err(error) => {
-                    problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
-                }
-            }
-            progress.advance(1);
-        }
-        progress.end();
+        write_each(dataset, problems, progress, |index| {
+            text += &write_pair(dataset, index, path, options.link)?;
+            Ok(())
+        })?;
         write_file(&path.join("pairs.csv"), text.as_bytes())
     }
 }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::target::Category;
-use opendr_engine::{Error, Header, Progress, Result, Unit, Value, ValueType};
+use opendr_engine::{Error, Header, Progress, Result, Value, ValueType};
 
 use crate::folder::{PICTURES, files_in, name_of, part_folder, past_end, path_inside, write_picture};
+use crate::picture_files::write_each;
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 /// By default what is searched for.
@@ -178,18 +179,7 @@ impl Format for Market1501 {
             Some(other) => other,
         };
         let folder = path_inside(path, part).map_err(Error::invalid_param)?;
-        progress.begin("writing Market-1501", Some(dataset.len() as u64), Unit::Items);
-        for index in 0..dataset.len() {
-            if progress.stopped() {
-                break;
-            }
-            if let Err(error) = write_person(dataset, index, &folder, options.link) {
-                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?;
-            }
-            progress.advance(1);
-        }
-        progress.end();
-        Ok(())
+        write_each(dataset, problems, progress, |index| write_person(dataset, index, &folder, options.link))
     }
 }
 

@@ -10,8 +10,8 @@ mod header;
 
 pub use header::{NpyHeader, NpyType};
 
-/// The largest part that is read at once.
-const MAX_PART_BYTES: u64 = 1 << 30;
+/// The largest part that is read at once: numbers of one byte become eight times as large.
+const MAX_PART_BYTES: u64 = 256 << 20;
 
 /// An `.npy` file of which parts along the first axis are read on demand; several threads may do so.
 #[derive(Debug, Clone)]
@@ -60,7 +60,7 @@ impl NpyFile {
     ///
     /// # Errors
     /// `NotFound` past the end, `Unsupported` for Fortran order with several axes (no part lies together),
-    /// `InvalidInput` for a part over a gigabyte, `Io`.
+    /// `InvalidInput` for a part over 256 MB, `Io`.
     pub fn part(&self, index: usize) -> Result<Vec<f64>> {
         let shape = self.shape();
         let Some((count, rest)) = shape.split_first().filter(|(count, _)| index < **count) else {
@@ -82,7 +82,7 @@ impl NpyFile {
     /// All numbers, last axis fastest.
     ///
     /// # Errors
-    /// `InvalidInput` for over a gigabyte, `Io`.
+    /// `InvalidInput` for over 256 MB, `Io`.
     pub fn all(&self) -> Result<Vec<f64>> {
         let numbers = self.read(0, self.shape().iter().product())?;
         if self.header.fortran_order() {
@@ -98,7 +98,7 @@ impl NpyFile {
         let read = || {
             if bytes > MAX_PART_BYTES {
                 return Err(Error::invalid_input(format!(
-                    "a part of {bytes} bytes; save it in pieces of a gigabyte at most"
+                    "a part of {bytes} bytes; save it in pieces of at most {MAX_PART_BYTES}"
                 )));
             }
             let mut file = File::open(&self.path)?;

@@ -2,6 +2,7 @@
 //!
 //! Nothing is run: what names any other function or class is refused. Data sets of skeletons are handed around so.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
@@ -63,6 +64,7 @@ impl Pickle {
             stack: Vec::new(),
             marks: Vec::new(),
             memo: HashMap::new(),
+            copied: Cell::new(0),
         };
         let root = machine.run()?;
         Ok(Self { items: machine.items, root })

@@ -1,9 +1,9 @@
 //! Time series of the UCR and UEA archives: a line a series, as `.tsv`, `.csv` or `.txt`, or as `.ts` of sktime.
 
+use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
@@ -198,7 +198,7 @@ impl Ucr {
         let is_ts = path.extension().is_some_and(|extension| extension == "ts");
         let mut header = is_ts.then(TsHeader::default);
         let mut in_data = !is_ts;
-        let (mut lines, mut labels) = (Vec::new(), Vec::<Arc<str>>::new());
+        let (mut lines, mut labels) = (Vec::new(), HashMap::<String, u32>::new());
         let (mut byte, mut number, mut bytes) = (0u64, 0u64, Vec::new());
         loop {
             bytes.clear();
@@ -230,8 +230,10 @@ impl Ucr {
             }
             match line::label(text, header.as_ref()) {
                 Ok(label) => {
-                    labels.push(label.unwrap_or_default().into());
-                    lines.push(Line { byte: start, bytes: read, number, class: None });
+                    // The place of the label among those that there are, until all are known.
+                    let next = labels.len() as u32;
+                    let class = label.map(|label| *labels.entry(label).or_insert(next));
+                    lines.push(Line { byte: start, bytes: read, number, class });
                 }
                 Err(message) => problems.report(Problem::at_line(path, number, message))?,
             }
@@ -239,9 +241,14 @@ impl Ucr {
         if !in_data {
             return Err(Problem::new(path, "has no line @data; the file is cut off").into());
         }
-        let classes = line::classes(&labels, header.as_ref());
-        for (line, label) in lines.iter_mut().zip(&labels) {
-            line.class = classes.index(label).and_then(|class| u32::try_from(class).ok());
+        let classes = line::classes(labels.keys().map(String::as_str), header.as_ref());
+        let number: HashMap<&str, u32> = classes.iter().zip(0..).collect();
+        let mut classes_of = vec![None; labels.len()];
+        for (label, place) in &labels {
+            classes_of[*place as usize] = number.get(label.as_str()).copied();
+        }
+        for line in &mut lines {
+            line.class = line.class.and_then(|place| classes_of.get(place as usize).copied().flatten());
         }
         Ok(Self { path: path.to_owned(), header, lines, classes })
     }

@@ -27,7 +27,7 @@ pub use signal::{wfdb_from_timeseries, wfdb_samples};
 use beats::Beats;
 
 /// The longest signal file that is read: a day of three signals at 500 Hz and 16 bits is 259 MB.
-const MAX_BYTES: u64 = 512 << 20;
+const MAX_BYTES: u64 = 260 << 20;
 /// Records that are kept when samples are beats.
 const MOST_KEPT: usize = 4;
 

@@ -5,12 +5,13 @@ use std::path::Path;
 
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::target::{BoundingBox3DList, Classes, Name};
-use opendr_engine::{Error, Progress, Result, Unit, Value};
+use opendr_engine::{Error, Progress, Result, Value};
 
 use crate::folder::{path_inside, write_file, write_picture};
 use crate::kitti::labels::box_from_flat;
 use crate::kitti::{kitti_from_calibration, velodyne_from_cloud};
-use crate::{Problem, Problems, WriteOptions};
+use crate::picture_files::write_each;
+use crate::{Problems, WriteOptions};
 
 /// Scenes are numbered anew from 0.
 pub(super) fn write(
@@ -26,22 +27,10 @@ pub(super) fn write(
         Some(other) => other,
     };
     let folder = path_inside(path, part).map_err(Error::invalid_param)?;
-    progress.begin("writing KITTI", Some(dataset.len() as u64), Unit::Items);
-    for index in 0..dataset.len() {
-        if progress.stopped() {
-            break;
-        }
+    write_each(dataset, problems, progress, |index| {
         let from = dataset.path(index);
-        let written = dataset
-            .get(index)
-            .and_then(|sample| write_scene(&sample, &folder, index, from.as_deref(), options.link));
-        if let Err(error) = written {
-            problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?;
-        }
-        progress.advance(1);
-    }
-    progress.end();
-    Ok(())
+        write_scene(&dataset.get(index)?, &folder, index, from.as_deref(), options.link)
+    })
 }
 
 fn write_scene(sample: &Sample, folder: &Path, index: usize, from: Option<&Path>, link: bool) -> Result<()> {

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::target::TrackingAnnotationList;
-use opendr_engine::{Error, Progress, Result, Unit, Value};
+use opendr_engine::{Error, Progress, Result, Value};
 
 use crate::folder::{path_inside, write_file, write_picture};
 use crate::mot::row::{CLASSES, PEDESTRIAN};
-use crate::{Problem, Problems, WriteOptions};
+use crate::picture_files::write_each;
+use crate::{Problems, WriteOptions};
 
 /// One sequence, as far as it is written.
 #[derive(Default)]
@@ -31,28 +32,18 @@ pub(super) fn write(
 ) -> Result<()> {
     let part =
         path_inside(path, options.split.as_deref().unwrap_or("train")).map_err(Error::invalid_param)?;
-    progress.begin("writing MOT", Some(dataset.len() as u64), Unit::Items);
     let mut current: Option<Unfinished> = None;
-    for index in 0..dataset.len() {
-        if progress.stopped() {
-            break;
-        }
+    write_each(dataset, problems, progress, |index| {
         if index == 0 || dataset.sequence(index) != dataset.sequence(index - 1) {
             current.take().map_or(Ok(()), Unfinished::finish)?;
         }
-        let written = dataset.get(index).and_then(|sample| {
-            let sequence = match &mut current {
-                Some(sequence) => sequence,
-                None => current.insert(Unfinished::begin(&part, dataset, index, &sample)?),
-            };
-            sequence.add(dataset, index, &sample, options.link)
-        });
-        if let Err(error) = written {
-            problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?;
-        }
-        progress.advance(1);
-    }
-    progress.end();
+        let sample = dataset.get(index)?;
+        let sequence = match &mut current {
+            Some(sequence) => sequence,
+            None => current.insert(Unfinished::begin(&part, dataset, index, &sample)?),
+        };
+        sequence.add(dataset, index, &sample, options.link)
+    })?;
     current.map_or(Ok(()), Unfinished::finish)
 }
 

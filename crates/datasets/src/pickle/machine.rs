@@ -1,5 +1,6 @@
 //! The stack machine that a pickle is a program of, without the instructions that could run code.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
@@ -7,8 +8,10 @@ use opendr_engine::{Error, Result};
 use crate::npy::NpyType;
 use crate::pickle::{Id, Item, MAX_AXES, refused};
 
-/// Values that are made: each takes a byte of the file at least, so this is a bound for large files only.
-const MAX_ITEMS: usize = 64 << 20;
+/// Values that are made, and that are kept for later.
+const MAX_ITEMS: usize = 16 << 20;
+/// Bytes that may be copied, as a multiple of those of the file: what is kept can be asked for again and again.
+const MOST_COPIES: usize = 4;
 
 pub(super) struct Machine<'a> {
     pub(super) bytes: &'a [u8],
@@ -17,6 +20,7 @@ pub(super) struct Machine<'a> {
     pub(super) stack: Vec<Id>,
     pub(super) marks: Vec<usize>,
     pub(super) memo: HashMap<u64, Id>,
+    pub(super) copied: Cell<usize>,
 }
 
 impl<'a> Machine<'a> {
@@ -28,7 +32,7 @@ impl<'a> Machine<'a> {
             if code == b'.' {
                 return self.pop();
             }
-            if self.items.len() > MAX_ITEMS {
+            if self.items.len().max(self.memo.len()) > MAX_ITEMS {
                 return Err(Error::invalid_input(format!("over {MAX_ITEMS} values; divide the data set")));
             }
             if !(self.scalar(code)? || self.collection(code)? || self.memory(code)? || self.object(code)?) {
@@ -64,6 +68,16 @@ impl<'a> Machine<'a> {
         length.iter_mut().zip(bytes).for_each(|(to, from)| *to = from);
         let length = usize::try_from(u64::from_le_bytes(length)).unwrap_or(usize::MAX);
         self.take(length)
+    }
+
+    /// Counts bytes that are copied.
+    fn copy<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8]> {
+        let copied = self.copied.get().saturating_add(bytes.len());
+        self.copied.set(copied);
+        match copied <= self.bytes.len().saturating_mul(MOST_COPIES) {
+            true => Ok(bytes),
+            false => Err(self.wrong("the same bytes are used again and again")),
+        }
     }
 
     fn line(&mut self) -> Result<String> {
@@ -207,6 +221,7 @@ impl<'a> Machine<'a> {
                 let (Item::Text(module), Item::Text(name)) = (self.item(module), self.item(name)) else {
                     return Err(self.wrong("a name is no text"));
                 };
+                self.copy(module.as_bytes()).and_then(|_| self.copy(name.as_bytes()))?;
                 let global = Item::Global(module.clone(), name.clone());
                 self.push(global);
             }
@@ -254,6 +269,7 @@ impl<'a> Machine<'a> {
             ("_codecs", "encode") => match argument(0) {
                 // Protocol 2 has no bytes: they are texts of Latin 1.
                 Item::Text(text) => {
+                    self.copy(text.as_bytes())?;
                     let bytes: Result<Vec<u8>, _> =
                         text.chars().map(|letter| u8::try_from(u32::from(letter))).collect();
                     bytes.map(Item::Bytes).map_err(|_| self.wrong("bytes are no bytes"))
@@ -280,7 +296,7 @@ impl<'a> Machine<'a> {
         if wanted != Some(bytes.len()) {
             return Err(self.wrong(&format!("an array of shape {shape:?} has {} bytes", bytes.len())));
         }
-        Ok(Item::Array(shape, number, fortran_order, bytes.to_vec()))
+        Ok(Item::Array(shape, number, fortran_order, self.copy(bytes)?.to_vec()))
     }
 
     /// Fills an array, or tells a type the order of its bytes.
@@ -304,7 +320,9 @@ impl<'a> Machine<'a> {
             },
             _ => return Err(refused("the state of an object")),
         };
-        self.items.get_mut(target).into_iter().for_each(|item| *item = built.clone());
+        if let Some(item) = self.items.get_mut(target) {
+            *item = built;
+        }
         Ok(())
     }
 }

@@ -35,6 +35,19 @@ fn code_and_broken_files_are_refused() {
     }
 }
 
+#[test]
+fn the_same_bytes_again_and_again_are_refused() {
+    let mut bytes = b"\x80\x02]q\x00c_codecs\nencode\nq\x01X\x10\x27\0\0".to_vec();
+    bytes.extend([b'a'; 10_000]);
+    bytes.extend(*b"\x85q\x02R");
+    for _ in 0..100 {
+        bytes.extend(*b"h\x01h\x02R");
+    }
+    bytes.push(b'.');
+    let error = Pickle::parse(&bytes).unwrap_err();
+    assert!(error.to_string().contains("again and again"), "{error}");
+}
+
 /// A list within itself is no endless work.
 #[test]
 fn cycles_cost_nothing() {

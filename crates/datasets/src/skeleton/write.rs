@@ -4,10 +4,11 @@ use std::path::Path;
 
 use opendr_engine::data::SkeletonSequence;
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::{Error, Progress, Result, Unit, Value};
+use opendr_engine::{Error, Progress, Result, Value};
 
 use crate::folder::{path_inside, write_file};
-use crate::{Problem, Problems, WriteOptions, npy_from_f32, npy_from_i64};
+use crate::picture_files::write_each;
+use crate::{Problems, WriteOptions, npy_from_f32, npy_from_i64};
 
 /// Numbers that are held until they are written: eight gigabytes.
 const MAX_NUMBERS: usize = 2 << 30;
@@ -23,24 +24,13 @@ pub(super) fn write(
 ) -> Result<()> {
     let part = options.split.as_deref().unwrap_or("train");
     let data = path_inside(path, &format!("{part}_data.npy")).map_err(Error::invalid_param)?;
-    progress.begin("writing skeletons", Some(dataset.len() as u64), Unit::Items);
     let (mut sequences, mut labels) = (Vec::new(), Vec::new());
-    for index in 0..dataset.len() {
-        if progress.stopped() {
-            break;
-        }
-        match recording(dataset, index, sequences.first()) {
-            Ok((sequence, class)) => {
-                sequences.push(sequence);
-                labels.push(class);
-            }
-            Err(error) => {
-                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
-            }
-        }
-        progress.advance(1);
-    }
-    progress.end();
+    write_each(dataset, problems, progress, |index| {
+        let (sequence, class) = recording(dataset, index, sequences.first())?;
+        sequences.push(sequence);
+        labels.push(class);
+        Ok(())
+    })?;
     let frames = sequences.iter().map(|sequence: &SkeletonSequence| sequence.shape()[2]).max().unwrap_or(0);
     let [_, channels, _, joints, persons] = sequences.first().map_or([1; 5], SkeletonSequence::shape);
     let shape = [sequences.len(), channels, frames, joints, persons];

@@ -1,15 +1,15 @@
 //! Any sound with its word as Speech Commands.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::target::Classes;
-use opendr_engine::{Error, Progress, Result, Unit, Value};
+use opendr_engine::{Error, Progress, Result, Value};
 
 use crate::folder::{path_inside, write_file};
+use crate::picture_files::write_each;
 use crate::speech_commands::SpeechSplit;
-use crate::{Problem, Problems, WavEncoding, WriteOptions, wav_from_audio};
+use crate::{Problems, WavEncoding, WriteOptions, wav_from_audio};
 
 /// Writes 16-bit WAVE files, and the clips of the part into its list; what other lists name stays there.
 pub(super) fn write(
@@ -21,22 +21,11 @@ pub(super) fn write(
 ) -> Result<()> {
     let part = SpeechSplit::from_name(options.split.as_deref().unwrap_or("training"))?;
     let classes = dataset.classes();
-    progress.begin("writing Speech Commands", Some(dataset.len() as u64), Unit::Items);
-    let mut names = BTreeMap::new();
-    for index in 0..dataset.len() {
-        if progress.stopped() {
-            break;
-        }
-        match write_clip(dataset, index, path, &classes, part) {
-            Ok(name) => drop(names.insert(index, name)),
-            Err(error) => {
-                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
-            }
-        }
-        progress.advance(1);
-    }
-    progress.end();
-    let list: String = names.values().map(|name| format!("{name}\n")).collect();
+    let mut list = String::new();
+    write_each(dataset, problems, progress, |index| {
+        list += &format!("{}\n", write_clip(dataset, index, path, &classes, part)?);
+        Ok(())
+    })?;
     for (list_of, name) in
         [(SpeechSplit::Validation, "validation_list.txt"), (SpeechSplit::Testing, "testing_list.txt")]
     {

@@ -1,7 +1,5 @@
 //! One series a line, in both forms.
 
-use std::sync::Arc;
-
 use opendr_engine::data::Timeseries;
 use opendr_engine::target::Classes;
 
@@ -88,18 +86,18 @@ fn whole_label(label: &str) -> String {
 }
 
 /// The classes in order: of the header, else by value when all are numbers, else by name.
-pub(super) fn classes(labels: &[Arc<str>], header: Option<&TsHeader>) -> Classes {
+pub(super) fn classes<'a>(labels: impl Iterator<Item = &'a str>, header: Option<&TsHeader>) -> Classes {
     if let Some(named) = header.and_then(|header| header.classes.clone()).filter(|named| !named.is_empty()) {
         return named.into_iter().collect();
     }
-    let mut sorted: Vec<_> = labels.iter().filter(|label| !label.is_empty()).collect();
+    let mut sorted: Vec<&str> = labels.filter(|label| !label.is_empty()).collect();
     sorted.sort_unstable();
-    sorted.dedup();
-    let value = |label: &&Arc<str>| label.parse::<f64>().ok();
+    let value = |label: &str| label.parse::<f64>().ok();
     if sorted.iter().all(|label| value(label).is_some()) {
-        sorted.sort_by(|a, b| value(a).unwrap_or(f64::NAN).total_cmp(&value(b).unwrap_or(f64::NAN)));
+        let number = |label: &str| value(label).unwrap_or(f64::NAN);
+        sorted.sort_by(|a, b| number(a).total_cmp(&number(b)));
     }
-    sorted.into_iter().cloned().collect()
+    sorted.into_iter().collect()
 }
 
 /// Between tabs or commas or, where there are none, blanks.

@@ -4,10 +4,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::{Error, Progress, Result, Unit, Value};
+use opendr_engine::{Error, Progress, Result, Value};
 
 use crate::folder::{name_of, path_inside, write_file};
-use crate::{Problem, Problems, WriteOptions};
+use crate::picture_files::write_each;
+use crate::{Problems, WriteOptions};
 
 /// `NAME_TRAIN.ts`, called as the folder is; NaN becomes `?`.
 pub(super) fn write(
@@ -20,30 +21,19 @@ pub(super) fn write(
     let name = word(&name_of(path));
     let part = options.split.as_deref().unwrap_or("train").to_uppercase();
     let file = path_inside(path, &format!("{name}_{part}.ts")).map_err(Error::invalid_param)?;
-    progress.begin("writing UCR", Some(dataset.len() as u64), Unit::Items);
     let mut classes: Vec<String> = dataset.classes().iter().map(word).collect();
     let named = classes.len();
     let (mut text, mut shapes, mut missing) = (String::new(), Vec::new(), false);
-    for index in 0..dataset.len() {
-        if progress.stopped() {
-            break;
+    write_each(dataset, problems, progress, |index| {
+        let (line, label, shape) = series_line(dataset, index, shapes.first())?;
+        text += &line;
+        missing |= line.contains('?');
+        if !classes.contains(&label) {
+            classes.push(label);
         }
-        match series_line(dataset, index, shapes.first()) {
-            Ok((line, label, shape)) => {
-                text += &line;
-                missing |= line.contains('?');
-                if !classes.contains(&label) {
-                    classes.push(label);
-                }
-                shapes.push(shape);
-            }
-            Err(error) => {
-                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
-            }
-        }
-        progress.advance(1);
-    }
-    progress.end();
+        shapes.push(shape);
+        Ok(())
+    })?;
     // Numbers sort by value, and known classes keep theirs.
     classes
         .get_mut(named..)

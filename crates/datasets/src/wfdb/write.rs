@@ -5,11 +5,12 @@ use std::path::Path;
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::{Error, Progress, Result, Unit, Value};
+use opendr_engine::{Error, Progress, Result, Value};
 
+use crate::Problems;
 use crate::folder::{path_inside, write_file};
+use crate::picture_files::write_each;
 use crate::wfdb::{WfdbAnnotation, WfdbRecord, atr_from_annotations, wfdb_from_timeseries};
-use crate::{Problem, Problems};
 
 /// Where a series tells no rate, one sample a second.
 const FREQUENCY: f64 = 1.0;
@@ -21,26 +22,17 @@ pub(super) fn write(
     problems: &Problems,
     progress: &dyn Progress,
 ) -> Result<()> {
-    progress.begin("writing WFDB", Some(dataset.len() as u64), Unit::Items);
     let mut list = String::new();
-    for index in 0..dataset.len() {
-        if progress.stopped() {
-            break;
-        }
+    write_each(dataset, problems, progress, |index| {
         let name = format!("{index:06}");
-        let written = dataset.get(index).and_then(|sample| match sample.data.first() {
-            Some(Value::Timeseries(series)) => write_files(path, &name, series, FREQUENCY, &[]),
-            _ => Err(Error::invalid_input("no time series; WFDB holds Timeseries")),
-        });
-        match written {
-            Ok(()) => list += &format!("{name}\n"),
-            Err(error) => {
-                problems.report(Problem::at_key(path, format!("sample {index}"), error.to_string()))?
-            }
-        }
-        progress.advance(1);
-    }
-    progress.end();
+        let sample = dataset.get(index)?;
+        let Some(Value::Timeseries(series)) = sample.data.first() else {
+            return Err(Error::invalid_input("no time series; WFDB holds Timeseries"));
+        };
+        write_files(path, &name, series, FREQUENCY, &[])?;
+        list += &format!("{name}\n");
+        Ok(())
+    })?;
     write_file(&path.join("RECORDS"), list.as_bytes())
 }
 
