@@ -243,7 +243,10 @@ impl Format for Wfdb {
             match header.and_then(|header| Ok((read_annotations(record, header.length)?, header))) {
                 Ok((annotations, header)) => known.push(Some((annotations, header))),
                 Err(error) => {
-                    problems.report(Problem::new(record, error.to_string()))?;
+                    let told =
+                        std::error::Error::source(&error).and_then(|source| source.downcast_ref::<Problem>());
+                    let told = told.cloned();
+                    problems.report(told.unwrap_or_else(|| Problem::new(record, error.to_string())))?;
                     known.push(None);
                 }
             }

@@ -170,7 +170,9 @@ fn broken_records_are_told() {
     let told: Vec<_> = problems.list().iter().map(ToString::to_string).collect();
     assert_eq!((wfdb.len(), told.len()), (1, 2));
     assert!(
-        told[0].contains("b.hea:1: has \"x\"") && told[1].contains("c.atr: an annotation at sample 9 of 2")
+        told[0].ends_with("b.hea:1: has \"x\" as the number of signals")
+            && problems.list()[0].place.is_some()
+            && told[1].contains("c.atr: an annotation at sample 9 of 2")
     );
     let list = good().with("RECORDS", "../a\n");
     let error = Wfdb::open(list.path(), &OpenOptions::default(), &Problems::strict()).unwrap_err();
