@@ -375,6 +375,17 @@ const char *opendr_input_name(const struct opendr_learner *learner, size_t index
 // The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
 
+// Measures the learner on a data set on disk.
+//
+// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
+// "split", "limit", "folder", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
+// the numbers by name; it is to be freed.
+enum opendr_status opendr_eval(const struct opendr_learner *learner,
+                               const char *dataset,
+                               const char *dataset_type,
+                               const char *options_json,
+                               struct opendr_string **outcome);
+
 // Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
 enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);
 
@@ -538,6 +549,17 @@ const char *opendr_input_name(const struct opendr_learner *learner, size_t index
 
 // The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
+
+// Measures the learner on a data set on disk.
+//
+// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
+// "split", "limit", "folder", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
+// the numbers by name; it is to be freed.
+enum opendr_status opendr_eval(const struct opendr_learner *learner,
+                               const char *dataset,
+                               const char *dataset_type,
+                               const char *options_json,
+                               struct opendr_string **outcome);
 
 // Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
 enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);

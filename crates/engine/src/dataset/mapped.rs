@@ -32,5 +32,6 @@ impl<D: DatasetIterator, F: Fn(Sample) -> Result<Sample> + Send + Sync> DatasetI
         (self.map_function)(self.original.get(index)?)
     }
 
-    forward!(self, index => self.original, index);
+    // Not its files and sizes: they are of what the function was given.
+    forward!(names self, index => self.original, index);
 }

@@ -113,9 +113,7 @@ impl<'a> From<&'a dyn DatasetIterator> for DatasetRef<'a> {
 /// Hands everything that a wrapper does not change to what it wraps.
 macro_rules! forward {
     ($self:ident, $index:ident => $inner:expr, $at:expr) => {
-        fn name(&$self, $index: usize) -> String {
-            $inner.name($at)
-        }
+        $crate::dataset::forward!(names $self, $index => $inner, $at);
 
         fn path(&$self, $index: usize) -> Option<std::path::PathBuf> {
             $inner.path($at)
@@ -123,6 +121,11 @@ macro_rules! forward {
 
         fn picture_size(&$self, $index: usize) -> Option<[u32; 2]> {
             $inner.picture_size($at)
+        }
+    };
+    (names $self:ident, $index:ident => $inner:expr, $at:expr) => {
+        fn name(&$self, $index: usize) -> String {
+            $inner.name($at)
         }
 
         fn sequence(&$self, $index: usize) -> Option<usize> {
