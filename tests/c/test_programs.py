@@ -60,3 +60,34 @@ def test_names_that_are_no_utf8(compiler, shared, tmp_path):
     plain = compiler.run(runner, *arguments, f"image={shared / 'data/photos/zidane.jpg'}")
     done = subprocess.run([runner, *arguments, b"image=" + odd], env=compiler.environment, capture_output=True)
     assert (done.returncode, done.stdout) == (0, plain.stdout), done.stderr
+
+
+EVAL = """
+#include <opendr.h>
+#include <stdio.h>
+
+int main(int count, char **words)
+{
+    opendr_learner *learner = NULL;
+    opendr_string *outcome = NULL;
+    if (count != 3 || opendr_load("centernet", NULL, "cpu", NULL, &learner) != OPENDR_OK) {
+        return 1;
+    }
+    enum opendr_status status = opendr_eval(learner, words[1], "yolo", words[2], &outcome);
+    puts(status == OPENDR_OK ? opendr_string_text(outcome) : opendr_last_error());
+    opendr_string_free(&outcome);
+    opendr_learner_free(&learner);
+    return (int)status;
+}
+"""
+
+
+def test_learner_is_measured(compiler, shared):
+    program = compiler.build(compiler.write("eval.c", EVAL))
+    done = compiler.run(program, shared / "data/coco128", '{"limit": 8, "metric_params": {"max_detections": 50}}')
+    outcome = json.loads(done.stdout)
+    assert (outcome["metric"], outcome["samples"]) == ("coco_detection", 8)
+    assert 0.3 < outcome["scalars"]["map50"] <= 1
+    for dataset, options, code in [("/no/such/folder", "{}", 13), ("/tmp", '{"nonsense": 1}', 12)]:
+        done = compiler.run(program, dataset, options, code=code)
+        assert done.stdout.strip()

@@ -98,6 +98,43 @@ impl Dataset {
     }
 }
 
+/// The numbers of samples in two parts, as [`Subset::split`] draws them; `sequences` says which stay together.
+#[pyfunction]
+pub fn split(
+    py: Python<'_>,
+    sequences: Vec<Option<usize>>,
+    share: f64,
+    seed: u64,
+) -> PyResult<(Vec<usize>, Vec<usize>)> {
+    let parts = Subset::split(&Sequences(sequences), share, seed).map(|parts| parts.map(|part| part.indices().to_vec()));
+    parts.map(|[first, second]| (first, second)).to_python(py)
+}
+
+/// The numbers of samples in a random order, as [`Subset::shuffled`] draws it.
+#[pyfunction]
+pub fn shuffled(count: usize, seed: u64) -> Vec<usize> {
+    Subset::shuffled(Sequences(vec![None; count]), seed).indices().to_vec()
+}
+
+/// A data set of which nothing is known but what stays together.
+struct Sequences(Vec<Option<usize>>);
+
+impl AnyDataset for Sequences {}
+
+impl DatasetIterator for Sequences {
+    fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    fn get(&self, _index: usize) -> Result<Sample> {
+        Ok(Sample { data: Vec::new(), target: None })
+    }
+
+    fn sequence(&self, index: usize) -> Option<usize> {
+        self.0.get(index).copied().flatten()
+    }
+}
+
 /// The formats that there are.
 #[pyfunction]
 pub fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {

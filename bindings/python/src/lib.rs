@@ -39,6 +39,8 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     for function in [
         wrap_pyfunction!(registry::entries, module)?,
         wrap_pyfunction!(dataset::formats, module)?,
+        wrap_pyfunction!(dataset::shuffled, module)?,
+        wrap_pyfunction!(dataset::split, module)?,
         wrap_pyfunction!(metric::metrics, module)?,
         wrap_pyfunction!(metric::metric_of, module)?,
         wrap_pyfunction!(plugin::register, module)?,

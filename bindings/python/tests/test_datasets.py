@@ -6,13 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from opendr.engine.data import PointCloud, Vector
+from opendr.engine.data import Image, PointCloud, Vector
 from opendr.engine.datasets import (
     Dataset,
     DatasetIterator,
     ExternalDataset,
     MappedDatasetIterator,
     PointCloudsDatasetIterator,
+    Subset,
+    shuffled,
+    split,
 )
 from opendr.engine.target import Category
 
@@ -25,6 +28,41 @@ class Numbers(DatasetIterator):
 
     def __len__(self):
         return 3
+
+
+def test_parts_follow_from_the_seed():
+    train, val = split(Numbers(), 0.67, 3)
+    assert sorted(train.indices + val.indices) == [0, 1, 2]
+    assert (len(train), len(val)) == (2, 1)
+    assert split(Numbers(), 0.67, 3)[0].indices == train.indices
+    assert len({tuple(shuffled(Numbers(), seed).indices) for seed in range(20)}) > 3
+    assert Subset(Numbers(), [2, 0])[0][1].data == 2
+    for wrong in (lambda: split(Numbers(), 1.5, 0), lambda: Subset(Numbers(), [3])):
+        with pytest.raises((ValueError, IndexError)):
+            wrong()
+
+
+def test_open_reads_samples_and_lists_what_is_broken(tmp_path):
+    import json
+
+    Image(np.zeros((3, 20, 30), np.uint8)).save(tmp_path / "a.png")
+    box = {"id": 1, "image_id": 7, "category_id": 18, "bbox": [1, 2, 10, 5], "area": 50, "iscrowd": 0}
+    files = {
+        "images": [{"id": 7, "file_name": "a.png", "width": 30, "height": 20}],
+        "categories": [{"id": 18, "name": "dog"}],
+        "annotations": [box, {**box, "id": 2, "bbox": [1, 2, 3]}],
+    }
+    (tmp_path / "instances_val.json").write_text(json.dumps(files))
+    dataset = ExternalDataset(tmp_path, "auto").open(skip_broken=True)
+    image, target = dataset[0]
+    assert (image.data.shape, len(dataset), dataset.classes, dataset.name(0)) == ((3, 20, 30), 1, ["dog"], "a.png")
+    assert [(box.name, box.width, box.class_name) for box in target] == [(0, 10.0, "dog")]
+    assert dataset.target(-1) == target and dataset.sequence(0) is None
+    assert len(dataset.problems) == 1 and "bbox" in dataset.problems[0], dataset.problems
+    with pytest.raises(ValueError, match="bbox"):
+        ExternalDataset(tmp_path, "coco").open()[0]
+    with pytest.raises(IndexError):
+        dataset[1]
 
 
 def test_mapped():

@@ -1,7 +1,6 @@
 //! What the library exports, as cbindgen reads it from the sources.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use cbindgen::{Builder, Config, DocumentationLength, DocumentationStyle, Language, Style};
 use opendr::ValueType;
@@ -50,16 +49,9 @@ pub fn render(sources: &Path) -> String {
     config.export.include = ["opendr_samples", "opendr_pixel_format", "opendr_layout", "opendr_skeleton"]
         .map(str::to_owned)
         .to_vec();
-    let builder = Builder::new().with_config(config);
-    let builder = files(sources).into_iter().fold(builder, |builder, file| builder.with_src(file));
+    // It follows the modules itself; what it is given twice it declares twice.
+    let builder = Builder::new().with_config(config).with_src(sources.join("lib.rs"));
     let mut header = Vec::new();
     builder.generate().unwrap().write(&mut header);
     format!("{RULES}{}", String::from_utf8(header).unwrap())
-}
-
-/// Every source file, in the order of their names, files before folders.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut entries: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    entries.sort_by_key(|path| (path.is_dir(), path.clone()));
-    entries.into_iter().flat_map(|path| if path.is_dir() { files(&path) } else { vec![path] }).collect()
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, Callable, Union
 
 from opendr.engine._checks import whole
@@ -57,6 +57,58 @@ class MappedDatasetIterator(DatasetIterator):
 
     def __len__(self) -> int:
         return len(self.original)
+
+
+class Subset(DatasetIterator):
+    """Some samples of a data set, in an order of their own.
+
+    Args:
+        original: The data set.
+        indices: The numbers of the samples.
+
+    Raises:
+        IndexError: There is no such sample.
+    """
+
+    def __init__(self, original: DatasetIterator, indices: Iterable[int]) -> None:
+        self.original = original
+        self.indices: list[int] = [whole(index, "the number of a sample") for index in indices]
+        for index in self.indices:
+            if not 0 <= index < len(original):
+                raise IndexError(f"there is no sample {index} among {len(original)}")
+
+    def __getitem__(self, idx: int) -> Any:
+        return self.original[self.indices[idx]]
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    @property
+    def classes(self) -> list[str]:
+        """What class numbers in the targets mean; empty where the data set does not tell."""
+        return list(getattr(self.original, "classes", []))
+
+
+def shuffled(dataset: DatasetIterator, seed: int) -> Subset:
+    """All samples in a random order that follows from ``seed``."""
+    from opendr import _opendr
+
+    return Subset(dataset, _opendr.shuffled(len(dataset), seed))
+
+
+def split(dataset: DatasetIterator, share: float, seed: int) -> tuple[Subset, Subset]:
+    """Two parts without a sample in common, the first with ``share`` of the samples, drawn by ``seed``; the same parts as in
+    Rust. Frames of one sequence stay together.
+
+    Raises:
+        ValueError: ``share`` is not in [0, 1].
+    """
+    from opendr import _opendr
+
+    sequence = getattr(dataset, "sequence", None)
+    sequences = [None if sequence is None else sequence(idx) for idx in range(len(dataset))]
+    first, second = _opendr.split(sequences, share, seed)
+    return Subset(dataset, first), Subset(dataset, second)
 
 
 class ExternalDataset(Dataset):
