@@ -106,7 +106,8 @@ pub fn split(
     share: f64,
     seed: u64,
 ) -> PyResult<(Vec<usize>, Vec<usize>)> {
-    let parts = Subset::split(&Sequences(sequences), share, seed).map(|parts| parts.map(|part| part.indices().to_vec()));
+    let parts = Subset::split(&Sequences(sequences), share, seed)
+        .map(|parts| parts.map(|part| part.indices().to_vec()));
     parts.map(|[first, second]| (first, second)).to_python(py)
 }
 
