@@ -1,7 +1,7 @@
 //! Augmentation: samples changed at random, data and target together. One file each.
 //!
-//! An [`Augment`] takes all its chance from the [`Random`] it is given, so that a sample comes out the same whichever
-//! thread works on it. What cannot follow a change (a 3D box when its picture is turned) is refused, never left behind.
+//! An [`Augment`] takes all its chance from the [`Random`](opendr_engine::Random) it is given, so that a sample comes out
+//! the same whichever thread works on it. What cannot follow a change (a 3D box when its picture is turned) is refused, never left behind.
 
 mod audio;
 mod augmentation;
