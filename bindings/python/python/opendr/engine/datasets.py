@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
-from typing import Any, Callable, Union
+from typing import Any, Callable, Optional, Union
 
 from opendr.engine._checks import whole
 from opendr.engine.data import Data, PointCloud
