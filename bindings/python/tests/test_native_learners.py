@@ -58,7 +58,9 @@ def test_life_cycle(entry, zoo, photo, tmp_path):
     assert again.infer(photo).to_json() == answer.to_json()
     learner.reset()
     assert learner.stream().infer(photo).to_json() == answer.to_json()
-    for call in (lambda: learner.fit(None), lambda: learner.eval(None), lambda: learner.optimize("cpu")):
+    with pytest.raises(TypeError, match="ExternalDataset"):
+        learner.eval(None)
+    for call in (lambda: learner.fit(None), lambda: learner.optimize("cpu")):
         with pytest.raises(NotImplementedError, match=entry["class_name"]):
             call()
 
