@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use syn::{DeriveInput, Expr, ExprRange, Field, LitStr, Result};
+use syn::{DeriveInput, Expr, ExprRange, Field, Ident, LitStr, Result};
 
 use crate::doc::{doc_of, named_fields};
 
@@ -14,6 +14,8 @@ struct Attributes {
     log: bool,
     live: bool,
     aliases: Vec<LitStr>,
+    flatten: bool,
+    defaults: Vec<(Ident, Expr)>,
 }
 
 fn attributes_of(field: &Field) -> Result<Attributes> {
@@ -32,8 +34,12 @@ fn attributes_of(field: &Field) -> Result<Attributes> {
                 found.live = true;
             } else if meta.path.is_ident("alias") {
                 found.aliases.push(meta.value()?.parse()?);
+            } else if meta.path.is_ident("flatten") {
+                found.flatten = true;
+            } else if let (true, Some(name)) = (found.flatten, meta.path.get_ident()) {
+                found.defaults.push((name.clone(), meta.value()?.parse()?));
             } else {
-                return Err(meta.error("default, range, unit, log, live or alias is wanted"));
+                return Err(meta.error("default, range, unit, log, live, alias or flatten is wanted"));
             }
             Ok(())
         })?;
@@ -41,17 +47,53 @@ fn attributes_of(field: &Field) -> Result<Attributes> {
     Ok(found)
 }
 
-pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
-    let name = &input.ident;
-    let (mut rows, mut defaults, mut gets, mut sets) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (index, field) in named_fields(input)?.iter().enumerate() {
+/// The parts of what is derived, for a run of fields.
+#[derive(Default)]
+struct Parts {
+    /// Tables, each an expression of type `&[Field]`.
+    tables: Vec<TokenStream>,
+    /// `field: its default`.
+    defaults: Vec<TokenStream>,
+    /// Defaults that this struct gives to fields of an inner one.
+    changes: Vec<((Option<Ident>, Ident), TokenStream)>,
+    gets: Vec<TokenStream>,
+    sets: Vec<TokenStream>,
+}
+
+impl Parts {
+    fn add(&mut self, field: &Field) -> Result<()> {
+        let attributes = attributes_of(field)?;
+        match attributes.flatten {
+            true => self.add_struct(field, &attributes.defaults),
+            false => self.add_field(field, attributes),
+        }
+    }
+
+    /// A struct of parameters whose fields stand among those of the outer one.
+    fn add_struct(&mut self, field: &Field, defaults: &[(Ident, Expr)]) -> Result<()> {
+        let (ident, kind) = (&field.ident, &field.ty);
+        let inner = quote!(<#kind as ::opendr_engine::params::Params>);
+        self.tables.push(quote!(#inner::FIELDS));
+        self.defaults.push(quote!(#ident: <#kind as ::core::default::Default>::default()));
+        for (name, default) in defaults {
+            self.changes.push(((ident.clone(), name.clone()), converted(default)));
+        }
+        self.gets.push(quote! {
+            if index < #inner::FIELDS.len() { return #inner::get_at(&self.#ident, index); }
+            let index = index - #inner::FIELDS.len();
+        });
+        self.sets.push(quote! {
+            if index < #inner::FIELDS.len() { return #inner::set_at(&mut self.#ident, index, value); }
+            let index = index - #inner::FIELDS.len();
+        });
+        Ok(())
+    }
+
+    fn add_field(&mut self, field: &Field, attributes: Attributes) -> Result<()> {
         let (ident, kind, doc) = (&field.ident, &field.ty, doc_of(field)?);
-        let Attributes { default, range, unit, log, live, aliases } = attributes_of(field)?;
-        let default = match default {
-            Some(Expr::Lit(literal)) if matches!(literal.lit, syn::Lit::Str(_)) => {
-                quote!(::core::convert::From::from(#literal))
-            }
-            Some(default) => quote!(#default),
+        let Attributes { default, range, unit, log, live, aliases, .. } = attributes;
+        let default = match &default {
+            Some(default) => converted(default),
             None => quote!(::core::default::Default::default()),
         };
         let range = match range {
@@ -63,8 +105,8 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
         };
         let unit = unit.map_or_else(String::new, |unit| unit.value());
         let param = quote!(<#kind as ::opendr_engine::params::Param>);
-        rows.push(quote! {
-            ::opendr_engine::params::Field {
+        self.tables.push(quote! {
+            &[::opendr_engine::params::Field {
                 name: ::core::stringify!(#ident),
                 doc: #doc,
                 kind: #param::KIND,
@@ -79,31 +121,81 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
                     let default: #kind = #default;
                     #param::to_value(&default)
                 }),
-            }
+            }]
         });
-        defaults.push(quote!(#ident: #default));
-        gets.push(quote!(#index => #param::to_value(&self.#ident)));
-        sets.push(quote!(#index => match #param::from_value(value) {
-            ::core::option::Option::Some(value) => { self.#ident = value; true }
-            ::core::option::Option::None => false,
-        }));
+        self.defaults.push(quote!(#ident: #default));
+        self.gets.push(quote! {
+            if index == 0 { return #param::to_value(&self.#ident); }
+            let index = index - 1;
+        });
+        self.sets.push(quote! {
+            if index == 0 {
+                return match #param::from_value(value) {
+                    ::core::option::Option::Some(value) => { self.#ident = value; true }
+                    ::core::option::Option::None => false,
+                };
+            }
+            let index = index - 1;
+        });
+        Ok(())
     }
+}
+/// A default as it is written, text turned into the field's type.
+fn converted(default: &Expr) -> TokenStream {
+    match default {
+        Expr::Lit(literal) if matches!(literal.lit, syn::Lit::Str(_)) => {
+            quote!(::core::convert::From::from(#literal))
+        }
+        default => quote!(#default),
+    }
+}
+
+pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
+    let name = &input.ident;
+    let mut parts = Parts::default();
+    named_fields(input)?.iter().try_for_each(|field| parts.add(field))?;
+    let Parts { tables, defaults, changes, gets, sets } = parts;
+    let changed = changes.iter().map(|((outer, field), _)| {
+        quote! {
+            (::core::stringify!(#field), ::opendr_engine::params::FieldDefault::Made(|| {
+                ::opendr_engine::params::Param::to_value(&<#name as ::core::default::Default>::default().#outer.#field)
+            }))
+        }
+    });
+    let assigned = changes.iter().map(|((outer, field), value)| quote!(default.#outer.#field = #value;));
+    let default = match changes.is_empty() {
+        true => quote!(Self { #(#defaults),* }),
+        false => quote!({
+            let mut default = Self { #(#defaults),* };
+            #(#assigned)*
+            default
+        }),
+    };
     Ok(quote! {
         #[automatically_derived]
         impl ::core::default::Default for #name {
-            fn default() -> Self { Self { #(#defaults),* } }
+            fn default() -> Self { #default }
         }
 
         #[automatically_derived]
         impl ::opendr_engine::params::Params for #name {
-            const FIELDS: &'static [::opendr_engine::params::Field] = &[#(#rows),*];
+            const FIELDS: &'static [::opendr_engine::params::Field] = {
+                const TABLES: &[&[::opendr_engine::params::Field]] = &[#(#tables),*];
+                const TABLE: [::opendr_engine::params::Field; ::opendr_engine::params::count(TABLES)] =
+                    ::opendr_engine::params::joined(TABLES, &[#(#changed),*]);
+                &TABLE
+            };
 
+            #[allow(unused_variables)]
             fn get_at(&self, index: usize) -> ::opendr_engine::params::ParamValue {
-                match index { #(#gets,)* _ => ::opendr_engine::params::ParamValue::None }
+                #(#gets)*
+                ::opendr_engine::params::ParamValue::None
             }
 
+            #[allow(unused_variables)]
             fn set_at(&mut self, index: usize, value: &::opendr_engine::params::ParamValue) -> bool {
-                match index { #(#sets,)* _ => false }
+                #(#sets)*
+                false
             }
         }
     })

@@ -142,7 +142,7 @@ fn the_size_of_images_can_be_fixed_and_outputs_chosen() {
     model.node("b", "Relu", &["a"], NONE()).output("b");
     let options = ImportOptions { image_size: Some((10, 12)), outputs: vec!["a".to_owned()] };
     let onnx = onnx_from_tfjs(&model.json(), &[&model.bytes], &options).unwrap();
-    let graph = opendr_import::onnx::model_from_bytes(&onnx).unwrap().graph.unwrap();
+    let graph = opendr_onnx::model_from_bytes(&onnx).unwrap().graph.unwrap();
     assert_eq!((graph.node.len(), graph.output.len()), (1, 1));
     assert_eq!(graph.node[0].ints("pads"), Some(&[0, 0, 1, 1][..]));
     let options = ImportOptions { outputs: vec!["c".to_owned()], ..ImportOptions::default() };

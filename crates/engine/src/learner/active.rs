@@ -13,7 +13,7 @@ pub trait LearnerActive: Learner {
     /// What a user may set of the training.
     type FitParams: Params;
 
-    /// Trains perception on `dataset` and movement in `env`, and writes a container into `job.output`.
+    /// Trains perception on `dataset` and movement in `env`, and writes a container into [`FitJob::model`].
     ///
     /// # Errors
     /// `InvalidInput` when data set or environment do not fit.

@@ -147,7 +147,7 @@ impl Fit for Counter {
         };
         let mut statistics = Statistics::default();
         (0..fit_params.epochs).for_each(|_| statistics.push("loss", 0.0));
-        write_model(job.output, dataset.len() as u8, &params.to_map())?;
+        write_model(&job.model(), dataset.len() as u8, &params.to_map())?;
         Ok(statistics)
     }
 }

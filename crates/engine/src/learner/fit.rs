@@ -1,6 +1,6 @@
 //! Learners that train.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::dataset::DatasetRef;
 use crate::learner::{Handle, Learner};
@@ -11,8 +11,10 @@ use crate::{Device, Progress, Result, Silent, Statistics};
 /// Where a training writes and to whom it reports.
 #[derive(Clone, Copy)]
 pub struct FitJob<'a> {
-    /// The folder of checkpoints and of the trained container.
+    /// The folder of the checkpoints and, in [`FitJob::model`], of the trained container.
     pub output: &'a Path,
+    /// Whether to go on from the last checkpoint in `output`, where there is one.
+    pub resume: bool,
     /// The folder of event files and curves; `None` writes none (the paper's `logging_path`).
     pub logging_path: Option<&'a Path>,
     /// Where to train.
@@ -24,7 +26,12 @@ pub struct FitJob<'a> {
 impl<'a> FitJob<'a> {
     /// A silent job on the best device that writes to `output`.
     pub fn new(output: &'a Path) -> Self {
-        Self { output, logging_path: None, device: Device::Auto, progress: &Silent }
+        Self { output, resume: false, logging_path: None, device: Device::Auto, progress: &Silent }
+    }
+
+    /// Where the trained container is written.
+    pub fn model(&self) -> PathBuf {
+        self.output.join("model")
     }
 }
 
@@ -33,7 +40,7 @@ pub trait Fit: Learner {
     /// What a user may set of the training: rate, epochs, batch size.
     type FitParams: Params;
 
-    /// Trains, from `base` where one is given, and writes the trained model as a container into `job.output`.
+    /// Trains, from `base` where one is given, and writes the trained model as a container into [`FitJob::model`].
     ///
     /// # Errors
     /// `InvalidInput` when the data set does not fit the task; `Io` when nothing can be written.
@@ -61,7 +68,7 @@ impl<L: Fit> Handle<L> {
     ) -> Result<Statistics> {
         fit_params.check()?;
         let statistics = L::fit(self.model(), self.params(), fit_params, dataset, val_dataset, job)?;
-        self.load(job.output)?;
+        self.load(&job.model())?;
         Ok(statistics)
     }
 }

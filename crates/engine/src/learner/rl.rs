@@ -12,7 +12,7 @@ pub trait LearnerRl: Learner {
     /// What a user may set of the training.
     type FitParams: Params;
 
-    /// Trains in `env`, from `base` where one is given, and writes a container into `job.output`.
+    /// Trains in `env`, from `base` where one is given, and writes a container into [`FitJob::model`].
     ///
     /// # Errors
     /// `InvalidInput` when the spaces do not fit the policy.

@@ -6,6 +6,7 @@
 
 mod choices;
 mod field;
+mod joined;
 mod param;
 mod value;
 
@@ -13,6 +14,8 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 
 pub use field::{Field, FieldDefault, ParamRange};
+#[doc(hidden)]
+pub use joined::{count, joined};
 pub use opendr_derive::Params;
 pub use param::{Param, ParamKind};
 pub use value::ParamValue;
@@ -43,6 +46,29 @@ pub type ParamMap = BTreeMap<String, ParamValue>;
 /// assert_eq!(params.threshold, 0.5);
 /// assert!(params.set("threshold", ParamValue::Float(1.5)).is_err());
 /// assert_eq!(MyParams::FIELDS[0].doc, "Detections below this score are dropped.");
+/// ```
+///
+/// A struct's fields can stand among those of another, with defaults of their own there:
+///
+/// ```
+/// # use opendr_engine::params::{Params, ParamValue};
+/// # /// What a user may set.
+/// # #[derive(Debug, Clone, Params)]
+/// # pub struct MyParams {
+/// #     /// Side of the network's input in pixels.
+/// #     #[param(default = 416, range = 32..=2048, unit = "px")]
+/// #     pub size: usize,
+/// # }
+/// /// The same for large pictures.
+/// #[derive(Debug, Clone, Params)]
+/// pub struct LargeParams {
+///     /// What both have.
+///     #[param(flatten, size = 1024)]
+///     pub inner: MyParams,
+/// }
+///
+/// assert_eq!(LargeParams::default().inner.size, 1024);
+/// assert_eq!(LargeParams::FIELDS[0].default.value(), ParamValue::Int(1024));
 /// ```
 pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
     /// The table of fields, in order of declaration.

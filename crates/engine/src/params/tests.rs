@@ -98,3 +98,45 @@ fn map_and_json_round_trip() {
     assert_eq!(All::from_map(&map).unwrap(), all);
     assert!(text.contains("\"threshold\":0.7,"), "{text}");
 }
+
+/// Fields before, within and after a struct that stands among them.
+#[derive(Debug, Clone, Params)]
+struct Outer {
+    /// Before.
+    #[param(default = 1, range = 0..=9)]
+    before: i64,
+    /// Within.
+    #[param(flatten, rate = 0.5, name = "other")]
+    inner: Inner,
+    /// After.
+    #[param(default = 3)]
+    after: i64,
+}
+
+/// Fields of their own.
+#[derive(Debug, Clone, Params)]
+struct Inner {
+    /// A rate.
+    #[param(default = 0.1, range = 0.0..=1.0)]
+    rate: f64,
+    /// A name.
+    #[param(default = "own")]
+    name: String,
+}
+
+#[test]
+fn flattened_fields_stand_among_the_others() {
+    let names: Vec<_> = Outer::FIELDS.iter().map(|field| field.name).collect();
+    assert_eq!(names, ["before", "rate", "name", "after"]);
+    let mut params = Outer::default();
+    assert_eq!((params.inner.rate, params.inner.name.as_str()), (0.5, "other"));
+    assert_eq!(Inner::default().rate, 0.1);
+    for (index, field) in Outer::FIELDS.iter().enumerate() {
+        assert_eq!(field.default.value(), params.get_at(index), "{}", field.name);
+    }
+    params.set("rate", 0.25.into()).unwrap();
+    params.set("after", 7.into()).unwrap();
+    assert_eq!((params.inner.rate, params.before, params.after), (0.25, 1, 7));
+    assert!(params.set("rate", 2.0.into()).is_err());
+    assert_eq!(Outer::from_map(&params.to_map()).unwrap().to_map(), params.to_map());
+}

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 use serde_json::Value as Json;
 
-use crate::onnx::Kind;
+use opendr_onnx::Kind;
 
 /// Parameters by name. Missing ones have TensorFlow's defaults, so every reader takes one.
 #[derive(Debug, Default, Deserialize)]

@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 use super::attributes::Attributes;
 use super::model_json::Node;
 use super::value::Value;
-use crate::onnx::Array;
+use opendr_onnx::Array;
 
 /// One node with the values of its inputs, and the checks that every lowering needs.
 pub struct Call<'a> {

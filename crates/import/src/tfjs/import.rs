@@ -12,7 +12,7 @@ use super::options::ImportOptions;
 use super::trace::Trace;
 use super::value::Value;
 use super::weights::read_weights;
-use crate::onnx::{Wire, bytes_from_model, model_from_graph, passes};
+use opendr_onnx::{Wire, bytes_from_model, model_from_graph, passes};
 
 /// Weights beyond this do not fit into one ONNX file after widening.
 const MAX_WEIGHT_BYTES: u64 = 1 << 29;

@@ -5,7 +5,7 @@
 //! the operators after it work on whatever order they find, a TensorFlow `Transpose` only renames axes, and a
 //! transposition is written only where elements really have to move, as when channels are flattened.
 
-use crate::onnx::Dim;
+use opendr_onnx::Dim;
 
 /// Stored axis `i` is TensorFlow's axis `order[i]`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use super::call::Call;
 use super::layout::Order;
 use super::value::Value;
-use crate::onnx::{Builder, Dim, Kind, Operator, Wire};
+use opendr_onnx::{Builder, Dim, Kind, Operator, Wire};
 
 /// The graph under construction and what is remembered about its tensors.
 #[derive(Default)]

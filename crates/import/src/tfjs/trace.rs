@@ -11,7 +11,7 @@ use super::model_json::{Node, producer};
 use super::ops;
 use super::options::ImportOptions;
 use super::value::Value;
-use crate::onnx::{Array, Dim, Kind, Wire};
+use opendr_onnx::{Array, Dim, Kind, Wire};
 
 /// Walks TensorFlow's graph from its outputs.
 pub struct Trace<'a> {

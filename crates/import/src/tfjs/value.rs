@@ -1,7 +1,7 @@
 //! A tensor of TensorFlow's graph, standing for one of the ONNX graph.
 
 use super::layout::Order;
-use crate::onnx::{Array, Dim, Kind, Wire};
+use opendr_onnx::{Array, Dim, Kind, Wire};
 
 /// A tensor of TensorFlow's graph: the ONNX tensor and the order in which its axes are stored there.
 #[derive(Debug, Clone)]

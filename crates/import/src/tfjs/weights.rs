@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use opendr_engine::{Error, Result};
 
 use super::model_json::{ModelJson, Quantization, Weight};
-use crate::onnx::{Array, Data, element_count};
+use opendr_onnx::{Array, Data, element_count};
 
 /// Weights by name, decoded from the files of the manifest in its order. Every size is checked against the bytes
 /// there are before anything is allocated.

@@ -3,8 +3,8 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "test support")]
 
 use opendr_engine::Result;
-use opendr_import::onnx::{model_from_bytes, proto::NodeProto};
 use opendr_import::{ImportOptions, onnx_from_tfjs};
+use opendr_onnx::{model_from_bytes, proto::NodeProto};
 use rten::{Model, Value};
 use rten_tensor::Tensor;
 use rten_tensor::prelude::*;

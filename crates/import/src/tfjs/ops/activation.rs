@@ -3,10 +3,10 @@
 use opendr_engine::{Error, Result};
 
 use super::elementwise::{apply, apply_unary};
-use crate::onnx::{Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Kind, Operator, Wire};
 
 pub fn activation(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let alpha = call.attr().float("alpha").unwrap_or(0.2);

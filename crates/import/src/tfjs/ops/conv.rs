@@ -4,10 +4,10 @@ use opendr_engine::{Error, Result};
 
 use super::activation::Epilogue;
 use super::window::{Axes, Padding, Pair, Window};
-use crate::onnx::{Dim, Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 /// The filter's dimensions, which have to be known.
 fn filter_dims(call: &Call) -> Result<[usize; 4]> {

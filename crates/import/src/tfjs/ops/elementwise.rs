@@ -2,11 +2,11 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::onnx::{Dim, Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::layout::Order;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 /// Operands brought to one element type and one order, ready to broadcast.
 struct Aligned {

@@ -3,11 +3,11 @@
 use opendr_engine::{Error, Result};
 
 use super::shape::fill_shape;
-use crate::onnx::{Array, Dim, Kind, Operator, Wire};
 use crate::tfjs::call::{Call, axis_in};
 use crate::tfjs::layout::Order;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Array, Dim, Kind, Operator, Wire};
 
 pub fn gather(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, indices) = (call.input(0)?, call.input(1)?);

@@ -3,11 +3,11 @@
 use opendr_engine::{Error, Result};
 
 use super::reshape::expanded;
-use crate::onnx::{Dim, Kind, Operator, Wire};
 use crate::tfjs::call::{Call, axis_in};
 use crate::tfjs::layout::Order;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 pub fn concat(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let last = call.inputs().len().checked_sub(1).ok_or_else(|| Error::format("no inputs"))?;

@@ -3,11 +3,11 @@
 use opendr_engine::{Error, Result};
 
 use super::activation::Epilogue;
-use crate::onnx::{Dim, Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::layout::Order;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 /// `MatMul` of two matrices, and `_FusedMatMul` with bias and activation.
 pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

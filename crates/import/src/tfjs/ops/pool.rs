@@ -3,10 +3,10 @@
 use opendr_engine::Result;
 
 use super::window::{Axes, Window};
-use crate::onnx::{Kind, Operator};
 use crate::tfjs::call::Call;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Kind, Operator};
 
 /// ONNX leaves the padding out of averages by default, as TensorFlow does.
 pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

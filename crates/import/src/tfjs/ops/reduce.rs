@@ -3,11 +3,11 @@
 use opendr_engine::Result;
 
 use super::reshape::squeezed;
-use crate::onnx::{Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::layout::Order;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Kind, Operator, Wire};
 
 pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;

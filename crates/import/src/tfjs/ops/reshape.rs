@@ -2,10 +2,10 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::onnx::{Dim, Kind, Operator, Wire};
 use crate::tfjs::call::{Call, axis_in};
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 pub fn reshape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;

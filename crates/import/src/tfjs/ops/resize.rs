@@ -3,10 +3,10 @@
 use opendr_engine::{Error, Result};
 
 use super::window::Axes;
-use crate::onnx::{Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Kind, Operator, Wire};
 
 pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, size) = (call.input(0)?, call.input(1)?);

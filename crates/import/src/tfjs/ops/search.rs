@@ -4,10 +4,10 @@ use opendr_engine::{Error, Result};
 
 use super::elementwise::apply;
 use super::reshape::as_list;
-use crate::onnx::{Array, Dim, Kind, Operator, Wire};
 use crate::tfjs::call::{Call, axis_in};
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Array, Dim, Kind, Operator, Wire};
 
 /// The largest values of the last axis, and their positions.
 pub fn top_k(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

@@ -2,10 +2,10 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::onnx::{Array, Data, Dim, Kind, Operator, Wire};
 use crate::tfjs::call::Call;
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Array, Data, Dim, Kind, Operator, Wire};
 
 /// TensorFlow's dimensions as integers; those that are known stay known through later arithmetic.
 pub fn shape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

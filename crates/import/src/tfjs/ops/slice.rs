@@ -3,10 +3,10 @@
 use opendr_engine::{Error, Result};
 
 use super::reshape::expanded;
-use crate::onnx::{Array, Dim, Kind, Operator, Wire, slice_range};
 use crate::tfjs::call::{Call, axis_in};
 use crate::tfjs::lowering::Lowering;
 use crate::tfjs::value::Value;
+use opendr_onnx::{Array, Dim, Kind, Operator, Wire, slice_range};
 
 /// More parts than this are no real model.
 const MAX_PARTS: usize = 4096;

@@ -2,9 +2,9 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::onnx::{Dim, Operator};
 use crate::tfjs::call::Call;
 use crate::tfjs::layout::Order;
+use opendr_onnx::{Dim, Operator};
 
 /// Larger strides, dilations and kernels do not occur; the bound keeps the arithmetic from overflowing.
 const MAX_EXTENT: i64 = 1 << 16;

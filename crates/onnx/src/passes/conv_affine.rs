@@ -1,8 +1,8 @@
 //! Folds multiplications and additions per channel into the convolution before them.
 
 use super::rewriter::Rewriter;
-use crate::onnx::array::{Array, Data, element_count};
-use crate::onnx::proto::GraphProto;
+use crate::array::{Array, Data, element_count};
+use crate::proto::GraphProto;
 
 /// What follows a convolution: `y * scale + shift`, per output channel.
 struct Affine {

@@ -1,7 +1,7 @@
 //! Folds padding with zeros into the convolution after it, and padding with the lowest number into a maximum.
 
 use super::rewriter::Rewriter;
-use crate::onnx::proto::GraphProto;
+use crate::proto::GraphProto;
 
 /// Folds a `Pad` of height and width into every `Conv` that reads it (zeros) or `MaxPool` (the lowest number).
 pub fn fold_padding(graph: &mut GraphProto) {
@@ -40,7 +40,7 @@ fn fold_one(graph: &mut Rewriter, reader: usize, op: &str) -> Option<()> {
 }
 
 /// Padding of height and width, if nothing else is padded, with what `op` ignores.
-fn outer_pads(graph: &Rewriter, pad: &crate::onnx::proto::NodeProto, op: &str) -> Option<Vec<i64>> {
+fn outer_pads(graph: &Rewriter, pad: &crate::proto::NodeProto, op: &str) -> Option<Vec<i64>> {
     if pad.find("mode").is_some_and(|mode| mode.s != b"constant") || pad.input.len() > 3 {
         return None;
     }

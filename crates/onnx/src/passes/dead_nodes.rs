@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::onnx::proto::{AttributeProto, GraphProto};
+use crate::proto::{AttributeProto, GraphProto};
 
 /// Removes nodes and initializers that no output of the graph needs. Graph inputs stay, they are the interface.
 pub fn remove_dead_nodes(graph: &mut GraphProto) {

@@ -1,8 +1,8 @@
 //! Recognises MobileNetV3's activation in the four operators it is made of.
 
 use super::rewriter::Rewriter;
-use crate::onnx::array::Array;
-use crate::onnx::proto::GraphProto;
+use crate::array::Array;
+use crate::proto::GraphProto;
 
 /// Rewrites `(x * c) * clip(x + 3, 0, 6)` as `HardSwish(x) * 6c`. The factor is 1 but for the rounding of `c` to half
 /// precision; [`fold_factor_into_conv`](super::fold_factor_into_conv) moves it on.

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 
 use super::rewriter::Rewriter;
-use crate::onnx::array::{Array, Data, element_count};
-use crate::onnx::proto::GraphProto;
+use crate::array::{Array, Data, element_count};
+use crate::proto::GraphProto;
 
 /// A factor that would have to pass more operators than this stays where it is.
 const MAX_REACH: usize = 64;

@@ -2,8 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::onnx::array::{Array, element_count};
-use crate::onnx::proto::{GraphProto, NodeProto};
+use crate::array::{Array, element_count};
+use crate::proto::{GraphProto, NodeProto};
 
 /// A graph with an index of who makes each tensor and who reads those that nodes make, and the means to change it. Every change costs time
 /// in proportion to what it changes, not to the graph. Nodes are only marked as removed until [`Rewriter::finish`].

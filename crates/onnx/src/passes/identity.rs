@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::onnx::proto::GraphProto;
+use crate::proto::GraphProto;
 
 /// Removes `Identity` nodes: readers read the original, and where the graph gives the copy out, the node that made the
 /// original gives it the output's name. One stays where a graph input, an initializer or a second output is given out.

@@ -1,0 +1,1 @@
+//! Smaller and faster models: INT8 with calibration, FP16.

@@ -1,0 +1,1 @@
+//! Training on Burn: the loop of every `fit`, export to ONNX, import of weights.
