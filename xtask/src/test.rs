@@ -57,20 +57,23 @@ pub fn run() -> Result<()> {
     Ok(())
 }
 
-/// Metrics and data sets beside the tools that papers cite.
+/// Metrics, data sets and logs of trainings beside the tools that papers cite and people use.
 fn references(environment: &Environment) -> Result<()> {
-    let requirements = ["tests/metrics/requirements.txt", "tests/datasets/requirements.txt"];
+    let tests = ["tests/metrics", "tests/datasets", "tests/training"];
+    let requirements = tests.map(|tests| format!("{tests}/requirements.txt"));
     let alone = Some("tests/metrics/requirements_without_dependencies.txt");
-    let python = Python::install_all("reference-venv", &requirements, alone)?;
+    let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
     let mut build = command("cargo");
-    build.args(["build", "--package", "opendr-metrics", "--package", "opendr-datasets", "--examples"]);
-    step("runners of metrics and data sets", &mut build)?;
+    let packages = ["opendr-metrics", "opendr-datasets", "opendr-runlog"];
+    build.args(["build", "--examples"]).args(packages.iter().flat_map(|package| ["--package", package]));
+    step("runners of metrics, data sets and logs", &mut build)?;
     let examples = target().join("debug/examples");
     let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra", "tests/metrics", "tests/datasets"]);
+    pytest.args(["-m", "pytest", "-ra"]).args(tests);
     pytest
         .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
-        .env("OPENDR_DATASETS_DATA", examples.join("data"));
+        .env("OPENDR_DATASETS_DATA", examples.join("data"))
+        .env("OPENDR_RUNLOG_LOG", examples.join("log"));
     environment.apply(&mut pytest);
     step("tests beside the reference tools", &mut pytest)
 }

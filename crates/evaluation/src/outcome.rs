@@ -8,9 +8,9 @@ use opendr_datasets::Problem;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_metrics::{Report, Table};
+use opendr_runlog::svg_from_figure;
 use serde::Serialize;
 
-use crate::svg_from_figure;
 use crate::worst::{WorstSample, worst_sheet};
 
 /// Rows of a table that are printed; all of them are in the JSON.

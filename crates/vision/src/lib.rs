@@ -9,7 +9,7 @@ pub mod source;
 mod video;
 mod workers;
 
-pub use codec::{Decoder, Encoder, decode, open, save, save_depth};
+pub use codec::{Decoder, Encoder, decode, encode_png, open, save, save_depth};
 pub use preprocess::{Anchor, ChannelOrder, InputGeometry, InputSample, Preprocess};
 pub use resize::resize;
 pub use source::{Frame, Source, SourceOptions, VideoInfo};

@@ -37,6 +37,14 @@ pub fn save(image: &Image, path: impl AsRef<Path>) -> Result<()> {
     Encoder::default().save(image, path)
 }
 
+/// The bytes of a PNG file with `image`; samples become `u8` as [`Image::hwc_u8`] says.
+///
+/// # Errors
+/// `InvalidInput` for a picture larger than PNG files can be.
+pub fn encode_png(image: &Image) -> Result<Vec<u8>> {
+    Encoder::default().encode(image, ImageFormat::Png)
+}
+
 impl Encoder {
     /// Writes `image` to `path`; the extension (`jpg`, `jpeg`, `png`, `bmp`, `webp`) chooses the format.
     ///

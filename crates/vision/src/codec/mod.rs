@@ -13,4 +13,4 @@ mod size;
 
 pub use decode::{Decoder, decode, open};
 pub use depth::save_depth;
-pub use encode::{Encoder, save};
+pub use encode::{Encoder, encode_png, save};

@@ -4,7 +4,7 @@ mod axis;
 mod curves;
 mod matrix;
 
-use opendr_metrics::Figure;
+use opendr_metrics::{Curves, Figure};
 
 /// The figure's name and its picture as SVG text.
 pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
@@ -13,6 +13,17 @@ pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
         Figure::Matrix(matrix) => (&matrix.name, matrix::svg(matrix)),
         _ => ("figure", String::new()),
     }
+}
+
+/// Curves below each other in one picture, as SVG text.
+pub fn svg_from_panels(panels: &[Curves]) -> String {
+    let mut svg = opening(curves::WIDTH, curves::HEIGHT * panels.len() as f64, "");
+    for (at, panel) in panels.iter().enumerate() {
+        let inner =
+            curves::svg(panel).replacen("<svg ", &format!("<svg y=\"{}\" ", curves::HEIGHT * at as f64), 1);
+        svg.push_str(&inner);
+    }
+    svg + "</svg>\n"
 }
 
 /// Text of any origin between tags.
@@ -35,7 +46,7 @@ fn opening(width: f64, height: f64, title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use opendr_metrics::{Curves, Line, Matrix};
+    use opendr_metrics::{Line, Matrix};
 
     #[test]
     fn figures_are_well_formed_whatever_they_hold() {

@@ -10,8 +10,8 @@ use super::{escaped, opening};
 /// Told apart by people who see few colours, too (Okabe and Ito 2008).
 const COLOURS: [&str; 8] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#b0a000"];
-const WIDTH: f64 = 720.0;
-const HEIGHT: f64 = 480.0;
+pub const WIDTH: f64 = 720.0;
+pub const HEIGHT: f64 = 480.0;
 const LEFT: f64 = 70.0;
 const RIGHT: f64 = 200.0;
 const TOP: f64 = 40.0;

@@ -1,0 +1,198 @@
+//! A folder of checkpoints.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use opendr_engine::{Error, Result};
+
+use crate::atomic_file::{UNFINISHED, refused, sync_folder, unfinished, write_atomically};
+use crate::checkpoint::Checkpoint;
+
+const PREFIX: &str = "step-";
+/// What makes way for a newer checkpoint of the same step.
+const REPLACED: &str = ".replaced";
+const BEST: &str = "best";
+
+/// A folder of checkpoints, `step-0000001200` each, of which the newest are kept and the best one.
+///
+/// Each is written under another name, brought to the disk and renamed; whenever the process is killed or the machine
+/// stops, [`Checkpoints::latest`] finds the newest whole one. One process at a time may write to a folder.
+///
+/// ```
+/// # fn main() -> opendr_engine::Result<()> {
+/// # let folder = std::env::temp_dir().join(format!("opendr-checkpoints-{}", std::process::id()));
+/// let checkpoints = opendr_runlog::Checkpoints::new(&folder, 2)?;
+/// for step in [100, 200, 300] {
+///     checkpoints.save(step, &[("weights.bin", &step.to_le_bytes())])?;
+///     if step == 100 {
+///         checkpoints.mark_best(100)?;
+///     }
+/// }
+/// let latest = checkpoints.latest()?.map(|checkpoint| checkpoint.step);
+/// assert_eq!((latest, checkpoints.steps()?), (Some(300), vec![100, 200, 300]));
+/// # std::fs::remove_dir_all(folder)?;
+/// # Ok(()) }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Checkpoints {
+    folder: PathBuf,
+    keep: usize,
+}
+
+impl Checkpoints {
+    /// The checkpoints in `folder`, which is made where it is not there; `keep` of them stay, and the best one.
+    ///
+    /// # Errors
+    /// `InvalidParam` when `keep` is 0, `Io` when the folder cannot be made.
+    pub fn new(folder: &Path, keep: usize) -> Result<Self> {
+        if keep == 0 {
+            return Err(Error::invalid_param("0 checkpoints are to be kept; keep 1 or more"));
+        }
+        fs::create_dir_all(folder).map_err(|error| refused(folder, error))?;
+        Ok(Self { folder: folder.to_owned(), keep })
+    }
+
+    /// Saves `files` as the checkpoint of a step, which replaces an older one of that step, and removes those that need
+    /// not be kept as well as what killed processes left half-written. The folder of the checkpoint.
+    ///
+    /// # Errors
+    /// `Io` when the disk is full: the other checkpoints are untouched then, and nothing is left of this one. `Integrity` and
+    /// `InvalidParam` for names that leave the folder or come twice.
+    pub fn save(&self, step: u64, files: &[(&str, &[u8])]) -> Result<PathBuf> {
+        let path = self.folder.join(format!("{PREFIX}{step:010}"));
+        self.remove_unfinished();
+        let temporary = unfinished(&path).map_err(|error| refused(&path, error))?;
+        let saved = Checkpoint::write(&temporary, step, files).and_then(|()| self.place(&temporary, &path));
+        if let Err(error) = saved {
+            // The first failure is the one to report.
+            fs::remove_dir_all(&temporary).ok();
+            return Err(error.context(format!("saving the checkpoint {}", path.display())));
+        }
+        self.prune(step)?;
+        Ok(path)
+    }
+
+    fn place(&self, temporary: &Path, path: &Path) -> Result<()> {
+        let replaced = self.folder.join(format!("{}{REPLACED}", name_of(path)));
+        let rename = || {
+            if path.exists() {
+                // There from an earlier kill, when the folder at `path` has already replaced it.
+                fs::remove_dir_all(&replaced).ok();
+                fs::rename(path, &replaced)?;
+            }
+            fs::rename(temporary, path)?;
+            sync_folder(path)
+        };
+        rename().map_err(|error| refused(path, error))?;
+        fs::remove_dir_all(&replaced).ok();
+        Ok(())
+    }
+
+    /// The newest checkpoint that is whole; each file of it is checked. Broken ones are passed over and told of in
+    /// [`Checkpoint::skipped`].
+    ///
+    /// # Errors
+    /// `Integrity` when there are checkpoints and all are broken, so that no training begins anew unasked; `Io`.
+    pub fn latest(&self) -> Result<Option<Checkpoint>> {
+        let mut skipped = Vec::new();
+        for (_, path) in self.list()?.into_iter().rev() {
+            match Checkpoint::open(path.clone()) {
+                Ok(mut checkpoint) => {
+                    checkpoint.skipped = skipped;
+                    return Ok(Some(checkpoint));
+                }
+                Err(error) => skipped.push(format!("{} is broken: {error}", path.display())),
+            }
+        }
+        if skipped.is_empty() {
+            return Ok(None);
+        }
+        Err(Error::integrity(format!(
+            "no checkpoint in {} is whole: {}; name another folder, or delete it to begin anew",
+            self.folder.display(),
+            skipped.join("; ")
+        )))
+    }
+
+    /// Marks the checkpoint of a step as the best: it is kept until another one is.
+    ///
+    /// # Errors
+    /// `NotFound` when there is no such checkpoint, `Io` when the mark cannot be written.
+    pub fn mark_best(&self, step: u64) -> Result<()> {
+        if !self.steps()?.contains(&step) {
+            let folder = self.folder.display();
+            return Err(Error::not_found(format!("no checkpoint of step {step} in {folder}: save it first")));
+        }
+        write_atomically(&self.folder.join(BEST), format!("{step}\n").as_bytes())
+    }
+
+    /// The checkpoint that was marked as the best.
+    ///
+    /// # Errors
+    /// `Integrity`, `NotFound` or `Format` when it is marked but not whole.
+    pub fn best(&self) -> Result<Option<Checkpoint>> {
+        let Some(best) = self.best_step() else { return Ok(None) };
+        let mut of_step = self.list()?.into_iter().rev().filter(|(step, _)| *step == best);
+        of_step.next().map(|(_, path)| Checkpoint::open(path)).transpose()
+    }
+
+    /// The steps of the checkpoints, whole or not, in rising order.
+    ///
+    /// # Errors
+    /// `Io` when the folder cannot be read.
+    pub fn steps(&self) -> Result<Vec<u64>> {
+        let mut steps: Vec<_> = self.list()?.into_iter().map(|(step, _)| step).collect();
+        steps.dedup();
+        Ok(steps)
+    }
+
+    fn best_step(&self) -> Option<u64> {
+        fs::read_to_string(self.folder.join(BEST)).ok()?.trim().parse().ok()
+    }
+
+    /// Steps and folders, in the order of the steps; of one step, what was replaced comes first.
+    fn list(&self) -> Result<Vec<(u64, PathBuf)>> {
+        let mut found = Vec::new();
+        for entry in fs::read_dir(&self.folder).map_err(|error| refused(&self.folder, error))? {
+            let path = entry?.path();
+            let name = name_of(&path);
+            let digits = name.strip_suffix(REPLACED).unwrap_or(&name).strip_prefix(PREFIX);
+            if let Some(step) = digits.and_then(|digits| digits.parse().ok()) {
+                found.push((step, !name.ends_with(REPLACED), path));
+            }
+        }
+        found.sort();
+        Ok(found.into_iter().map(|(step, _, path)| (step, path)).collect())
+    }
+
+    /// Removes what need not be kept. `saved` stays even where later steps of an abandoned run are there.
+    fn prune(&self, saved: u64) -> Result<()> {
+        let best = self.best_step();
+        let steps = self.steps()?;
+        let newest = steps.iter().rev().take(self.keep);
+        let kept: Vec<u64> = newest.copied().chain(best).chain([saved]).collect();
+        for (_, path) in self.list()?.into_iter().filter(|(step, _)| !kept.contains(step)) {
+            // A folder that is being removed is no checkpoint any more.
+            let removed = unfinished(&path).and_then(|gone| fs::rename(&path, &gone));
+            removed.map_err(|error| refused(&path, error))?;
+        }
+        self.remove_unfinished();
+        Ok(())
+    }
+
+    fn remove_unfinished(&self) {
+        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten().map(|entry| entry.path());
+        let is_left = |path: &PathBuf| {
+            let name = name_of(path);
+            name.starts_with('.') && name.ends_with(UNFINISHED)
+        };
+        for path in entries.filter(is_left) {
+            // What stays only costs room.
+            fs::remove_dir_all(&path).or_else(|_| fs::remove_file(&path)).ok();
+        }
+    }
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}

@@ -1,0 +1,41 @@
+//! Room for a new log where an earlier run has left one.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use opendr_engine::Result;
+
+use crate::atomic_file::refused;
+use crate::event_file::is_event_file;
+use crate::run_log::{CURVES, TABLE};
+
+/// Moves the log of an earlier run in `folder` into a folder of its own in there, `earlier-1`, `earlier-2`, ..., which
+/// TensorBoard shows as another run.
+pub fn set_aside(folder: &Path) -> Result<()> {
+    move_log(folder).map_err(|error| refused(folder, error))
+}
+
+fn move_log(folder: &Path) -> io::Result<()> {
+    let mut names = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let name = entry?.file_name();
+        if name.to_str().is_some_and(|name| name == TABLE || name == CURVES || is_event_file(name)) {
+            names.push(name);
+        }
+    }
+    if names.is_empty() {
+        return Ok(());
+    }
+    for number in 1_u64.. {
+        let earlier = folder.join(format!("earlier-{number}"));
+        match fs::create_dir(&earlier) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+            Ok(()) => {
+                return names.iter().try_for_each(|name| fs::rename(folder.join(name), earlier.join(name)));
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,24 @@
+"""What trainings leave behind, read by the tools that people use."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="session")
+def log():
+    """Writes lines `{"tag": .., "step": .., "value": ..}` into the log in a folder by crates/runlog/examples/log.rs."""
+    program = os.environ.get("OPENDR_RUNLOG_LOG")
+    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-runlog", "--example", "log", "--"]
+
+    def write(folder, lines, resume_from=None):
+        arguments = [str(folder)] + ([] if resume_from is None else [str(resume_from)])
+        text = "".join(json.dumps(line) + "\n" for line in lines)
+        subprocess.run([*command, *arguments], cwd=ROOT, input=text, text=True, check=True)
+
+    return write
