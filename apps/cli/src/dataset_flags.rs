@@ -53,9 +53,14 @@ pub fn split(matches: &ArgMatches) -> Option<String> {
     matches.get_one("split").cloned()
 }
 
+/// Whether what is broken is left out.
+pub fn skip_broken(matches: &ArgMatches) -> bool {
+    matches.get_flag("skip-broken")
+}
+
 /// What is to be done with what is broken.
 pub fn problems(matches: &ArgMatches) -> Problems {
-    if matches.get_flag("skip-broken") { Problems::skipping() } else { Problems::strict() }
+    if skip_broken(matches) { Problems::skipping() } else { Problems::strict() }
 }
 
 /// Prints what was broken.

@@ -10,15 +10,33 @@ use opendr::params::{Field, ParamKind, ParamMap};
 
 use crate::port_file::PortFile;
 
-/// Adds the learner's flags to a command.
+/// Adds the learner's flags to a command that infers.
 pub fn add(command: Command, entry: &'static Entry) -> Command {
-    let params = entry.params.iter().map(|field| param_flag(entry, field));
     let ports = entry.ports.iter().skip(1).map(port_flag);
-    let about = format!("{}: {}", entry.spec.class, entry.spec.about);
-    command.args(params.chain(ports)).before_help(about)
+    with_params(command, entry).args(ports)
 }
 
-fn param_flag(entry: &'static Entry, field: &'static Field) -> Arg {
+/// Adds the learner's flags to a command that trains: its own parameters, and those of its training.
+pub fn add_for_fit(command: Command, entry: &'static Entry) -> Command {
+    let heading = format!("Training of {}", entry.spec.name);
+    let of_fit = entry.fit_params.iter().filter(|field| !is_own(entry, field));
+    let of_fit = of_fit.map(|field| param_flag(&heading, field));
+    with_params(command, entry).args(of_fit)
+}
+
+fn with_params(command: Command, entry: &'static Entry) -> Command {
+    let heading = format!("Parameters of {}", entry.spec.name);
+    let params = entry.params.iter().map(|field| param_flag(&heading, field));
+    let about = format!("{}: {}", entry.spec.class, entry.spec.about);
+    command.args(params).before_help(about)
+}
+
+/// Whether a parameter of the training is one of the learner's own, too; one flag then stands for both.
+fn is_own(entry: &Entry, field: &Field) -> bool {
+    entry.params.iter().any(|own| own.name == field.name)
+}
+
+fn param_flag(heading: &str, field: &'static Field) -> Arg {
     let mut help = format!("{} [default: {}]", field.doc.trim_end_matches('.'), field.default.value());
     if let Some(range) = field.range {
         let unit = if field.unit.is_empty() { String::new() } else { format!(" {}", field.unit) };
@@ -27,7 +45,7 @@ fn param_flag(entry: &'static Entry, field: &'static Field) -> Arg {
     let flag = Arg::new(field.name)
         .long(dashed(field.name))
         .help(help)
-        .help_heading(format!("Parameters of {}", entry.spec.name))
+        .help_heading(heading.to_owned())
         .allow_negative_numbers(true)
         .value_name(value_name(field.kind));
     if field.choices.is_empty() { flag } else { flag.value_parser(PossibleValuesParser::new(field.choices)) }
@@ -67,7 +85,19 @@ fn value_name(kind: ParamKind) -> &'static str {
 /// # Errors
 /// `InvalidParam` for a value of the wrong type; ranges are checked where the learner is made.
 pub fn params(entry: &'static Entry, matches: &ArgMatches) -> Result<ParamMap> {
-    let given = entry.params.iter().filter_map(|field| Some((field, matches.get_one::<String>(field.name)?)));
+    values(entry.params, matches)
+}
+
+/// The parameters of the training that the user set.
+///
+/// # Errors
+/// As [`params`].
+pub fn fit_params(entry: &'static Entry, matches: &ArgMatches) -> Result<ParamMap> {
+    values(entry.fit_params, matches)
+}
+
+fn values(fields: &'static [Field], matches: &ArgMatches) -> Result<ParamMap> {
+    let given = fields.iter().filter_map(|field| Some((field, matches.get_one::<String>(field.name)?)));
     given.map(|(field, text)| Ok((field.name.to_owned(), field.parse(text)?))).collect()
 }
 

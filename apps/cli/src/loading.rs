@@ -111,17 +111,37 @@ pub fn load(
     matches: &ArgMatches,
     progress: &dyn Progress,
 ) -> Result<Box<dyn AnyLearner>> {
-    let entry = entry(spec)?;
-    let mut learner = entry.make(params, device(matches)?)?;
-    let path = match matches.get_one::<PathBuf>("model") {
-        Some(path) => path.clone(),
-        None => {
-            let variant = spec.split_once('/').map_or(String::new(), |(_, variant)| format!("/{variant}"));
-            zoo(matches)?.get(&format!("{}{variant}", entry.spec.name), progress)?
-        }
+    let Some(path) = matches.get_one::<PathBuf>("model") else {
+        return load_pretrained(spec, params, matches, progress);
     };
-    learner.load(&path)?;
+    let mut learner = entry(spec)?.make(params, device(matches)?)?;
+    learner.load(path)?;
     Ok(learner)
+}
+
+/// As [`load`], never a model of the user's own.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_pretrained(
+    spec: &str,
+    params: &ParamMap,
+    matches: &ArgMatches,
+    progress: &dyn Progress,
+) -> Result<Box<dyn AnyLearner>> {
+    let mut learner = entry(spec)?.make(params, device(matches)?)?;
+    learner.load(&pretrained(spec, matches, progress)?)?;
+    Ok(learner)
+}
+
+/// The container of the pretrained model, downloaded where it is not cached.
+///
+/// # Errors
+/// What kept it from being got.
+pub fn pretrained(spec: &str, matches: &ArgMatches, progress: &dyn Progress) -> Result<PathBuf> {
+    let entry = entry(spec)?;
+    let variant = spec.split_once('/').map_or(String::new(), |(_, variant)| format!("/{variant}"));
+    zoo(matches)?.get(&format!("{}{variant}", entry.spec.name), progress)
 }
 
 /// How many learners work on `samples` that have nothing to do with each other. On a processor, side by side uses the

@@ -42,7 +42,7 @@ pub struct Bar {
 
 enum Shown {
     Nothing,
-    Bar(ProgressBar),
+    Bar(ProgressBar, String),
     Lines(ProgressLines),
 }
 
@@ -61,7 +61,7 @@ impl Bar {
     /// Prints to standard output or error without tearing the bar.
     pub fn suspend<R>(&self, print: impl FnOnce() -> R) -> R {
         match &*self.shown() {
-            Shown::Bar(bar) => bar.suspend(print),
+            Shown::Bar(bar, _) => bar.suspend(print),
             _ => print(),
         }
     }
@@ -75,7 +75,7 @@ impl Progress for Bar {
     fn begin(&self, what: &str, total: Option<u64>, unit: Unit) {
         if !self.quiet {
             *self.shown() = match stderr().is_terminal() {
-                true => Shown::Bar(bar(what, total, unit)),
+                true => Shown::Bar(bar(what, total, unit), what.to_owned()),
                 false => Shown::Lines(ProgressLines::begin(what, total, unit)),
             };
         }
@@ -84,14 +84,22 @@ impl Progress for Bar {
     fn advance(&self, amount: u64) {
         match &mut *self.shown() {
             Shown::Nothing => {}
-            Shown::Bar(bar) => bar.inc(amount),
+            Shown::Bar(bar, _) => bar.inc(amount),
             Shown::Lines(lines) => lines.advance(amount),
         }
     }
 
     fn end(&self) {
-        if let Shown::Bar(bar) = std::mem::replace(&mut *self.shown(), Shown::Nothing) {
+        if let Shown::Bar(bar, _) = std::mem::replace(&mut *self.shown(), Shown::Nothing) {
             bar.finish_and_clear();
+        }
+    }
+
+    fn status(&self, text: &str) {
+        match &mut *self.shown() {
+            Shown::Nothing => {}
+            Shown::Bar(bar, what) => bar.set_message(format!("{what}: {text}")),
+            Shown::Lines(lines) => lines.status(text),
         }
     }
 

@@ -14,6 +14,7 @@ pub struct ProgressLines {
     total: Option<u64>,
     unit: Unit,
     done: u64,
+    status: String,
     begun: Instant,
     told: Instant,
 }
@@ -26,7 +27,7 @@ impl ProgressLines {
             eprintln!("{what}{size}");
         }
         let now = Instant::now();
-        Self { what: what.to_owned(), total, unit, done: 0, begun: now, told: now }
+        Self { what: what.to_owned(), total, unit, done: 0, status: String::new(), begun: now, told: now }
     }
 
     /// `amount` more is done.
@@ -38,11 +39,17 @@ impl ProgressLines {
         }
     }
 
+    /// How it goes; told with the next line.
+    pub fn status(&mut self, text: &str) {
+        text.clone_into(&mut self.status);
+    }
+
     fn state(&self, elapsed: Duration) -> String {
         let amount = |count| if self.unit == Unit::Bytes { megabytes(count) } else { count.to_string() };
-        let Some(total) = self.total else { return amount(self.done) };
+        let status = if self.status.is_empty() { String::new() } else { format!(", {}", self.status) };
+        let Some(total) = self.total else { return amount(self.done) + &status };
         let left = total.saturating_sub(self.done) as f64 / self.done.max(1) as f64 * elapsed.as_secs_f64();
-        format!("{} of {}, {left:.0} s left", amount(self.done), amount(total))
+        format!("{} of {}, {left:.0} s left{status}", amount(self.done), amount(total))
     }
 }
 
@@ -62,5 +69,7 @@ mod tests {
         let mut frames = ProgressLines::begin("frames", None, Unit::Items);
         frames.advance(7);
         assert_eq!(frames.state(Duration::from_secs(2)), "7");
+        frames.status("loss 0.5");
+        assert_eq!(frames.state(Duration::from_secs(2)), "7, loss 0.5");
     }
 }

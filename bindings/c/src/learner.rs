@@ -4,7 +4,7 @@ use std::ffi::c_char;
 use std::ptr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use opendr::dataset::ExternalDataset;
+use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::evaluation::EvalOptions;
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::params::{ParamMap, ParamValue};
@@ -270,7 +270,8 @@ unsafe fn eval(
         Error::invalid_param("options_json is no JSON object of options of opendr_eval").with_source(error)
     })?;
     let external = ExternalDataset::new(dataset, dataset_type);
-    let measured = options.run(&mut loaded.lock(), loaded.entry, &external, &Silent)?;
+    let dataset = DatasetRef::External(&external);
+    let measured = options.run(&mut loaded.lock(), loaded.entry, dataset, &Silent)?;
     out.set(Text::new(serde_json::to_string(&measured).map_err(no_json)?));
     Ok(())
 }

@@ -43,6 +43,10 @@ impl Progress for PythonBar {
         self.bar.end();
     }
 
+    fn status(&self, text: &str) {
+        self.bar.status(text);
+    }
+
     fn note(&self, line: &str) {
         self.bar.note(line);
     }

@@ -2,11 +2,9 @@
 
 use std::path::PathBuf;
 
-use opendr::dataset::{Dataset as AnyDataset, DatasetIterator, ExternalDataset, Sample, Subset};
+use opendr::dataset::{Dataset as AnyDataset, DatasetIterator, DatasetRef, ExternalDataset, Sample, Subset};
 use opendr::datasets::{OpenOptions, Problems};
-use opendr::evaluation::open_for;
 use opendr::learner::Port;
-use opendr::metrics::MetricEntry;
 use opendr::target::Classes;
 use opendr::{Error, Result, ValueType, datasets};
 use pyo3::exceptions::{PyIndexError, PyTypeError};
@@ -151,8 +149,7 @@ pub fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)
 }
 
-/// What is to be done with what is broken.
-pub fn problems(skip_broken: bool) -> Problems {
+fn problems(skip_broken: bool) -> Problems {
     if skip_broken { Problems::skipping() } else { Problems::strict() }
 }
 
@@ -163,30 +160,46 @@ fn target_type(name: &str) -> Result<ValueType> {
     })
 }
 
-/// The data set that `eval` is given: an `ExternalDataset`, opened as the metric needs it, or any data set of Python.
-pub fn dataset_for_eval(
-    object: &Bound<'_, PyAny>,
-    metric: &MetricEntry,
-    ports: &'static [Port],
-    split: Option<String>,
-    limit: Option<usize>,
-    problems: &Problems,
-) -> PyResult<Subset<Box<dyn DatasetIterator>>> {
-    let py = object.py();
-    let external = py.import("opendr.engine.datasets")?.getattr("ExternalDataset")?;
-    let dataset: Box<dyn DatasetIterator> = if object.is_instance(&external)? {
-        let path: PathBuf = object.getattr("path")?.extract()?;
-        let dataset_type: String = object.getattr("dataset_type")?.extract()?;
-        let external = ExternalDataset::new(path, dataset_type);
-        py.detach(|| open_for(metric, &external, split, problems)).to_python(py)?
-    } else {
-        Box::new(PythonDataset::new(object, ports)?)
-    };
-    Ok(Subset::first(dataset, limit.unwrap_or(usize::MAX)))
+/// A data set that a method of a learner is given.
+pub enum GivenDataset {
+    /// An `ExternalDataset`.
+    External(ExternalDataset),
+    /// Any other data set, and its class.
+    Samples(PythonDataset, String),
+}
+
+impl GivenDataset {
+    /// An `ExternalDataset`, or any data set of Python whose samples go to `ports`.
+    pub fn from_python(object: &Bound<'_, PyAny>, ports: &'static [Port]) -> PyResult<Self> {
+        let external = object.py().import("opendr.engine.datasets")?.getattr("ExternalDataset")?;
+        if object.is_instance(&external)? {
+            let path: PathBuf = object.getattr("path")?.extract()?;
+            let dataset_type: String = object.getattr("dataset_type")?.extract()?;
+            return Ok(Self::External(ExternalDataset::new(path, dataset_type)));
+        }
+        let class = object.get_type().name()?.to_string();
+        Ok(Self::Samples(PythonDataset::new(object, ports)?, class))
+    }
+
+    /// As the toolkit takes it.
+    pub fn as_ref(&self) -> DatasetRef<'_> {
+        match self {
+            Self::External(external) => DatasetRef::External(external),
+            Self::Samples(samples, _) => DatasetRef::Iterator(samples),
+        }
+    }
+
+    /// What outcomes call it: its path, or its class.
+    pub fn name(&self) -> String {
+        match self {
+            Self::External(external) => external.path().display().to_string(),
+            Self::Samples(_, class) => class.clone(),
+        }
+    }
 }
 
 /// A `DatasetIterator` of Python: `len`, and `[index]` for a pair of datum and target.
-struct PythonDataset {
+pub struct PythonDataset {
     object: Py<PyAny>,
     ports: &'static [Port],
     length: usize,
@@ -240,13 +253,5 @@ impl DatasetIterator for PythonDataset {
 
     fn classes(&self) -> Classes {
         self.classes.clone()
-    }
-}
-
-/// What outcomes call a data set: its path, or its class.
-pub fn dataset_name(object: &Bound<'_, PyAny>) -> PyResult<String> {
-    match object.getattr("path").and_then(|path| path.extract::<PathBuf>()) {
-        Ok(path) => Ok(path.display().to_string()),
-        Err(_) => Ok(object.get_type().name()?.to_string()),
     }
 }

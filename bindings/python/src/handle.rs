@@ -4,16 +4,16 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use opendr::data::Pixels as Samples;
-use opendr::evaluation::{Evaluation, Subject, metric_of};
+use opendr::evaluation::EvalOptions;
 use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
-use opendr::{Device, Error, Pool, Value, ValueType, metrics};
+use opendr::{Device, Error, Pool, Value, ValueType};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::bar::PythonBar;
-use crate::dataset::{dataset_for_eval, dataset_name, problems};
+use crate::dataset::GivenDataset;
 use crate::datum::value_from_python;
 use crate::error::ToPython;
 use crate::param::{params_from_python, python_from_params};
@@ -109,7 +109,7 @@ impl Handle {
         &self,
         py: Python<'_>,
         dataset: &Bound<'_, PyAny>,
-        metric: Option<&str>,
+        metric: Option<String>,
         metric_params: Option<&Bound<'_, PyDict>>,
         split: Option<String>,
         limit: Option<usize>,
@@ -117,24 +117,12 @@ impl Handle {
         skip_broken: bool,
         verbose: bool,
     ) -> PyResult<(String, String)> {
-        let metric = metric.map_or_else(|| metric_of(self.entry.spec.task), Ok);
-        let metric = metric.and_then(metrics::find).to_python(py)?;
-        let problems = problems(skip_broken);
-        let name = dataset_name(dataset)?;
-        let dataset = dataset_for_eval(dataset, metric, self.entry.ports, split, limit, &problems)?;
+        let dataset = GivenDataset::from_python(dataset, self.entry.ports)?;
         let metric_params = metric_params.map(params_from_python).transpose()?.unwrap_or_default();
+        let name = Some(dataset.name());
+        let options = EvalOptions { metric, metric_params, split, limit, folder, skip_broken, name };
         PythonBar::new(!verbose).run(py, |bar| {
-            let mut learner = lock(&self.learner);
-            let subject =
-                Subject { learner: self.entry.spec.name.to_owned(), model: None, params: learner.params() };
-            let evaluation = Evaluation {
-                dataset: name,
-                metric_params,
-                folder: folder.as_deref(),
-                progress: bar,
-                ..Evaluation::new(subject, metric, &problems)
-            };
-            let outcome = evaluation.run(std::slice::from_mut(&mut *learner), self.entry, &dataset)?;
+            let outcome = options.run(&mut lock(&self.learner), self.entry, dataset.as_ref(), bar)?;
             let json = serde_json::to_string(&outcome);
             let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
             Ok((json, outcome.to_string()))

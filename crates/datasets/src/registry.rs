@@ -70,18 +70,25 @@ pub fn recognise(path: &Path) -> Result<&'static FormatEntry> {
     })
 }
 
-/// Opens the data set at `path`, of the format that is named or, for an empty `dataset_type`, recognised.
+/// The format of a data set: the one that it names or, for `""` and `"auto"`, what is recognised.
 ///
 /// # Errors
-/// As [`find`], [`recognise`] and [`Format::open`](crate::Format::open).
+/// As [`find`] and [`recognise`].
+pub fn format_of(dataset: &ExternalDataset) -> Result<&'static FormatEntry> {
+    match dataset.dataset_type() {
+        "" | "auto" => recognise(dataset.path()),
+        name => find(name),
+    }
+}
+
+/// Opens a data set of the format that [`format_of`] tells.
+///
+/// # Errors
+/// As [`format_of`] and [`Format::open`](crate::Format::open).
 pub fn open(
     dataset: &ExternalDataset,
     options: &OpenOptions,
     problems: &Problems,
 ) -> Result<Box<dyn DatasetIterator>> {
-    let entry = match dataset.dataset_type() {
-        "" | "auto" => recognise(dataset.path())?,
-        name => find(name)?,
-    };
-    (entry.open)(dataset.path(), options, problems)
+    (format_of(dataset)?.open)(dataset.path(), options, problems)
 }

@@ -22,6 +22,8 @@ pub trait Progress: Send + Sync {
     fn advance(&self, amount: u64);
     /// The work is over, done or not.
     fn end(&self);
+    /// How the work goes right now, e.g. "loss 0.31, 42 images/s"; shown beside the bar until the next one.
+    fn status(&self, _text: &str) {}
     /// A line worth reading in between.
     fn note(&self, _line: &str) {}
     /// Whether the user asked to stop (Ctrl-C); long work asks it between pieces and returns early.

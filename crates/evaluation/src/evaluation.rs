@@ -6,12 +6,13 @@ use std::time::Instant;
 
 use opendr_datasets::{Problem, Problems};
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::learner::{AnyLearner, Entry, Port, Ports};
+use opendr_engine::learner::{AnyLearner, Entry, Port};
 use opendr_engine::params::{ParamMap, ParamValue};
-use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value, map_in_order};
+use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value};
 use opendr_metrics::{AnyMetric, MetricEntry};
 use serde::{Deserialize, Serialize};
 
+use crate::answering::answer_samples;
 use crate::journal::{Answer, Heading, Journal, Line};
 use crate::worst::Worst;
 use crate::{Answers, ClassMap, Outcome};
@@ -184,29 +185,11 @@ impl<'a> Evaluation<'a> {
     fn resume(&self, tally: &mut Tally<'_>) -> Result<Option<Journal>> {
         let Some(folder) = self.folder else { return Ok(None) };
         fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
-        let path = &folder.join(JOURNAL);
         let dataset = tally.dataset;
-        let names = (0..dataset.len()).map(|at| dataset.name(at));
-        let heading = Heading::new(self.subject.clone(), self.dataset.clone(), names);
-        // A learner that remembers has to see a sequence from its first frame: one that was broken off is dropped.
-        let whole = match dataset.is_empty() || dataset.sequence(0).is_none() {
-            true => usize::MAX,
-            false => {
-                let mut lines = 0;
-                Journal::open(path, &heading, |_| {
-                    lines += 1;
-                    Ok(true)
-                })?;
-                whole_sequences(dataset, lines)
-            }
-        };
-        let journal = Journal::open(path, &heading, |line| {
-            if line.at >= whole.min(dataset.len()) {
-                return Ok(false);
-            }
-            tally.count(line)?;
+        let heading = Heading::new(self.subject.clone(), self.dataset.clone(), dataset);
+        let journal = Journal::resume(&folder.join(JOURNAL), &heading, dataset, |line| {
             self.progress.advance(1);
-            Ok(true)
+            tally.count(line)
         })?;
         if tally.next > 0 && tally.next < dataset.len() {
             self.progress.note(&format!("going on after {} of {} samples", tally.next, dataset.len()));
@@ -222,53 +205,15 @@ impl<'a> Evaluation<'a> {
         tally: &mut Tally<'_>,
         mut journal: Option<Journal>,
     ) -> Result<()> {
-        let dataset = tally.dataset;
-        let in_sequences = dataset.len() > tally.next && dataset.sequence(tally.next).is_some();
-        let workers = if in_sequences { learners.len().min(1) } else { learners.len() };
+        let (dataset, first) = (tally.dataset, tally.next);
         let wanted = self.metric.prediction;
-        let indices = (tally.next..dataset.len()).take_while(|_| !self.progress.stopped());
-        let work = |learner: &mut Box<dyn AnyLearner>, at: usize| {
-            let begins = at == 0 || !in_sequences || dataset.sequence(at) != dataset.sequence(at - 1);
-            if begins {
-                learner.reset();
-            }
-            (at, infer(learner.as_mut(), ports, dataset, at, wanted.name()))
-        };
-        map_in_order(&mut learners[..workers], indices, work, |(at, answer)| {
-            let line = Line { at, name: dataset.name(at), answer: Answer::of(answer, dataset, at) };
+        answer_samples(learners, ports, dataset, first, wanted, self.progress, |line| {
             if let Some(journal) = &mut journal {
                 journal.write(&line)?;
             }
-            tally.count(line)?;
-            self.progress.advance(1);
-            Ok(())
+            tally.count(line)
         })
     }
-}
-
-/// How many of the first `count` samples belong to sequences that are over.
-fn whole_sequences(dataset: &dyn DatasetIterator, count: usize) -> usize {
-    let over = |at: usize| at == 0 || at >= dataset.len() || dataset.sequence(at) != dataset.sequence(at - 1);
-    (0..=count.min(dataset.len())).rev().find(|at| over(*at)).unwrap_or(0)
-}
-
-/// The learner's answer of the wanted type to one sample.
-fn infer(
-    learner: &mut dyn AnyLearner,
-    ports: &'static [Port],
-    dataset: &dyn DatasetIterator,
-    at: usize,
-    wanted: &str,
-) -> Result<Value> {
-    let sample = dataset.get(at)?;
-    let named = ports
-        .iter()
-        .zip(&sample.data)
-        .fold(Ports::default(), |named, (port, value)| named.with(port.name, value));
-    let outputs = learner.infer(&named)?;
-    let found = outputs.iter().find(|(_, value)| value.as_value_ref().value_type().name() == wanted);
-    let found = found.or_else(|| outputs.iter().next()).map(|(_, value)| value.clone());
-    found.ok_or_else(|| Error::invalid_input("the learner answers nothing"))
 }
 
 /// What was counted so far.

@@ -29,7 +29,12 @@ pub struct Heading {
 }
 
 impl Heading {
-    pub fn new(subject: Subject, dataset: String, names: impl ExactSizeIterator<Item = String>) -> Self {
+    pub fn new(subject: Subject, dataset: String, samples: &dyn DatasetIterator) -> Self {
+        let names = (0..samples.len()).map(|at| samples.name(at));
+        Self::of_names(subject, dataset, names)
+    }
+
+    fn of_names(subject: Subject, dataset: String, names: impl ExactSizeIterator<Item = String>) -> Self {
         let samples = names.len();
         Self { opendr_eval: VERSION, subject, dataset, samples, fingerprint: fingerprint(names) }
     }
@@ -115,6 +120,32 @@ impl Journal {
         Ok(Self { path: path.to_owned(), file })
     }
 
+    /// Opens the journal of answers to the samples of `dataset` and hands what it tells to `each`. A learner that remembers
+    /// has to see a sequence from its first frame: one that was broken off is dropped.
+    ///
+    /// # Errors
+    /// As [`Journal::open`], and those of `each`.
+    pub fn resume(
+        path: &Path,
+        heading: &Heading,
+        dataset: &dyn DatasetIterator,
+        mut each: impl FnMut(Line) -> Result<()>,
+    ) -> Result<Self> {
+        let mut whole = dataset.len();
+        if !dataset.is_empty() && dataset.sequence(0).is_some() {
+            let mut lines = 0;
+            Self::open(path, heading, |_| {
+                lines += 1;
+                Ok(true)
+            })?;
+            whole = whole_sequences(dataset, lines);
+        }
+        Self::open(path, heading, |line| match line.at < whole {
+            true => each(line).map(|()| true),
+            false => Ok(false),
+        })
+    }
+
     /// Appends a line.
     ///
     /// # Errors
@@ -127,11 +158,16 @@ impl Journal {
     }
 }
 
+/// How many of the first `count` samples belong to sequences that are over.
+fn whole_sequences(dataset: &dyn DatasetIterator, count: usize) -> usize {
+    let over = |at: usize| at == 0 || at >= dataset.len() || dataset.sequence(at) != dataset.sequence(at - 1);
+    (0..=count.min(dataset.len())).rev().find(|at| over(*at)).unwrap_or(0)
+}
+
 fn check_heading(path: &Path, text: &str, heading: &Heading) -> Result<()> {
     let path = path.display();
     let found: Heading = serde_json::from_str(text).map_err(|error| {
-        Error::format(format!("{path} is no journal of an evaluation; name another folder"))
-            .with_source(error)
+        Error::format(format!("{path} is no journal of answers; name another folder")).with_source(error)
     })?;
     if found == *heading {
         return Ok(());
@@ -156,7 +192,7 @@ mod tests {
 
     fn heading(learner: &str) -> Heading {
         let subject = Subject { learner: learner.to_owned(), ..Subject::default() };
-        Heading::new(subject, "data".to_owned(), ["a".to_owned(), "b".to_owned()].into_iter())
+        Heading::of_names(subject, "data".to_owned(), ["a".to_owned(), "b".to_owned()].into_iter())
     }
 
     fn line(at: usize) -> Line {

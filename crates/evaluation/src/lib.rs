@@ -3,6 +3,7 @@
 //! [`Evaluation`] runs it, resumes it from its journal, and ends in an [`Outcome`]: numbers, tables, figures, the worst
 //! samples. It takes a learner's [`Answers`] from files as well. Nothing here knows a learner or a format.
 
+mod answering;
 mod answers;
 mod classes;
 mod coco_results;
@@ -13,6 +14,8 @@ mod options;
 mod outcome;
 mod sample_names;
 mod task;
+mod taught;
+mod teacher;
 mod worst;
 
 pub use answers::{Answers, Lines};
@@ -20,7 +23,9 @@ pub use classes::ClassMap;
 pub use coco_results::{is_coco_results, score_coco_results};
 pub use evaluation::{Evaluation, Subject};
 pub use open::open_for;
-pub use options::EvalOptions;
+pub use options::{EvalJob, EvalOptions};
 pub use outcome::Outcome;
 pub use task::metric_of;
+pub use taught::Taught;
+pub use teacher::{Lesson, Teacher};
 pub use worst::WorstSample;

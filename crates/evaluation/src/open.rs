@@ -1,6 +1,6 @@
 //! The data set that a metric needs.
 
-use opendr_datasets::{OpenOptions, Problems, find, open, recognise};
+use opendr_datasets::{OpenOptions, Problems, format_of};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::{Error, Result};
 use opendr_metrics::MetricEntry;
@@ -8,17 +8,14 @@ use opendr_metrics::MetricEntry;
 /// Opens a data set with annotations as `metric` compares them.
 ///
 /// # Errors
-/// `InvalidInput` when the format has no such annotations, else as [`open`](fn@open).
+/// `InvalidInput` when the format has no such annotations, else as [`open`](fn@opendr_datasets::open).
 pub fn open_for(
     metric: &MetricEntry,
     dataset: &ExternalDataset,
     split: Option<String>,
     problems: &Problems,
 ) -> Result<Box<dyn DatasetIterator>> {
-    let format = match dataset.dataset_type() {
-        "" | "auto" => recognise(dataset.path())?,
-        name => find(name)?,
-    };
+    let format = format_of(dataset)?;
     if !format.targets.contains(&metric.truth) {
         let has: Vec<_> = format.targets.iter().map(|target| target.name()).collect();
         return Err(Error::invalid_input(format!(
@@ -29,6 +26,5 @@ pub fn open_for(
             has.join(" or ")
         )));
     }
-    let named = ExternalDataset::new(dataset.path(), format.name);
-    open(&named, &OpenOptions { split, target: Some(metric.truth) }, problems)
+    (format.open)(dataset.path(), &OpenOptions { split, target: Some(metric.truth) }, problems)
 }

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use opendr_datasets::Problems;
-use opendr_engine::dataset::{DatasetIterator, ExternalDataset, Subset};
+use opendr_engine::dataset::{DatasetIterator, DatasetRef, Subset};
 use opendr_engine::learner::{AnyLearner, Entry};
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Progress, Result};
-use opendr_metrics::find;
+use opendr_metrics::{MetricEntry, find};
 use serde::Deserialize;
 
 use crate::{Evaluation, Outcome, Subject, metric_of, open_for};
@@ -28,36 +28,87 @@ pub struct EvalOptions {
     pub folder: Option<PathBuf>,
     /// Whether what is broken is left out and listed.
     pub skip_broken: bool,
+    /// What the outcome calls the data set; by default its path.
+    pub name: Option<String>,
+}
+
+/// A data set opened as the options of an evaluation want it.
+pub struct EvalJob<'a> {
+    /// Its samples.
+    pub dataset: Subset<Box<dyn DatasetIterator + 'a>>,
+    /// What is broken in it.
+    pub problems: Problems,
+    metric: &'static MetricEntry,
+    name: String,
+    options: &'a EvalOptions,
 }
 
 impl EvalOptions {
-    /// Measures a loaded learner on a data set on disk.
+    /// What a learner is measured by.
     ///
     /// # Errors
-    /// As [`open_for`] and [`Evaluation::run`].
+    /// `NotFound` for a metric that there is not; as [`metric_of`] where none is named.
+    pub fn metric_for(&self, entry: &Entry) -> Result<&'static MetricEntry> {
+        find(match &self.metric {
+            Some(name) => name,
+            None => metric_of(entry.spec.task)?,
+        })
+    }
+
+    /// Opens the data set that a learner is measured on.
+    ///
+    /// # Errors
+    /// As [`EvalOptions::metric_for`] and [`open_for`].
+    pub fn open<'a>(&'a self, entry: &Entry, dataset: DatasetRef<'a>) -> Result<EvalJob<'a>> {
+        let metric = self.metric_for(entry)?;
+        let problems = if self.skip_broken { Problems::skipping() } else { Problems::strict() };
+        let (name, dataset): (_, Box<dyn DatasetIterator + 'a>) = match dataset {
+            DatasetRef::External(external) => {
+                let name = external.path().display().to_string();
+                (name, open_for(metric, external, self.split.clone(), &problems)?)
+            }
+            DatasetRef::Iterator(samples) => (String::new(), Box::new(samples)),
+        };
+        let name = self.name.clone().unwrap_or(name);
+        let dataset = Subset::first(dataset, self.limit.unwrap_or(usize::MAX));
+        Ok(EvalJob { dataset, problems, metric, name, options: self })
+    }
+
+    /// Measures a loaded learner on a data set.
+    ///
+    /// # Errors
+    /// As [`EvalOptions::open`] and [`Evaluation::run`].
     pub fn run(
         &self,
         learner: &mut Box<dyn AnyLearner>,
         entry: &Entry,
-        external: &ExternalDataset,
+        dataset: DatasetRef<'_>,
         progress: &dyn Progress,
     ) -> Result<Outcome> {
-        let problems = if self.skip_broken { Problems::skipping() } else { Problems::strict() };
-        let metric = find(match &self.metric {
-            Some(name) => name,
-            None => metric_of(entry.spec.task)?,
-        })?;
-        let dataset = open_for(metric, external, self.split.clone(), &problems)?;
-        let dataset: Subset<Box<dyn DatasetIterator>> =
-            Subset::first(dataset, self.limit.unwrap_or(usize::MAX));
         let subject = Subject { learner: entry.spec.name.to_owned(), model: None, params: learner.params() };
+        self.open(entry, dataset)?.run(std::slice::from_mut(learner), entry, subject, progress)
+    }
+}
+
+impl EvalJob<'_> {
+    /// Measures loaded `learners` of one kind, as many samples at once as there are learners.
+    ///
+    /// # Errors
+    /// As [`Evaluation::run`].
+    pub fn run(
+        &self,
+        learners: &mut [Box<dyn AnyLearner>],
+        entry: &Entry,
+        subject: Subject,
+        progress: &dyn Progress,
+    ) -> Result<Outcome> {
         let evaluation = Evaluation {
-            dataset: external.path().display().to_string(),
-            metric_params: self.metric_params.clone(),
-            folder: self.folder.as_deref(),
+            dataset: self.name.clone(),
+            metric_params: self.options.metric_params.clone(),
+            folder: self.options.folder.as_deref(),
             progress,
-            ..Evaluation::new(subject, metric, &problems)
+            ..Evaluation::new(subject, self.metric, &self.problems)
         };
-        evaluation.run(std::slice::from_mut(learner), entry, &dataset)
+        evaluation.run(learners, entry, &self.dataset)
     }
 }

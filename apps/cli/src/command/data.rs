@@ -183,10 +183,7 @@ fn wanted(
     from: &opendr::dataset::ExternalDataset,
     to: &datasets::FormatEntry,
 ) -> Result<Option<opendr::ValueType>> {
-    let from = match from.dataset_type() {
-        "" | "auto" => datasets::recognise(from.path())?,
-        name => datasets::find(name)?,
-    };
+    let from = datasets::format_of(from)?;
     let both = from.targets.iter().find(|target| to.targets.contains(target));
     both.map(|target| Some(*target)).ok_or_else(|| {
         let names = |format: &datasets::FormatEntry| {

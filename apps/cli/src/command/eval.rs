@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::dataset::{DatasetIterator, Subset};
+use opendr::dataset::{DatasetIterator, DatasetRef};
 use opendr::datasets::Problems;
-use opendr::evaluation::{self, Evaluation, Outcome as Evaluated, Subject};
+use opendr::evaluation::{EvalOptions, Outcome as Evaluated, Subject};
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::{Error, Progress, Result};
@@ -67,33 +67,28 @@ pub fn metric_flags() -> [Arg; 4] {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let metric = match matches.get_one::<String>("metric") {
-        Some(name) => metrics::find(name)?,
-        None => metrics::find(evaluation::metric_of(entry.spec.task)?)?,
-    };
     let bar = Bar::new(matches.get_flag("quiet"));
-    let problems = dataset_flags::problems(matches);
-    let external = dataset_flags::external(matches);
-    let dataset = evaluation::open_for(metric, &external, dataset_flags::split(matches), &problems)?;
-    let limit = matches.get_one("limit").copied().unwrap_or(usize::MAX);
-    let dataset = Subset::first(dataset, limit);
-    let params = learner_flags::params(entry, matches)?;
-    let evaluation = Evaluation {
-        subject: Subject {
-            learner: spec.to_owned(),
-            model: matches.get_one::<PathBuf>("model").map(|path| path.display().to_string()),
-            params: params.clone(),
-        },
-        dataset: external.path().display().to_string(),
-        metric_params: metric_params(metric, matches)?,
-        folder: matches.get_one::<PathBuf>("out").map(PathBuf::as_path),
-        progress: &bar,
-        ..Evaluation::new(Subject::default(), metric, &problems)
+    let mut options = EvalOptions {
+        metric: matches.get_one("metric").cloned(),
+        split: dataset_flags::split(matches),
+        limit: matches.get_one("limit").copied(),
+        folder: matches.get_one("out").cloned(),
+        skip_broken: dataset_flags::skip_broken(matches),
+        ..EvalOptions::default()
     };
-    let count = loading::how_many(matches, Some(dataset.len() as u64))?;
+    options.metric_params = metric_params(options.metric_for(entry)?, matches)?;
+    let external = dataset_flags::external(matches);
+    let job = options.open(entry, DatasetRef::External(&external))?;
+    let params = learner_flags::params(entry, matches)?;
+    let subject = Subject {
+        learner: spec.to_owned(),
+        model: matches.get_one::<PathBuf>("model").map(|path| path.display().to_string()),
+        params: params.clone(),
+    };
+    let count = loading::how_many(matches, Some(job.dataset.len() as u64))?;
     let mut learners = loading::side_by_side(count, || loading::load(spec, &params, matches, &bar))?;
-    let outcome = evaluation.run(&mut learners, entry, &dataset)?;
-    tell(&outcome, matches, &problems, &bar)
+    let outcome = job.run(&mut learners, entry, subject, &bar)?;
+    tell(&outcome, matches, &job.problems, &bar)
 }
 
 /// The metric's parameters that the user set.

@@ -5,6 +5,8 @@ mod data;
 mod demo;
 mod download;
 mod eval;
+mod export;
+mod fit;
 mod infer;
 mod models;
 mod runtime;
@@ -27,6 +29,7 @@ Examples:
   opendr infer LEARNER dance.mp4 --json             ... on a video, as JSON lines
   opendr infer LEARNER --help                       its parameters
   opendr eval LEARNER coco/ --out evaluated/        how good one is
+  opendr fit LEARNER coco/ --val-split val2017      train one
   opendr data check coco/                           whether a data set is sound";
 
 /// The grammar. A command that runs a learner gets the flags of the one that `arguments` name.
@@ -37,6 +40,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
     let mut commands = [
         infer::grammar(),
         eval::grammar(),
+        fit::grammar(),
+        export::grammar(),
         score::grammar(),
         data::grammar(),
         models::grammar(),
@@ -49,7 +54,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         && let Some(command) = commands.iter_mut().find(|command| command.get_name() == name)
         && let Some(entry) = named_learner(command, rest)?
     {
-        *command = learner_flags::add(std::mem::take(command), entry);
+        let add = if name == "fit" { learner_flags::add_for_fit } else { learner_flags::add };
+        *command = add(std::mem::take(command), entry);
     }
     Ok(Command::new("opendr")
         .about("OpenDR in Rust: the open deep-learning toolkit for robotics")
@@ -70,6 +76,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     loading::with_threads(matches, || match name {
         "infer" => infer::run(matches),
         "eval" => eval::run(matches),
+        "fit" => fit::run(matches),
+        "export" => export::run(matches),
         "score" => score::run(matches),
         "data" => data::run(matches),
         "models" => models::run(matches),
@@ -125,7 +133,7 @@ mod tests {
     #[test]
     fn grammar_of_every_learner_is_sound() {
         for entry in opendr::registry().entries() {
-            for command in ["infer", "bench", "eval"] {
+            for command in ["infer", "bench", "eval", "fit"] {
                 grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();
             }
         }

@@ -91,11 +91,8 @@ fn open(
     problems: &Problems,
 ) -> Result<Box<dyn opendr::dataset::DatasetIterator>> {
     let format = match matches.get_one::<String>("answers-format") {
-        Some(format) => format.clone(),
-        None if matches!(truth.dataset_type(), "" | "auto") => {
-            datasets::recognise(truth.path())?.name.to_owned()
-        }
-        None => truth.dataset_type().to_owned(),
+        Some(format) => format,
+        None => datasets::format_of(truth)?.name,
     };
     let options = OpenOptions { split: None, target: Some(metric.prediction) };
     datasets::open(&ExternalDataset::new(path, format), &options, problems)

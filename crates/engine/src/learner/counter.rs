@@ -1,18 +1,21 @@
 //! A test-only learner with two ports, an init port, `State`, two outputs, pieces and training. It finds nothing; it
 //! counts. Every surface is tested with it (feature `test-learner`).
 
+use std::fs;
 use std::path::Path;
 
 use crate::data::Image;
-use crate::dataset::DatasetRef;
+use crate::dataset::{DatasetIterator, DatasetRef};
 use crate::learner::{Fit, FitJob, Inputs, Learner, Spec, Streaming, Targets};
 use crate::model::{Manifest, Model, ModelWriter};
 use crate::params::{ParamMap, Params};
 use crate::target::{BoundingBox, BoundingBoxList, PoseList};
-use crate::{Device, Error, Result, Statistics, Task};
+use crate::{Device, Error, Result, ResultExt, Statistics, Task, Unit, Value};
 
 /// The only file of its container: one byte, where counting begins.
 const BIAS: &str = "bias.bin";
+/// The file in a training's folder from which it resumes: the loss of each epoch so far.
+const CHECKPOINT: &str = "checkpoint.json";
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]
@@ -29,8 +32,11 @@ pub struct CounterParams {
 #[derive(Debug, Clone, Params)]
 pub struct CounterFitParams {
     /// How often the data set is read.
-    #[param(default = 1, range = 1..=100)]
+    #[param(default = 1, range = 1..=100, alias = "iters")]
     pub epochs: usize,
+    /// What the loss is multiplied with.
+    #[param(default = 1.0, range = 0.0..=10.0)]
+    pub lr: f64,
 }
 
 /// A picture and the boxes to count.
@@ -139,17 +145,68 @@ impl Fit for Counter {
         params: &CounterParams,
         fit_params: &CounterFitParams,
         dataset: DatasetRef<'_>,
-        _val_dataset: Option<DatasetRef<'_>>,
+        val_dataset: Option<DatasetRef<'_>>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let DatasetRef::Iterator(dataset) = dataset else {
-            return Err(Error::invalid_input("a counter trains on samples only"));
-        };
+        let dataset = samples(dataset)?;
+        let val_dataset = val_dataset.map(samples).transpose()?;
+        let checkpoint = job.output.join(CHECKPOINT);
+        let mut losses = if job.resume { read_checkpoint(&checkpoint)? } else { Vec::new() };
+        let steps = (fit_params.epochs * dataset.len()) as u64;
+        job.progress.begin("training", Some(steps), Unit::Items);
+        while losses.len() < fit_params.epochs {
+            let Some(boxes) = boxes_a_sample(dataset, job)? else { break };
+            losses.push(boxes * fit_params.lr);
+            job.progress.status(&format!("loss {boxes:.2}"));
+            fs::create_dir_all(job.output)?;
+            fs::write(&checkpoint, format!("{losses:?}"))?;
+        }
+        job.progress.end();
         let mut statistics = Statistics::default();
-        (0..fit_params.epochs).for_each(|_| statistics.push("loss", 0.0));
+        if let Some(val_dataset) = val_dataset
+            && let Some(boxes) = boxes_a_sample(val_dataset, job)?
+        {
+            statistics.push("val_boxes", boxes);
+        }
+        statistics.set("epochs", losses.len() as f64);
+        losses.into_iter().for_each(|loss| statistics.push("loss", loss));
         write_model(&job.model(), dataset.len() as u8, &params.to_map())?;
         Ok(statistics)
     }
+}
+
+fn samples(dataset: DatasetRef<'_>) -> Result<&dyn DatasetIterator> {
+    match dataset {
+        DatasetRef::Iterator(dataset) => Ok(dataset),
+        DatasetRef::External(_) => Err(Error::invalid_input("a counter trains on samples only")),
+    }
+}
+
+/// The mean number of boxes in the targets; `None` when the user stopped it.
+fn boxes_a_sample(dataset: &dyn DatasetIterator, job: &FitJob<'_>) -> Result<Option<f64>> {
+    let mut boxes = 0;
+    for at in 0..dataset.len() {
+        if job.progress.stopped() {
+            return Ok(None);
+        }
+        boxes += match dataset.target(at)? {
+            Some(Value::BoundingBoxList(list)) => list.boxes.len(),
+            _ => 0,
+        };
+        job.progress.advance(1);
+    }
+    Ok(Some(boxes as f64 / dataset.len().max(1) as f64))
+}
+
+fn read_checkpoint(path: &Path) -> Result<Vec<f64>> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let context = || format!("reading {}", path.display());
+    let text = fs::read_to_string(path).context(context)?;
+    serde_json::from_str(&text)
+        .map_err(|error| Error::format("no list of numbers").with_source(error))
+        .context(context)
 }
 
 /// Writes a container of the learner to `folder`: counting begins at `bias`, `params` replace defaults.

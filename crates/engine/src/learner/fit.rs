@@ -55,7 +55,8 @@ pub trait Fit: Learner {
 }
 
 impl<L: Fit> Handle<L> {
-    /// Trains, starting from the loaded model where there is one, and loads the result.
+    /// Trains, starting from the loaded model where there is one, and loads the result; when the user stopped it before
+    /// there was one, the handle is as it was.
     ///
     /// # Errors
     /// As [`Fit::fit`].
@@ -68,7 +69,10 @@ impl<L: Fit> Handle<L> {
     ) -> Result<Statistics> {
         fit_params.check()?;
         let statistics = L::fit(self.model(), self.params(), fit_params, dataset, val_dataset, job)?;
-        self.load(&job.model())?;
+        let model = job.model();
+        if model.exists() || !job.progress.stopped() {
+            self.load(model)?;
+        }
         Ok(statistics)
     }
 }

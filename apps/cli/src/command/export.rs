@@ -1,0 +1,60 @@
+//! `opendr export`: a model as others want it.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use opendr::Result;
+use opendr::model::Model;
+
+use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr export runs/mine/model --output detector.onnx    the network alone
+  opendr export runs/mine/model --output detector.zip     the container in one file
+  opendr export LEARNER/VARIANT --output detector         ... as a folder, of a pretrained model";
+
+pub fn grammar() -> Command {
+    Command::new("export")
+        .about("Write a model as a folder, a zip, or the bare ONNX")
+        .arg(
+            Arg::new("source")
+                .required(true)
+                .value_name("LEARNER[/VARIANT]|CONTAINER")
+                .help("A pretrained model, or a container of your own"),
+        )
+        .arg(
+            Arg::new("output")
+                .long("output")
+                .short('o')
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .value_name("FILE")
+                .help("Where to write it: NAME.onnx, NAME.zip, or a folder"),
+        )
+        .arg(
+            Arg::new("zip")
+                .long("zip")
+                .action(ArgAction::SetTrue)
+                .help("Write a zip whatever the name; .zip is appended where it is missing"),
+        )
+        .args([loading::offline(), loading::quiet()])
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    let source = matches.get_one::<String>("source").map_or("", String::as_str);
+    let mut output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
+    if matches.get_flag("zip") && output.extension().is_none_or(|extension| extension != "zip") {
+        output.as_mut_os_string().push(".zip");
+    }
+    let path = match Path::new(source).exists() {
+        true => PathBuf::from(source),
+        false => loading::pretrained(source, matches, &Bar::new(matches.get_flag("quiet")))?,
+    };
+    opendr::export(&Model::open(path)?, &output)?;
+    stdout::print(output.display())?;
+    Ok(Outcome::Done)
+}

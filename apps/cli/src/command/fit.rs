@@ -1,0 +1,194 @@
+//! `opendr fit`: a learner learns from a data set.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use opendr::dataset::{DatasetRef, ExternalDataset};
+use opendr::evaluation::Teacher;
+use opendr::params::ParamMap;
+use opendr::{Error, FitData, FitOptions, Fitted, Progress, Result};
+
+use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{dataset_flags, learner_flags, loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr fit LEARNER coco/ --val-split val2017                 train, and measure after each epoch
+  opendr fit LEARNER train/ --val val/ --output runs/mine      --epochs 50 and all others: see LEARNER --help
+  opendr fit LEARNER train/ --output runs/mine --resume        go on after Ctrl-C or a power cut
+  opendr fit LEARNER/VARIANT labelled/                         from a pretrained model
+  opendr fit LEARNER photos/ --teacher nanodet                 learn from the answers of another learner
+
+Without --output everything goes to runs/LEARNER-DATE; --resume without it takes the last of these. The trained model lies in
+the output folder under model/: opendr infer LEARNER --model OUTPUT/model street.jpg";
+
+/// The folder of curves in the output folder.
+const LOGS: &str = "log";
+
+pub fn grammar() -> Command {
+    Command::new("fit")
+        .about("Train a learner on a data set")
+        .arg(loading::learner())
+        .arg(dataset_flags::dataset())
+        .args(dataset_flags::flags())
+        .args(val_flags())
+        .args(output_flags())
+        .args(teacher_flags())
+        .arg(
+            Arg::new("limit")
+                .long("limit")
+                .value_parser(value_parser!(usize))
+                .value_name("N")
+                .help("Train on the first N samples"),
+        )
+        .arg(
+            Arg::new("pretrained")
+                .long("pretrained")
+                .action(ArgAction::SetTrue)
+                .help("Begin with the learner's pretrained model; so does LEARNER/VARIANT, or --model"),
+        )
+        .args(loading::flags())
+        .after_help(EXAMPLES)
+}
+
+fn val_flags() -> [Arg; 3] {
+    [
+        Arg::new("val")
+            .long("val")
+            .value_parser(value_parser!(PathBuf))
+            .value_name("DATASET")
+            .help("Measure on this data set after each epoch"),
+        Arg::new("val-format")
+            .long("val-format")
+            .default_value("auto")
+            .value_name("FORMAT")
+            .help("What --val is; by default recognised"),
+        Arg::new("val-split")
+            .long("val-split")
+            .value_name("NAME")
+            .help("The part to measure on: of --val or, without it, of DATASET"),
+    ]
+}
+
+fn output_flags() -> [Arg; 4] {
+    [
+        Arg::new("output")
+            .long("output")
+            .short('o')
+            .value_parser(value_parser!(PathBuf))
+            .value_name("DIR")
+            .help("The folder of checkpoints and model [default: runs/LEARNER-DATE]"),
+        Arg::new("logging-path")
+            .long("logging-path")
+            .value_parser(value_parser!(PathBuf))
+            .value_name("DIR")
+            .help("The folder of TensorBoard's event files and curves [default: OUTPUT/log]"),
+        Arg::new("resume")
+            .long("resume")
+            .action(ArgAction::SetTrue)
+            .help("Go on from the last checkpoint in the output folder"),
+        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+    ]
+}
+
+fn teacher_flags() -> [Arg; 4] {
+    [
+        Arg::new("teacher")
+            .long("teacher")
+            .value_name("LEARNER[/VARIANT]")
+            .help("Learn from this learner's answers; DATASET may then be a folder of pictures"),
+        Arg::new("teacher-threshold")
+            .long("teacher-threshold")
+            .value_parser(value_parser!(f32))
+            .value_name("NUMBER")
+            .requires("teacher")
+            .help("Drop the teacher's answers below this score [default: 0.5]"),
+        Arg::new("teacher-classes")
+            .long("teacher-classes")
+            .value_delimiter(',')
+            .value_name("NAME,...")
+            .requires("teacher")
+            .help("Learn these classes only [default: those of DATASET, or the teacher's]"),
+        Arg::new("keep-empty")
+            .long("keep-empty")
+            .action(ArgAction::SetTrue)
+            .requires("teacher")
+            .help("Keep the pictures in which the teacher finds nothing"),
+    ]
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
+    let entry = loading::entry(spec)?;
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let params = learner_flags::params(entry, matches)?;
+    let device = loading::device(matches)?;
+    let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
+    let begins_with_model =
+        spec.contains('/') || matches.contains_id("model") || matches.get_flag("pretrained");
+    let mut learner = match begins_with_model && entry.capabilities.fit {
+        true => loading::load(spec, &params, matches, &bar)?,
+        false => entry.make(&params, device)?,
+    };
+    let val = matches.get_one::<PathBuf>("val");
+    let val = val.map(|path| ExternalDataset::new(path, word(matches, "val-format").unwrap_or_default()));
+    let external = dataset_flags::external(matches);
+    let data = FitData {
+        dataset: DatasetRef::External(&external),
+        val_dataset: val.as_ref().map(DatasetRef::External),
+        teacher: word(matches, "teacher").map(|teacher| load_teacher(&teacher, matches, &bar)).transpose()?,
+    };
+    let fitted = opendr::fit(learner.as_mut(), entry, data, &options, &bar)?;
+    tell(&fitted, matches, &bar)
+}
+
+fn options(name: &str, params: ParamMap, matches: &ArgMatches) -> Result<FitOptions> {
+    let mut options = FitOptions {
+        params,
+        split: dataset_flags::split(matches),
+        val_split: word(matches, "val-split"),
+        limit: matches.get_one("limit").copied(),
+        output: matches.get_one("output").cloned(),
+        logging_path: matches.get_one("logging-path").cloned(),
+        resume: matches.get_flag("resume"),
+        teacher_threshold: matches.get_one("teacher-threshold").copied(),
+        teacher_classes: matches.get_many("teacher-classes").into_iter().flatten().cloned().collect(),
+        keep_empty: matches.get_flag("keep-empty"),
+        skip_broken: dataset_flags::skip_broken(matches),
+        ..FitOptions::default()
+    };
+    let output = options.output_folder(name)?;
+    options.logging_path.get_or_insert_with(|| output.join(LOGS));
+    options.output = Some(output);
+    Ok(options)
+}
+
+fn word(matches: &ArgMatches, flag: &str) -> Option<String> {
+    matches.get_one(flag).cloned()
+}
+
+/// The pretrained learner that is learned from.
+fn load_teacher(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Teacher> {
+    let threshold = matches.get_one("teacher-threshold").copied();
+    let device = loading::device(matches)?;
+    opendr::teacher_with(spec, threshold, device, |params| {
+        loading::load_pretrained(spec, params, matches, bar)
+    })
+}
+
+/// Prints how it ended, where the model lies, and how to go on.
+fn tell(fitted: &Fitted, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+    if matches.get_flag("json") {
+        let json = serde_json::to_string(fitted)
+            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
+        stdout::print(json)?;
+    } else {
+        stdout::print(fitted.to_string().trim_end())?;
+    }
+    if !fitted.complete {
+        let output = fitted.output.display();
+        bar.note(&format!("go on with the same command and --output {output} --resume"));
+    }
+    Ok(if fitted.skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
+}

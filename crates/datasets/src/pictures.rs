@@ -1,0 +1,95 @@
+//! Pictures without annotations, for a teacher to make them.
+
+use std::path::{Path, PathBuf};
+
+use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
+use opendr_engine::{Error, Result, Value};
+
+use crate::folder::{PICTURES, files_in, folders_in, past_end};
+
+/// Folders in folders that are looked into.
+const MAX_DEPTH: usize = 8;
+
+/// The pictures in a folder and the folders in it, in the order of their names, without targets.
+#[derive(Debug, Clone)]
+pub struct Pictures {
+    root: PathBuf,
+    /// Relative to the root.
+    names: Vec<String>,
+}
+
+impl Pictures {
+    /// Whether there are any in `path`.
+    pub fn are_in(path: &Path) -> bool {
+        path.is_dir() && Self::open(path).is_ok()
+    }
+
+    /// Those in the folder `path`.
+    ///
+    /// # Errors
+    /// `NotFound` when there are none.
+    pub fn open(path: &Path) -> Result<Self> {
+        let mut names = Vec::new();
+        collect(path, "", 0, &mut names);
+        if names.is_empty() {
+            let (path, kinds) = (path.display(), PICTURES.join(", "));
+            return Err(Error::not_found(format!("there are no pictures ({kinds}) in {path}")));
+        }
+        Ok(Self { root: path.to_owned(), names })
+    }
+}
+
+fn collect(folder: &Path, prefix: &str, depth: usize, names: &mut Vec<String>) {
+    names.extend(files_in(folder, PICTURES).into_iter().map(|name| format!("{prefix}{name}")));
+    // A link may lead back.
+    if depth < MAX_DEPTH {
+        for name in folders_in(folder) {
+            collect(&folder.join(&name), &format!("{prefix}{name}/"), depth + 1, names);
+        }
+    }
+}
+
+impl Dataset for Pictures {}
+
+impl DatasetIterator for Pictures {
+    fn len(&self) -> usize {
+        self.names.len()
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let path = self.path(index).ok_or_else(|| past_end(index, self.len()))?;
+        Ok(Sample { data: vec![Value::Image(opendr_vision::open(path)?)], target: None })
+    }
+
+    fn target(&self, _index: usize) -> Result<Option<Value>> {
+        Ok(None)
+    }
+
+    fn name(&self, index: usize) -> String {
+        self.names.get(index).cloned().unwrap_or_else(|| index.to_string())
+    }
+
+    fn path(&self, index: usize) -> Option<PathBuf> {
+        self.names.get(index).map(|name| self.root.join(name))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::folder::TemporaryFolder;
+
+    #[test]
+    fn pictures_of_all_folders_in_order() {
+        let folder = TemporaryFolder::new();
+        assert!(!Pictures::are_in(folder.path()));
+        for name in ["b.png", "a/2.png", "a/1.bmp"] {
+            folder.picture(name, 3, 2);
+        }
+        std::fs::write(folder.path().join("notes.txt"), "").unwrap();
+        let pictures = Pictures::open(folder.path()).unwrap();
+        assert_eq!((0..3).map(|at| pictures.name(at)).collect::<Vec<_>>(), ["b.png", "a/1.bmp", "a/2.png"]);
+        assert!(matches!(&pictures.get(2).unwrap().data[..], [Value::Image(image)] if image.width() == 3));
+        assert!(pictures.get(3).is_err());
+    }
+}

@@ -1,0 +1,240 @@
+//! `fit` of every learner, as all surfaces have it.
+
+mod fitted;
+mod options;
+mod run_folder;
+mod samples;
+
+use std::path::Path;
+use std::time::Instant;
+
+use opendr_datasets::Problems;
+use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset};
+use opendr_engine::learner::{AnyLearner, Entry, FitJob};
+use opendr_engine::params::{ParamMap, ParamValue};
+use opendr_engine::{Device, Error, Progress, Result, Statistics};
+use opendr_evaluation::{Lesson, Teacher};
+use opendr_inference as inference;
+
+pub use fitted::Fitted;
+pub use options::FitOptions;
+
+use crate::{learner_with, registry};
+use samples::{Opening, Samples, limited, wanted};
+
+/// A teacher's answers below this score are no annotations, where nobody says otherwise.
+const TEACHER_THRESHOLD: f32 = 0.5;
+/// The parameter below which learners drop answers.
+const THRESHOLD: &str = "threshold";
+/// Streams of a teacher that work at once.
+const MAX_STREAMS: usize = 4;
+
+/// What a learner is trained and measured on.
+pub struct FitData<'a> {
+    /// What to train on.
+    pub dataset: DatasetRef<'a>,
+    /// What to measure on; else what [`FitOptions`] say.
+    pub val_dataset: Option<DatasetRef<'a>>,
+    /// Who makes the annotations; else the one that [`FitOptions`] name.
+    pub teacher: Option<Teacher>,
+}
+
+impl<'a> From<DatasetRef<'a>> for FitData<'a> {
+    fn from(dataset: DatasetRef<'a>) -> Self {
+        Self { dataset, val_dataset: None, teacher: None }
+    }
+}
+
+/// Trains a learner of `entry`, from its model where it has one, loads the result, and writes a report beside it.
+///
+/// When the user stops it, the model is of what was done, and [`Fitted::complete`] is false.
+///
+/// # Errors
+/// `Unsupported` when the learner does not train; `InvalidParam` for a parameter of the training that does not fit;
+/// `InvalidInput` when the data set does not fit the task, or the output folder is not empty; `Io`.
+pub fn fit(
+    learner: &mut dyn AnyLearner,
+    entry: &'static Entry,
+    data: FitData<'_>,
+    options: &FitOptions,
+    progress: &dyn Progress,
+) -> Result<Fitted> {
+    let begun = Instant::now();
+    check(entry, &options.params)?;
+    let output = options.output_folder(entry.spec.name)?;
+    run_folder::prepare(&output, options.resume)?;
+    progress.note(&format!("output: {}", output.display()));
+    let problems = options.problems();
+    let preparation = Preparation { entry, options, output: &output, problems: &problems, progress };
+    let external = options
+        .val
+        .as_ref()
+        .map(|path| ExternalDataset::new(path, options.val_format.as_deref().unwrap_or("auto")));
+    let val = data.val_dataset.or(external.as_ref().map(DatasetRef::External));
+    let val = preparation.val(val, data.dataset)?;
+    let (dataset, samples) = preparation.samples(data.dataset, data.teacher, learner.device())?;
+    let job = FitJob {
+        output: &output,
+        resume: options.resume,
+        logging_path: options.logging_path.as_deref(),
+        device: learner.device(),
+        progress,
+    };
+    let statistics = match progress.stopped() {
+        true => Statistics::default(),
+        false => {
+            let val = val.as_deref().map(DatasetRef::Iterator);
+            learner.fit(&options.params, DatasetRef::Iterator(samples.as_ref()), val, &job)?
+        }
+    };
+    let fitted = Fitted {
+        learner: entry.spec.name.to_owned(),
+        dataset,
+        samples: samples.len(),
+        complete: !progress.stopped(),
+        seconds: begun.elapsed().as_secs_f64(),
+        statistics,
+        model: Some(job.model()).filter(|model| model.exists()),
+        logging_path: options.logging_path.clone(),
+        skipped: problems.count(),
+        problems: problems.list(),
+        output,
+    };
+    fitted.write()?;
+    Ok(fitted)
+}
+
+/// What a training needs before it begins.
+struct Preparation<'a> {
+    entry: &'static Entry,
+    options: &'a FitOptions,
+    output: &'a Path,
+    problems: &'a Problems,
+    progress: &'a dyn Progress,
+}
+
+impl Preparation<'_> {
+    fn opening(&self, annotated: bool) -> Opening<'_> {
+        Opening { entry: self.entry, annotated, problems: self.problems, progress: self.progress }
+    }
+
+    /// What to measure on: `val`, else another part of what is trained on where one is named.
+    fn val<'d>(&self, val: Option<DatasetRef<'d>>, dataset: DatasetRef<'d>) -> Result<Option<Samples<'d>>> {
+        let split = self.options.val_split.as_deref();
+        let val = val.or(split.is_some().then_some(dataset));
+        val.map(|val| self.opening(true).to_measure(val, split)).transpose()
+    }
+
+    /// What the data set is called, and its samples, labelled by the teacher where there is one.
+    fn samples<'d>(
+        &self,
+        dataset: DatasetRef<'d>,
+        teacher: Option<Teacher>,
+        device: Device,
+    ) -> Result<(String, Samples<'d>)> {
+        let teacher = match (teacher, &self.options.teacher) {
+            (None, Some(name)) => {
+                let load = |params: &ParamMap| learner_with(name, params, device, self.progress);
+                Some(teacher_with(name, self.options.teacher_threshold, device, load)?)
+            }
+            (given, _) => given,
+        };
+        let path = match dataset {
+            DatasetRef::External(external) => external.path().display().to_string(),
+            DatasetRef::Iterator(_) => String::new(),
+        };
+        let name = self.options.name.clone().unwrap_or(path);
+        let samples = self.opening(teacher.is_none()).to_train(dataset, self.options.split.as_deref())?;
+        let mut samples = limited(samples, self.options.limit);
+        if let Some(teacher) = teacher {
+            samples = Box::new(self.lesson(name.clone())?.teach(teacher, samples)?);
+        }
+        if samples.is_empty() && !self.progress.stopped() {
+            return Err(Error::invalid_input(format!("there is nothing to train on in {name}")));
+        }
+        Ok((name, samples))
+    }
+
+    fn lesson(&self, dataset: String) -> Result<Lesson<'_>> {
+        Ok(Lesson {
+            dataset,
+            wanted: wanted(self.entry).ok_or_else(|| Error::internal("a learner without outputs"))?,
+            threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
+            classes: self.options.teacher_classes.iter().cloned().collect(),
+            keep_empty: self.options.keep_empty,
+            folder: self.output,
+            problems: self.problems,
+            progress: self.progress,
+        })
+    }
+}
+
+/// A loaded learner of `entry`, called `name`, as a teacher.
+///
+/// # Errors
+/// `NotFound` when nothing is loaded.
+pub fn teacher(name: impl Into<String>, learner: &dyn AnyLearner, entry: &'static Entry) -> Result<Teacher> {
+    Teacher::new(name, learner, entry, streams_at_once(learner.device())?)
+}
+
+/// The learner that `spec` names as a teacher whose answers from `threshold` (by default 0.5) on are wanted; `load` loads it
+/// with the parameters that this takes.
+///
+/// # Errors
+/// `NotFound` for a name that there is not; those of `load`.
+pub fn teacher_with(
+    spec: &str,
+    threshold: Option<f32>,
+    device: Device,
+    load: impl FnOnce(&ParamMap) -> Result<Box<dyn AnyLearner>>,
+) -> Result<Teacher> {
+    let entry = registry().find(spec.split('/').next().unwrap_or(spec))?;
+    let wanted = f64::from(threshold.unwrap_or(TEACHER_THRESHOLD));
+    let own = entry.params.iter().find(|field| field.name == THRESHOLD);
+    let own = own.and_then(|field| field.default.value().as_float()).filter(|own| *own > wanted);
+    let params = own.map(|_| (THRESHOLD.to_owned(), ParamValue::Float(wanted))).into_iter().collect();
+    // Several streams with a thread each are faster than one with several.
+    let threads = (inference::default_threads()? / streams_at_once(device)?).max(1);
+    teacher(spec, inference::with_threads(threads, || load(&params))?.as_ref(), entry)
+}
+
+fn streams_at_once(device: Device) -> Result<usize> {
+    match inference::device(device)? {
+        Device::Cpu => Ok(inference::default_threads()?.min(MAX_STREAMS)),
+        _ => Ok(1),
+    }
+}
+
+/// That the learner trains, and takes the parameters: known before a teacher works for hours.
+fn check(entry: &Entry, params: &ParamMap) -> Result<()> {
+    if !entry.capabilities.fit {
+        return Err(cannot_fit(entry));
+    }
+    params.iter().try_for_each(|(name, value)| {
+        let field = entry.fit_params.iter().find(|field| field.name == name).ok_or_else(|| {
+            let names: Vec<_> = entry.fit_params.iter().map(|field| field.name).collect();
+            let class = entry.spec.class;
+            Error::invalid_param(format!("fit of {class} has no {name:?}; there are {}", names.join(", ")))
+        })?;
+        field.check(value)
+    })
+}
+
+#[cold]
+fn cannot_fit(entry: &Entry) -> Error {
+    let (class, task) = (entry.spec.class, entry.spec.task);
+    let names = |of_task: bool| {
+        let entries = registry().entries().into_iter();
+        let able = entries.filter(|other| other.capabilities.fit && (!of_task || other.spec.task == task));
+        able.map(|other| other.spec.name).collect::<Vec<_>>().join(", ")
+    };
+    Error::unsupported(match (names(true), names(false)) {
+        _ if !cfg!(feature = "training") => {
+            format!("{class} cannot fit: this build has no training; build it with --features training")
+        }
+        (none, others) if none.is_empty() => {
+            format!("{class} cannot fit, nor can any learner of {task}; these train: {others}")
+        }
+        (of_task, _) => format!("{class} cannot fit; of {task} these train: {of_task}"),
+    })
+}
