@@ -2,11 +2,13 @@
 
 mod centernet;
 mod nanodet;
+pub mod single_shot_detector;
 
 pub use centernet::{CenterNet, CenterNetParams};
 pub use nanodet::{Nanodet, NanodetParams};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_vision::InputGeometry;
+pub use single_shot_detector::{SingleShotDetector, SingleShotDetectorParams};
 
 use crate::suppression::Candidate;
 

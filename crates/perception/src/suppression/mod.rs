@@ -59,10 +59,7 @@ impl Suppression {
         candidates.retain(|candidate| {
             candidate.score >= self.threshold && candidate.corners.iter().all(|edge| edge.is_finite())
         });
-        if candidates.len() > CONSIDERED {
-            candidates.select_nth_unstable_by(CONSIDERED, by_score);
-            candidates.truncate(CONSIDERED);
-        }
+        keep_best(candidates, CONSIDERED);
         candidates.sort_unstable_by(by_score);
         match self.kind {
             SuppressionKind::Hard => hard::suppress(candidates, marks, self.overlap, self.most),
@@ -71,6 +68,14 @@ impl Suppression {
             SuppressionKind::Cluster => cluster::suppress(candidates, marks, self.overlap),
         }
         candidates.truncate(self.most);
+    }
+}
+
+/// Keeps the `most` best candidates, in any order.
+pub fn keep_best(candidates: &mut Vec<Candidate>, most: usize) {
+    if candidates.len() > most {
+        candidates.select_nth_unstable_by(most, by_score);
+        candidates.truncate(most);
     }
 }
 

@@ -1,0 +1,162 @@
+//! SSD: boxes and classes from anchors on feature maps of several scales, in one pass.
+//!
+//! Liu et al., SSD: Single Shot MultiBox Detector, ECCV 2016; on MobileNetV1 with separable heads (SSDLite, Sandler et
+//! al., CVPR 2018). It is the detector that trains here: take it for classes of your own, and where weights must be small;
+//! [`super::CenterNet`] and [`super::Nanodet`] know the 80 COCO classes better.
+
+pub mod anchors;
+pub mod coding;
+pub mod decode;
+mod layout;
+pub mod matching;
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Classes};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::TensorView;
+
+use crate::object_detection_2d::boxes_from_candidates;
+use crate::picture_network::PictureNetwork;
+use crate::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
+use anchors::AnchorLevel;
+use decode::LevelMaps;
+pub use layout::{Fitting, ImageLayout, Layout};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct SingleShotDetectorParams {
+    /// Detections below this score are dropped.
+    #[param(default = 0.2, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Boxes of one class that overlap more than this (intersection over union) are one object.
+    #[param(default = 0.45, range = 0.0..=1.0, live, alias = "nms_thresh")]
+    pub iou_threshold: f32,
+    /// So many of the best boxes are looked at before overlapping ones are thinned out.
+    #[param(default = 400, range = 1..=1000, live, alias = "nms_topk")]
+    pub max_candidates: usize,
+    /// At most this many boxes a picture.
+    #[param(default = 100, range = 1..=1000, live, alias = "post_nms")]
+    pub max_detections: usize,
+    /// How overlapping boxes are thinned out.
+    #[param(live, alias = "custom_nms")]
+    pub suppression: SuppressionKind,
+}
+
+/// A loaded single-shot detector.
+pub struct SingleShotDetector {
+    params: SingleShotDetectorParams,
+    classes: Classes,
+    network: PictureNetwork,
+    levels: Vec<Level>,
+    scratch: Pool<Scratch>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    candidates: Vec<Candidate>,
+    marks: Vec<bool>,
+}
+
+/// The anchors of one feature map, and where its outputs stand.
+struct Level {
+    anchors: AnchorLevel,
+    columns: usize,
+    rows: usize,
+    scores: usize,
+    offsets: usize,
+}
+
+/// The names of the outputs of a level: logits of the scores, `[1, kinds * classes, rows, columns]`, and offsets,
+/// `[1, kinds * 4, rows, columns]`.
+fn output_names(level: usize) -> [String; 2] {
+    [format!("scores_{level}"), format!("offsets_{level}")]
+}
+
+impl Learner for SingleShotDetector {
+    const SPEC: Spec = Spec::new("single_shot_detector", Task::ObjectDetection2d)
+        .class("SingleShotDetectorLearner")
+        .about("SSD on MobileNetV1, a small detector that trains on classes of your own.")
+        .without_effect(&[
+            ("keep_size", "the network's input has one size"),
+            ("extract_maps", "the feature maps stay inside the network"),
+        ]);
+    type Params = SingleShotDetectorParams;
+    type Input<'a> = &'a Image;
+    type Target = BoundingBoxList;
+    type State = ();
+
+    fn load(model: &Model, params: SingleShotDetectorParams, device: Device) -> Result<Self> {
+        let Layout { image, anchors } = Layout::from_manifest(model.manifest())?;
+        let classes = model.manifest().classes.clone();
+        if classes.is_empty() {
+            return Err(Error::format("the model names no classes; train or get it anew"));
+        }
+        let network = PictureNetwork::open(model, device, |_| image.preprocess())?;
+        let level = |(number, anchors): (usize, AnchorLevel)| -> Result<Level> {
+            let [columns, rows] = image.size().map(|size| anchors.cells(size));
+            let [scores, offsets] = output_names(number);
+            let (scores, offsets) = (network.output(&scores)?, network.output(&offsets)?);
+            Ok(Level { anchors, columns, rows, scores, offsets })
+        };
+        let levels = anchors.levels.into_iter().enumerate().map(level).collect::<Result<_>>()?;
+        Ok(Self { params, classes, network, levels, scratch: Pool::default() })
+    }
+
+    fn params(&self) -> &SingleShotDetectorParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut SingleShotDetectorParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
+        let Scratch { candidates, marks } = &mut *self.scratch.take();
+        candidates.clear();
+        self.network.run(image, |outputs, geometry| {
+            for level in &self.levels {
+                let maps = level.maps(outputs, self.classes.len())?;
+                maps.decode(&level.anchors, self.classes.len(), self.params.threshold, candidates);
+            }
+            keep_best(candidates, self.params.max_candidates);
+            self.suppression().run(candidates, marks);
+            boxes_from_candidates(boxes, candidates, geometry, &self.classes);
+            Ok(())
+        })
+    }
+}
+
+impl SingleShotDetector {
+    fn suppression(&self) -> Suppression {
+        let SingleShotDetectorParams { threshold, iou_threshold, max_detections, suppression, .. } =
+            self.params;
+        Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections }
+    }
+}
+
+impl Level {
+    fn maps<'a>(&self, outputs: &[TensorView<'a>], classes: usize) -> Result<LevelMaps<'a>> {
+        let Self { columns, rows, .. } = *self;
+        let kinds = self.anchors.sides.len();
+        let values = |output: usize, maps: usize| {
+            let shape = outputs[output].shape();
+            if *shape != [1, maps, rows, columns] {
+                return Err(Error::format(format!(
+                    "an output of the model is {shape:?}, but its anchors and classes ask for \
+                     {:?}; train or get it anew",
+                    [1, maps, rows, columns]
+                )));
+            }
+            outputs[output].values::<f32>()
+        };
+        let (scores, offsets) = (values(self.scores, kinds * classes)?, values(self.offsets, kinds * 4)?);
+        Ok(LevelMaps { columns, rows, scores, offsets })
+    }
+}
