@@ -22,8 +22,28 @@ fn main() -> io::Result<()> {
         }
         code.push_str("];\n");
     }
+    code.push_str(&weights(&models.join("weights"))?);
     println!("cargo::rustc-env=OPENDR_IMPORTER={}", importer(&here)?);
     fs::write(Path::new(&variable("OUT_DIR")?).join("embedded.rs"), code)
+}
+
+/// The list of the weights that are built in, by their path within `folder`.
+fn weights(folder: &Path) -> io::Result<String> {
+    println!("cargo::rerun-if-changed={}", folder.display());
+    let mut code = String::from("pub(crate) const WEIGHTS: &[(&str, &[u8])] = &[\n");
+    if folder.is_dir() {
+        let folder = fs::canonicalize(folder)?;
+        let mut learners =
+            fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+        learners.sort();
+        for path in
+            learners.iter().map(|learner| files(learner, "onnx")).collect::<io::Result<Vec<_>>>()?.concat()
+        {
+            let name = path.strip_prefix(&folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            let _ = writeln!(code, "({name:?}, include_bytes!({path:?})),");
+        }
+    }
+    Ok(code + "];\n")
 }
 
 /// A variable that cargo sets.
@@ -34,7 +54,7 @@ fn variable(name: &str) -> io::Result<OsString> {
 /// The importer's version with a fingerprint of its sources, where they are beside this crate.
 fn importer(here: &Path) -> io::Result<String> {
     let mut hasher = DefaultHasher::new();
-    let mut folders = vec![here.join("../import/src")];
+    let mut folders = vec![here.join("../import/src"), here.join("../onnx/src")];
     while let Some(folder) = folders.pop().filter(|folder| folder.is_dir()) {
         println!("cargo::rerun-if-changed={}", folder.display());
         let mut paths =

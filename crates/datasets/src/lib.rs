@@ -25,6 +25,7 @@ mod label_png;
 mod lfw;
 pub mod loader;
 mod market1501;
+mod mnist;
 mod mot;
 mod npy;
 mod pickle;
@@ -58,6 +59,7 @@ pub use kitti::{
 };
 pub use lfw::Lfw;
 pub use market1501::{Market1501, MarketPerson};
+pub use mnist::Mnist;
 pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use pictures::Pictures;

@@ -12,6 +12,7 @@ mod image_batch;
 #[cfg(test)]
 mod tests;
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use opendr_engine::dataset::DatasetIterator;
@@ -121,8 +122,8 @@ impl<'d, C: Collate> Loader<'d, C> {
         self.samples().div_ceil(self.options.batch_size)
     }
 
-    /// Hands the batches of an epoch from `position` on (0 for all) to `each`, on this thread, and tells what was left out:
-    /// for data sets that are borrowed.
+    /// Hands the batches of an epoch from `position` on (0 for all) to `each`, on this thread, until it breaks off, and
+    /// tells what was left out: for data sets that are borrowed.
     ///
     /// # Errors
     /// `InvalidInput` for a position past the end; the first error of a sample (unless broken ones are skipped) or of
@@ -131,7 +132,7 @@ impl<'d, C: Collate> Loader<'d, C> {
         &self,
         epoch: u64,
         position: usize,
-        each: impl FnMut(Batch<C::Batch>) -> Result<()>,
+        each: impl FnMut(Batch<C::Batch>) -> Result<ControlFlow<()>>,
     ) -> Result<Vec<Skipped>> {
         each_batch(self.job_from(epoch, position)?, each)
     }

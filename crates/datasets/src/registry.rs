@@ -26,6 +26,7 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::KittiTracking>(),
     FormatEntry::of::<crate::SpeechCommands>(),
     FormatEntry::of::<crate::Wfdb>(),
+    FormatEntry::of::<crate::Mnist>(),
     FormatEntry::of::<crate::ImageNet>(),
     FormatEntry::of::<crate::Skeletons>(),
     FormatEntry::of::<crate::Ucr>(),

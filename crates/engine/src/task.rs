@@ -34,6 +34,8 @@ tasks! {
     ObjectDetection2d = "object_detection_2d";
     /// Boxes of faces in a picture.
     FaceDetection = "face_detection";
+    /// The class that a whole picture belongs to.
+    ImageClassification = "image_classification";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
 }

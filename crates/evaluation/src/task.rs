@@ -10,6 +10,7 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
     match task {
         Task::ObjectDetection2d => Ok("coco_detection"),
         Task::FaceDetection => Ok("voc_detection"),
+        Task::ImageClassification => Ok("classification"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         other => {
             Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))

@@ -9,6 +9,7 @@ use crate::archive::extract;
 use crate::cache::Cache;
 use crate::card::{Card, CardFile};
 use crate::download::{address_below, download};
+use crate::embedded::weights;
 use crate::http::Http;
 use crate::item::Item;
 use crate::npm::npm_archive;
@@ -51,6 +52,12 @@ impl Fetch<'_> {
                     repository.fetch_file(place, file, self.http, self.cache, self.progress)
                 })
             }
+            Source::Embedded { files } => self.each(item, files, |path, file| {
+                let bytes = weights(path).ok_or_else(|| {
+                    Error::not_found(format!("this program has no weights {path:?} built in"))
+                })?;
+                self.cache.insert(file, bytes, &self.cache.work(self.progress)?)
+            }),
             Source::Url { files } => self.each(item, files, |address, file| self.address(address, file)),
             Source::Github { repository, commit, files } => {
                 let base = format!("https://github.com/{repository}/raw/{commit}");

@@ -18,6 +18,11 @@ pub enum Source {
         /// Where each file is.
         files: Places,
     },
+    /// Files of `models/weights/`, which are built into the program.
+    Embedded {
+        /// Where each file is.
+        files: Places,
+    },
     /// Plain addresses.
     Url {
         /// Where each file is.
@@ -63,7 +68,10 @@ impl Source {
     /// Where each file is.
     pub fn files(&self) -> &Places {
         match self {
-            Self::Repository { files } | Self::Url { files } | Self::Github { files, .. } => files,
+            Self::Repository { files }
+            | Self::Embedded { files }
+            | Self::Url { files }
+            | Self::Github { files, .. } => files,
             Self::Npm(package) | Self::Pypi(package) => &package.files,
         }
     }
@@ -94,6 +102,7 @@ impl fmt::Display for Source {
         let first = |files: &Places| files.values().next().cloned().unwrap_or_default();
         match self {
             Self::Repository { files } => write!(f, "OPENDR_MODEL_REPOSITORY {}", first(files)),
+            Self::Embedded { .. } => f.write_str("this program"),
             Self::Url { files } => f.write_str(&first(files)),
             Self::Github { repository, commit, files } => {
                 write!(f, "GitHub {repository}@{commit} {}", first(files))

@@ -1,5 +1,6 @@
 //! One way through a data set.
 
+use std::ops::ControlFlow;
 use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, Builder, JoinHandle};
@@ -121,7 +122,7 @@ const THREAD_NAME: &str = "opendr-loader";
 /// Hands the batches of a job to `each` on this thread, while threads that end before this returns make them ahead.
 pub(super) fn each_batch<C: Collate>(
     job: Job<'_, C>,
-    mut each: impl FnMut(Batch<C::Batch>) -> Result<()>,
+    mut each: impl FnMut(Batch<C::Batch>) -> Result<ControlFlow<()>>,
 ) -> Result<Vec<Skipped>> {
     let desk = &Desk::new(job);
     thread::scope(|scope| {
@@ -133,7 +134,9 @@ pub(super) fn each_batch<C: Collate>(
         let alone = (0..desk.helpers()).filter(start).count() == 0;
         let mut reading = Reading::default();
         while let Some(batch) = reading.next(desk, alone) {
-            each(batch?)?;
+            if each(batch?)?.is_break() {
+                break;
+            }
         }
         Ok(reading.skipped)
     })

@@ -1,3 +1,4 @@
+use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -214,7 +215,7 @@ fn borrowed_data_sets_are_loaded_too() {
         let mut seen = Vec::new();
         let skipped = loader.for_each(1, 4, |batch| {
             seen.extend(batch.indices);
-            Ok(())
+            Ok(ControlFlow::Continue(()))
         });
         let mut wanted = loader.order(1)[4..].to_vec();
         assert_eq!(skipped.unwrap().len(), wanted.iter().filter(|index| **index == 2).count());
@@ -225,6 +226,9 @@ fn borrowed_data_sets_are_loaded_too() {
         assert_eq!(enough.unwrap_err().message(), "enough");
         let panic = catch_unwind(AssertUnwindSafe(|| loader.for_each(0, 0, |_| panic!("enough"))));
         assert!(panic.is_err() && Arc::strong_count(&loader.dataset) == 1);
-        assert_eq!(loader.for_each(0, 23, |_| Ok(())).unwrap_err().kind(), ErrorKind::InvalidInput);
+        assert_eq!(
+            loader.for_each(0, 23, |_| Ok(ControlFlow::Continue(()))).unwrap_err().kind(),
+            ErrorKind::InvalidInput
+        );
     }
 }

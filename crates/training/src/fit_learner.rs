@@ -1,0 +1,88 @@
+//! `fit` of a learner: data sets by their format, validation by the task's metric.
+
+use std::path::Path;
+
+use opendr_datasets::{OpenOptions, Problems};
+use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Probe, Targets};
+use opendr_engine::params::Params;
+use opendr_engine::{Device, Error, Result, Statistics};
+use opendr_evaluation::{Evaluation, Subject, metric_of, open_for};
+use opendr_metrics::{MetricEntry, find};
+
+use crate::training::Score;
+use crate::{Objective, TrainingParams, fit_network};
+
+/// The data set to train a learner on, with targets of the type that it answers.
+///
+/// # Errors
+/// `InvalidInput` when the format has none such, else what kept it from being read.
+pub fn open_for_training<'a, L: Learner>(
+    dataset: DatasetRef<'a>,
+    params: &TrainingParams,
+) -> Result<Box<dyn DatasetIterator + 'a>> {
+    match dataset {
+        DatasetRef::Iterator(dataset) => Ok(Box::new(dataset)),
+        DatasetRef::External(external) => {
+            let target = L::Target::OUTPUTS.first().map(|output| output.value_type);
+            let problems = if params.skip_broken { Problems::skipping() } else { Problems::strict() };
+            opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
+        }
+    }
+}
+
+/// Trains the network of a learner on `dataset` and, where there are validation data, keeps the one that does best on
+/// them by its task's metric, measured through the learner itself.
+///
+/// # Errors
+/// As [`fit_network`] and the learner's evaluation.
+pub fn fit_learner<L: Learner, O: Objective>(
+    objective: &O,
+    network: O::Network,
+    learner_params: &L::Params,
+    params: &TrainingParams,
+    dataset: &dyn DatasetIterator,
+    val_dataset: Option<DatasetRef<'_>>,
+    job: &FitJob<'_>,
+) -> Result<Statistics> {
+    let Some(val_dataset) = val_dataset else {
+        return fit_network(objective, network, params, dataset, None, job);
+    };
+    let metric = find(metric_of(L::SPEC.task)?)?;
+    let problems = Problems::strict();
+    let val_dataset = match val_dataset {
+        DatasetRef::Iterator(dataset) => Box::new(dataset),
+        DatasetRef::External(external) => open_for(metric, external, None, &problems)?,
+    };
+    let entry = Entry::of::<L>(Probe::<L>::abilities(None, None));
+    let mut validate = |container: &Path| -> Result<Score> {
+        let learner = entry.make(&learner_params.to_map(), Device::Auto)?;
+        score(learner, &entry, metric, &*val_dataset, container, &problems, job)
+    };
+    fit_network(objective, network, params, dataset, Some(&mut validate), job)
+}
+
+/// Measures a container through the learner; the metric's first number counts.
+fn score(
+    mut learner: Box<dyn AnyLearner>,
+    entry: &Entry,
+    metric: &'static MetricEntry,
+    dataset: &dyn DatasetIterator,
+    container: &Path,
+    problems: &Problems,
+    job: &FitJob<'_>,
+) -> Result<Score> {
+    learner.load(container)?;
+    let subject = Subject { learner: entry.spec.name.to_owned(), model: None, params: learner.params() };
+    let evaluation = Evaluation { progress: job.progress, ..Evaluation::new(subject, metric, problems) };
+    let outcome = evaluation.run(std::slice::from_mut(&mut learner), entry, dataset)?;
+    let numbers = outcome.report.statistics.scalars;
+    let (name, _) = metric.numbers[0];
+    let value = numbers.get(name).copied().ok_or_else(|| {
+        Error::invalid_input(format!(
+            "{} has no {name} on the validation data: is anything annotated?",
+            metric.name
+        ))
+    })?;
+    Ok(Score { name: name.to_owned(), value, numbers })
+}
