@@ -10,6 +10,7 @@ mod session;
 mod tensor;
 mod threads;
 
+pub mod recording;
 pub mod timing;
 
 pub use builtin::Builtin;

@@ -8,7 +8,7 @@ use opendr_engine::{Device, Error, Result};
 
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use crate::tensor::{TensorInfo, TensorView};
-use crate::{selection, timing};
+use crate::{recording, selection, timing};
 
 /// An opened model. One session serves many threads, one run at a time.
 ///
@@ -127,6 +127,7 @@ impl Session {
             )));
         }
         self.inputs.iter().zip(inputs).try_for_each(|(info, input)| info.check(input))?;
+        recording::add(&self.inputs, &self.outputs, inputs);
         // A panic in an earlier sink leaves the engine whole.
         let mut engine = self.engine.lock().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();

@@ -44,5 +44,5 @@ pub use opendr_perception::{face_detection, object_detection_2d, pose_estimation
 pub use registry::registry;
 pub use {
     opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
-    opendr_metrics as metrics, opendr_vision as vision, opendr_zoo as zoo,
+    opendr_metrics as metrics, opendr_optimize as optimize, opendr_vision as vision, opendr_zoo as zoo,
 };

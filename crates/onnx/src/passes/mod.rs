@@ -1,5 +1,6 @@
 //! Rewrites of finished graphs. Each leaves the results as they were, up to rounding.
 
+mod constants;
 mod conv_affine;
 mod conv_factor;
 mod dead_nodes;
@@ -8,6 +9,7 @@ mod identity;
 mod pad;
 mod rewriter;
 
+pub use constants::constants_to_initializers;
 pub use conv_affine::fold_affine_into_conv;
 pub use conv_factor::fold_factor_into_conv;
 pub use dead_nodes::remove_dead_nodes;

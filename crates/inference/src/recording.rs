@@ -1,0 +1,130 @@
+//! What sessions are given, whatever learner runs them: how a network is calibrated or watched without a line in the
+//! learner.
+//!
+//! Call [`start`], run the learner on the same thread, and [`take`] what its sessions were given. Nothing is recorded
+//! outside that.
+
+use std::cell::RefCell;
+
+use opendr_engine::Result;
+
+use crate::tensor::{ElementType, TensorData, TensorInfo, TensorView};
+
+/// One run of a session.
+#[derive(Debug, Clone)]
+pub struct Recording {
+    /// What the session takes.
+    pub inputs: Vec<TensorInfo>,
+    /// What the session gives.
+    pub outputs: Vec<TensorInfo>,
+    /// What it was given, in the order of the inputs.
+    pub given: Vec<RecordedTensor>,
+}
+
+/// A copy of a tensor.
+#[derive(Debug, Clone)]
+pub struct RecordedTensor {
+    shape: Vec<usize>,
+    elements: Elements,
+}
+
+#[derive(Debug, Clone)]
+enum Elements {
+    F32(Vec<f32>),
+    I32(Vec<i32>),
+    I64(Vec<i64>),
+    U8(Vec<u8>),
+    I8(Vec<i8>),
+    Bool(Vec<bool>),
+}
+
+thread_local! {
+    static RECORD: RefCell<Option<Vec<Recording>>> = const { RefCell::new(None) };
+}
+
+/// Begins to record on this thread, dropping what was recorded before.
+pub fn start() {
+    RECORD.set(Some(Vec::new()));
+}
+
+/// Ends recording on this thread; the runs since [`start`], in order.
+pub fn take() -> Vec<Recording> {
+    RECORD.take().unwrap_or_default()
+}
+
+/// Adds a run.
+pub(crate) fn add(inputs: &[TensorInfo], outputs: &[TensorInfo], given: &[TensorView<'_>]) {
+    RECORD.with_borrow_mut(|record| {
+        if let Some(runs) = record {
+            let given = given.iter().map(RecordedTensor::from).collect();
+            runs.push(Recording { inputs: inputs.to_vec(), outputs: outputs.to_vec(), given });
+        }
+    });
+}
+
+impl Recording {
+    /// How much memory it takes, about.
+    pub fn bytes(&self) -> usize {
+        let width = |info: &TensorInfo| match info.element_type {
+            ElementType::I64 => 8,
+            ElementType::F32 | ElementType::I32 => 4,
+            _ => 1,
+        };
+        let elements = |tensor: &RecordedTensor| tensor.shape.iter().product::<usize>();
+        self.inputs.iter().zip(&self.given).map(|(info, tensor)| width(info) * elements(tensor)).sum()
+    }
+}
+
+impl From<&TensorView<'_>> for RecordedTensor {
+    fn from(tensor: &TensorView<'_>) -> Self {
+        let elements = match tensor.data() {
+            TensorData::F32(data) => Elements::F32(data.to_vec()),
+            TensorData::I32(data) => Elements::I32(data.to_vec()),
+            TensorData::I64(data) => Elements::I64(data.to_vec()),
+            TensorData::U8(data) => Elements::U8(data.to_vec()),
+            TensorData::I8(data) => Elements::I8(data.to_vec()),
+            TensorData::Bool(data) => Elements::Bool(data.to_vec()),
+        };
+        Self { shape: tensor.shape().to_vec(), elements }
+    }
+}
+
+impl RecordedTensor {
+    /// The tensor, to be given to a session.
+    ///
+    /// # Errors
+    /// None for a tensor that was recorded.
+    pub fn view(&self) -> Result<TensorView<'_>> {
+        match &self.elements {
+            Elements::F32(data) => TensorView::new(&self.shape, data),
+            Elements::I32(data) => TensorView::new(&self.shape, data),
+            Elements::I64(data) => TensorView::new(&self.shape, data),
+            Elements::U8(data) => TensorView::new(&self.shape, data),
+            Elements::I8(data) => TensorView::new(&self.shape, data),
+            Elements::Bool(data) => TensorView::new(&self.shape, data),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_is_given_between_start_and_take_is_kept() {
+        let data = [1.0_f32, 2.0];
+        let given = [TensorView::new(&[1, 2], &data).unwrap(), TensorView::new(&[2], &[3_i64, 4]).unwrap()];
+        add(&[], &[], &given);
+        assert!(take().is_empty());
+        start();
+        add(&[], &[], &given);
+        add(&[], &[], &given[..1]);
+        let runs = take();
+        assert_eq!(runs.iter().map(|run| run.given.len()).collect::<Vec<_>>(), [2, 1]);
+        let view = runs[0].given[0].view().unwrap();
+        assert_eq!((view.shape(), view.values::<f32>().unwrap()), (&[1, 2][..], &data[..]));
+        assert_eq!(runs[0].given[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
+        add(&[], &[], &given);
+        assert!(take().is_empty());
+    }
+}

@@ -1,0 +1,177 @@
+//! From a container to a smaller one.
+
+use std::path::Path;
+
+use opendr_engine::model::{Model, ModelWriter};
+use opendr_engine::params::Params;
+use opendr_engine::{Device, Error, Progress, Result, ResultExt};
+use opendr_inference::Session;
+use opendr_inference::recording::Recording;
+use opendr_onnx::passes::constants_to_initializers;
+use opendr_onnx::proto::ModelProto;
+use opendr_onnx::{bytes_from_model, model_from_bytes};
+
+use crate::half::halve_weights;
+use crate::options::{OptimizeOptions, Precision};
+use crate::quantise::Quantiser;
+use crate::report::{Accuracy, Report};
+
+/// The metric's main number of a model, and its name. More is better.
+pub type Judge<'a> = dyn FnMut(&Model) -> Result<(String, f64)> + 'a;
+
+/// Of the layers that are left, which part goes back to floats at a time.
+const BACK_AT_A_TIME: usize = 8;
+
+/// Writes `model` to `output` with its networks in the precision that `options` say.
+///
+/// `recordings` are what the learner gave its sessions, which `int8` takes its ranges from; every network of the container
+/// is told by what it takes and gives. `judge` measures models before and after, where there is something to measure by.
+///
+/// # Errors
+/// `InvalidParam` for options that do not fit, `InvalidInput` without recordings, `Unsupported` for a network that cannot be
+/// quantised, and what `judge` returns.
+pub fn optimize(
+    model: &Model,
+    options: &OptimizeOptions,
+    recordings: &[Recording],
+    mut judge: Option<&mut Judge<'_>>,
+    device: Device,
+    output: &Path,
+    progress: &dyn Progress,
+) -> Result<Report> {
+    options.check()?;
+    if options.max_drop.is_some() && judge.is_none() {
+        return Err(Error::invalid_param("max_drop needs data with annotations to measure by"));
+    }
+    let mut networks = networks(model, options, recordings, device, progress)?;
+    let before = judge.as_mut().map(|judge| judge(model)).transpose()?;
+    loop {
+        let written = write(model, &networks, options, output)?;
+        let after = judge.as_mut().map(|judge| judge(&written)).transpose()?;
+        let accuracy = before.as_ref().zip(after).map(|((metric, before), (_, after))| Accuracy {
+            metric: metric.clone(),
+            before: *before,
+            after,
+        });
+        let drop = accuracy.as_ref().map_or(0.0, |accuracy| accuracy.before - accuracy.after);
+        if drop > options.max_drop.unwrap_or(f64::INFINITY) {
+            progress.note(&format!("{drop:.4} worse than before: more layers stay in floats"));
+            let kept = networks.iter_mut().map(Network::keep_worst).filter(|kept| *kept).count();
+            if kept > 0 {
+                continue;
+            }
+        }
+        return report(model, &written, &networks, options, accuracy, recordings.len());
+    }
+}
+
+/// One ONNX file of a container.
+struct Network<'a> {
+    name: String,
+    kind: Kind<'a>,
+}
+
+enum Kind<'a> {
+    Half(Box<ModelProto>),
+    Bytes(Box<Quantiser<'a>>),
+}
+
+impl Network<'_> {
+    fn keep_worst(&mut self) -> bool {
+        match &mut self.kind {
+            Kind::Half(_) => false,
+            Kind::Bytes(quantiser) => {
+                let count = quantiser.layer_count().div_ceil(BACK_AT_A_TIME);
+                quantiser.keep_worst(count)
+            }
+        }
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>> {
+        match &self.kind {
+            Kind::Half(network) => Ok(bytes_from_model(network)),
+            Kind::Bytes(quantiser) => Ok(bytes_from_model(&quantiser.network()?)),
+        }
+    }
+}
+
+fn networks<'a>(
+    model: &Model,
+    options: &'a OptimizeOptions,
+    recordings: &'a [Recording],
+    device: Device,
+    progress: &dyn Progress,
+) -> Result<Vec<Network<'a>>> {
+    let names = model.manifest().files.iter().map(|file| &file.name);
+    let names: Vec<_> = names.filter(|name| name.to_lowercase().ends_with(".onnx")).collect();
+    if names.is_empty() {
+        return Err(Error::unsupported(format!("the model {} has no ONNX network", model.path().display())));
+    }
+    let network = |name: &String| -> Result<Network<'a>> {
+        let bytes = model.file(name)?;
+        let mut network = model_from_bytes(&bytes)?;
+        let kind = match options.precision {
+            Precision::Fp16 => {
+                if let Some(graph) = &mut network.graph {
+                    constants_to_initializers(graph);
+                    halve_weights(graph);
+                }
+                Kind::Half(Box::new(network))
+            }
+            Precision::Int8 => {
+                let own = of_network(recordings, &Session::open(&bytes, device)?);
+                Kind::Bytes(Box::new(Quantiser::new(network, own, options, device, progress)?))
+            }
+        };
+        Ok(Network { name: name.clone(), kind })
+    };
+    names.iter().map(|name| network(name).context(|| format!("the network {name}"))).collect()
+}
+
+/// The recordings of a network, which is told by what it takes and gives.
+fn of_network<'a>(recordings: &'a [Recording], network: &Session) -> Vec<&'a Recording> {
+    let is_own = |recording: &&Recording| {
+        recording.inputs == network.inputs() && recording.outputs == network.outputs()
+    };
+    recordings.iter().filter(is_own).collect()
+}
+
+fn write(model: &Model, networks: &[Network<'_>], options: &OptimizeOptions, output: &Path) -> Result<Model> {
+    let mut manifest = model.manifest().clone();
+    // They were of the other weights.
+    manifest.metrics.clear();
+    let steps =
+        [manifest.lineage.importer.as_str(), &format!("opendr optimize --{}", options.precision.name())];
+    manifest.lineage.importer =
+        steps.into_iter().filter(|step| !step.is_empty()).collect::<Vec<_>>().join("; ");
+    let mut writer = ModelWriter::new(output, manifest)?;
+    for file in &model.manifest().files {
+        match networks.iter().find(|network| network.name == file.name) {
+            Some(network) => writer.add(&file.name, &network.bytes()?)?,
+            None => writer.add(&file.name, &model.file(&file.name)?)?,
+        }
+    }
+    writer.finish()
+}
+
+fn report(
+    model: &Model,
+    written: &Model,
+    networks: &[Network<'_>],
+    options: &OptimizeOptions,
+    accuracy: Option<Accuracy>,
+    samples: usize,
+) -> Result<Report> {
+    let size = |model: &Model| -> Result<u64> {
+        let sizes = networks.iter().map(|network| Ok(model.file(&network.name)?.len() as u64));
+        sizes.sum()
+    };
+    let mut layers = Vec::new();
+    for network in networks {
+        if let Kind::Bytes(quantiser) = &network.kind {
+            layers.extend(quantiser.reports()?);
+        }
+    }
+    let precision = options.precision.name().to_owned();
+    Ok(Report { precision, bytes: [size(model)?, size(written)?], accuracy, samples, layers })
+}

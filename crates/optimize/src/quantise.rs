@@ -1,0 +1,213 @@
+//! INT8: from a network in floats and what it is given to one that computes with bytes.
+
+use std::collections::{BTreeSet, HashMap};
+
+use opendr_engine::{Device, Error, Progress, Result, Unit};
+use opendr_inference::recording::Recording;
+use opendr_onnx::passes::{constants_to_initializers, simplify};
+use opendr_onnx::proto::{GraphProto, ModelProto};
+
+use crate::histogram::Histogram;
+use crate::integer_graph::integer_graph;
+use crate::options::OptimizeOptions;
+use crate::plan::{Layer, Plan, layers};
+use crate::range::{Range, decibels};
+use crate::report::LayerReport;
+use crate::watched::Watched;
+use crate::weights::ByteWeights;
+
+/// The version of ONNX's operators from which weights have a scale for each channel.
+const LEAST_OPSET: i64 = 13;
+/// Samples that the report compares outputs on.
+const COMPARED: usize = 8;
+/// Tensors that are watched at once: all of a large network's would not fit into memory.
+const WATCHED: usize = 64;
+
+/// A network that is being quantised.
+pub struct Quantiser<'a> {
+    model: ModelProto,
+    graph: GraphProto,
+    layers: Vec<Layer>,
+    histograms: HashMap<String, Histogram>,
+    recordings: Vec<&'a Recording>,
+    options: &'a OptimizeOptions,
+    device: Device,
+}
+
+impl<'a> Quantiser<'a> {
+    /// Looks at every tensor of `model` while it runs on `recordings`.
+    ///
+    /// # Errors
+    /// `InvalidInput` when there is no recording, `InvalidParam` when `keep_float` names no layer, `Unsupported` when the
+    /// network is too old or has no layer to quantise.
+    pub fn new(
+        mut model: ModelProto,
+        recordings: Vec<&'a Recording>,
+        options: &'a OptimizeOptions,
+        device: Device,
+        progress: &dyn Progress,
+    ) -> Result<Self> {
+        let opset =
+            model.opset_import.iter().find(|opset| opset.domain.is_empty()).map_or(1, |opset| opset.version);
+        if opset < LEAST_OPSET {
+            return Err(Error::unsupported(format!(
+                "the network uses ONNX operators of version {opset}, int8 takes {LEAST_OPSET} or later: export it anew, or \
+                 take fp16"
+            )));
+        }
+        if recordings.is_empty() {
+            return Err(Error::invalid_input(
+                "int8 takes its ranges from what the network sees, and there is no sample: name a data set",
+            ));
+        }
+        let mut graph = model.graph.take().unwrap_or_default();
+        constants_to_initializers(&mut graph);
+        simplify(&mut graph);
+        let mut layers = layers(&graph);
+        if layers.is_empty() {
+            return Err(Error::unsupported(
+                "the network has no convolution or product with weights to quantise",
+            ));
+        }
+        for name in &options.keep_float {
+            let names = || layers.iter().map(|layer| layer.name.as_str()).collect::<Vec<_>>().join(", ");
+            let unknown =
+                Error::invalid_param(format!("keep_float: no layer {name:?}; there are {}", names()));
+            layers.iter_mut().find(|layer| layer.name == *name).ok_or(unknown)?.is_float = true;
+        }
+        let mut quantiser =
+            Self { model, graph, layers, histograms: HashMap::new(), recordings, options, device };
+        quantiser.watch(progress)?;
+        Ok(quantiser)
+    }
+
+    /// Counts the values of every tensor that may become bytes.
+    fn watch(&mut self, progress: &dyn Progress) -> Result<()> {
+        let mut all = self.layers.clone();
+        all.iter_mut().for_each(|layer| layer.is_float = false);
+        let layer_input = |layer: &Layer| self.graph.node.get(layer.node)?.input.first().cloned();
+        // With some layers in floats, what these read begins a range of its own.
+        let layer_inputs: Vec<String> = all.iter().filter_map(layer_input).collect();
+        let seen: BTreeSet<String> =
+            Plan::new(&self.graph, all).seen().into_iter().chain(layer_inputs).collect();
+        let inputs: Vec<String> = self.graph.input.iter().map(|input| input.name.clone()).collect();
+        let (given, made): (Vec<_>, Vec<_>) = seen.into_iter().partition(|name| inputs.contains(name));
+        for name in given {
+            let place = inputs.iter().position(|input| *input == name).unwrap_or_default();
+            let histogram = self.histograms.entry(name).or_default();
+            for tensor in self.recordings.iter().filter_map(|recording| recording.given.get(place)) {
+                histogram.add(tensor.view()?.values()?);
+            }
+        }
+        let batches = made.len().div_ceil(WATCHED);
+        progress.begin("calibrating", Some((self.recordings.len() * batches) as u64), Unit::Items);
+        let watched = made.chunks(WATCHED).try_for_each(|names| {
+            let network = Watched::open(&self.model, &self.graph, names, self.device)?;
+            let mut histograms = vec![Histogram::default(); names.len()];
+            for recording in &self.recordings {
+                network.run(recording, |at, values| {
+                    if let Some(histogram) = histograms.get_mut(at) {
+                        histogram.add(values);
+                    }
+                })?;
+                progress.advance(1);
+                if progress.stopped() {
+                    return Err(Error::invalid_input("stopped: nothing was written"));
+                }
+            }
+            self.histograms.extend(names.iter().cloned().zip(histograms));
+            Ok(())
+        });
+        progress.end();
+        watched
+    }
+
+    fn ranges(&self) -> HashMap<String, Range> {
+        let range = |(name, histogram): (&String, &Histogram)| {
+            (name.clone(), Range::chosen(histogram, self.options.calibration))
+        };
+        self.histograms.iter().map(range).collect()
+    }
+
+    /// The network with the layers that are not kept in floats computing with bytes.
+    ///
+    /// # Errors
+    /// `Internal`, which a network that was watched never gives.
+    pub fn network(&self) -> Result<ModelProto> {
+        let plan = Plan::new(&self.graph, self.layers.clone());
+        let graph = integer_graph(&self.graph, &plan, &self.ranges(), self.options.weight_bits)?;
+        Ok(ModelProto { graph: Some(graph), ..self.model.clone() })
+    }
+
+    /// Keeps the `count` layers that lose most in floats, of those that are not; whether there was one.
+    pub fn keep_worst(&mut self, count: usize) -> bool {
+        let mut ratios: Vec<(usize, f64)> = (self.own_reports().iter().enumerate())
+            .filter(|(_, layer)| !layer.is_float)
+            .map(|(at, layer)| (at, layer.own_ratio()))
+            .collect();
+        ratios.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+        for (at, _) in ratios.iter().take(count) {
+            if let Some(layer) = self.layers.get_mut(*at) {
+                layer.is_float = true;
+            }
+        }
+        !ratios.is_empty()
+    }
+
+    /// How many layers there are.
+    pub fn layer_count(&self) -> usize {
+        self.layers.len()
+    }
+
+    /// What each layer loses by itself.
+    fn own_reports(&self) -> Vec<LayerReport> {
+        let ranges = self.ranges();
+        let report = |layer: &Layer| {
+            let input = self.graph.node.get(layer.node).and_then(|node| node.input.first());
+            let plan = input.and_then(|input| self.histograms.get(input).zip(ranges.get(input)));
+            let weights = ByteWeights::new(&layer.weights, layer.axis, self.options.weight_bits, |_| 0.0);
+            LayerReport {
+                name: layer.name.clone(),
+                op: layer.op.clone(),
+                weights: layer.weights.data().len(),
+                weight_ratio: weights.map_or(0.0, |weights| weights.signal_to_noise),
+                input_ratio: plan.map_or(200.0, |(histogram, range)| range.signal_to_noise(histogram)),
+                output_ratio: 0.0,
+                is_float: layer.is_float,
+            }
+        };
+        self.layers.iter().map(report).collect()
+    }
+
+    /// What each layer loses by itself, and all up to it together.
+    ///
+    /// # Errors
+    /// As [`Watched::run`].
+    pub fn reports(&self) -> Result<Vec<LayerReport>> {
+        let mut reports = self.own_reports();
+        let network = self.network()?;
+        let quantised = network.graph.as_ref().unwrap_or(&self.graph);
+        for reports in reports.chunks_mut(WATCHED) {
+            let names: Vec<String> = reports.iter().map(|report| report.name.clone()).collect();
+            let before = Watched::open(&self.model, &self.graph, &names, self.device)?;
+            let after = Watched::open(&self.model, quantised, &names, self.device)?;
+            let mut powers = vec![[0.0; 2]; names.len()];
+            for recording in self.recordings.iter().take(COMPARED) {
+                let mut signals = Vec::new();
+                before.run(recording, |_, values| signals.push(values.to_vec()))?;
+                after.run(recording, |at, values| {
+                    let signal = signals.get(at).map_or(&[][..], Vec::as_slice);
+                    if let Some([power, lost]) = powers.get_mut(at) {
+                        *power += signal.iter().map(|value| f64::from(*value).powi(2)).sum::<f64>();
+                        *lost +=
+                            signal.iter().zip(values).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>();
+                    }
+                })?;
+            }
+            for (report, [power, lost]) in reports.iter_mut().zip(powers) {
+                report.output_ratio = decibels(power, lost);
+            }
+        }
+        Ok(reports)
+    }
+}
