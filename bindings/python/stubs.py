@@ -14,7 +14,7 @@ import textwrap
 from pathlib import Path
 
 from opendr import _opendr
-from opendr._native_learner import OF_SEVERAL_PARTS
+from opendr._native_learner import OF_SEVERAL_PARTS, NativeLearner
 from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr.engine.learners import BaseLearner
@@ -25,6 +25,8 @@ PAGE_HEADER = """# Learners
 
 Made by `bindings/python/stubs.py` from the registry; do not edit. Names and parameters are the same on every surface:
 `opendr infer NAME --PARAMETER VALUE`, keyword arguments in Python, JSON in C. `opendr models` lists the pretrained models.
+Those that train have parameters of `fit` besides: flags of `opendr fit NAME`, keyword arguments of the class, kept for
+`fit`, and of `fit` itself in Python, `"params"` among the options of `opendr_fit` in C.
 
 Every Python class takes OpenDR's 13 arguments besides (`lr`, `iters`, `batch_size`, ..., `device`); those that train are
 kept for `fit`. A parameter marked *live* may change while the learner runs, and can be given to one call of `infer`.
@@ -90,17 +92,21 @@ def is_target(kind):
 
 def arguments(entry):
     """The constructor's arguments: OpenDR's own by place, the learner's by name."""
-    own = {field["name"] for field in entry["params"]}
+    own = {field["name"]: field for field in (*entry["fit_params"], *entry["params"])}
     base = [
-        f"{name}: {getattr(parameter.annotation, '__name__', parameter.annotation)} = ..."
+        f"{name}: {param_type(own[name])} = ..." if name in own
+        else f"{name}: {getattr(parameter.annotation, '__name__', parameter.annotation)} = ..."
         for name, parameter in BaseLearner.__signature__.parameters.items()
-        if name not in own
     ]
-    fields = []
-    for field in entry["params"]:
-        fields += [f"{name}: {param_type(field)} = ..." for name in (field["name"], *field["aliases"])]
+    fields = keywords(own.values(), names(base))
     idle = [f"{name}: Any = ..." for name, _ in entry["without_effect"] if name not in {*own, *names(base)}]
     return ["self", *base, "*", *fields, *idle]
+
+
+def keywords(fields, without=()):
+    """Parameters as keywords, each also under its names in OpenDR."""
+    given = [(name, field) for field in fields for name in (field["name"], *field["aliases"])]
+    return [f"{name}: {param_type(field)} = ..." for name, field in given if name not in without]
 
 
 def names(shown):
@@ -136,6 +142,21 @@ def infer(entry):
     ))
 
 
+def fit(entry):
+    """`fit` with the parameters of the training; nothing for a learner that does not train."""
+    if not entry["fit"]:
+        return ""
+    shown = ["self"]
+    for name, parameter in list(inspect.signature(NativeLearner.fit).parameters.items())[1:]:
+        if parameter.kind == parameter.VAR_KEYWORD:
+            continue
+        if parameter.kind == parameter.KEYWORD_ONLY and "*" not in shown:
+            shown.append("*")
+        shown.append(f"{name}: {parameter.annotation}" + (" = ..." if parameter.default is not parameter.empty else ""))
+    shown += keywords(entry["fit_params"], names(shown))
+    return call("fit", shown, "dict[str, Any]", note="  # type: ignore[override]")
+
+
 def learner(entry):
     text = ""
     if len(entry["outputs"]) > 1:
@@ -144,17 +165,20 @@ def learner(entry):
     doc = textwrap.indent(document(entry).rstrip(), "    ")
     text += f'class {entry["class_name"]}(NativeLearner):\n    """{doc.lstrip()}\n    """\n\n'
     text += "".join(f"    {field['name']}: {param_type(field)}\n" for field in entry["params"])
-    return text + call("__init__", arguments(entry), "None") + infer(entry)
+    return text + call("__init__", arguments(entry), "None") + infer(entry) + fit(entry)
 
 
 def module(task, entries):
     kinds = {row["type"] for entry in entries for row in (*entry["ports"], *entry["outputs"])}
     functions = sorted({name for kind in kinds for name in _DRAWING.get(kind, ())})
     imports = "".join(f"from opendr._drawing import {name} as {name}\n" for name in functions)
-    imports += "from opendr._native_learner import NativeLearner\n"
+    trains = any(entry["fit"] for entry in entries)
+    imports += f"from opendr._native_learner import NativeLearner{', PathLike' if trains else ''}\n"
     for home, wanted in (("data", False), ("target", True)):
         found = ", ".join(sorted(kind for kind in kinds if is_target(kind) == wanted))
         imports += f"from opendr.engine.{home} import {found}\n" if found else ""
+    if trains:
+        imports += "from opendr.engine.datasets import Dataset\nfrom opendr.engine.learners import Learner\n"
     return HEADER.format(task=task) + imports + "\n" + "\n".join(learner(entry) for entry in entries)
 
 
@@ -197,12 +221,15 @@ def page():
             text += f"Takes {inputs}; gives {outputs}.\n\n"
             text += PARAMS_HEADER
             text += "".join(map(param_row, entry["params"]))
+            if entry["fit_params"]:
+                text += "\n" + FIT_HEADER + "".join(map(param_row, entry["fit_params"]))
             if entry["without_effect"]:
                 text += "\n| argument of OpenDR's class without effect here | why |\n|---|---|\n"
                 text += "".join(f"| `{name}` | {cell(reason)} |\n" for name, reason in entry["without_effect"])
     return text
 
 
+FIT_HEADER = "| parameter of `fit` | values | default | |\n|---|---|---|---|\n"
 PARAMS_HEADER = "| parameter | values | default | |\n|---|---|---|---|\n"
 
 

@@ -4,8 +4,6 @@ use std::ffi::c_char;
 use std::ptr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use opendr::dataset::{DatasetRef, ExternalDataset};
-use opendr::evaluation::EvalOptions;
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::params::{ParamMap, ParamValue};
 use opendr::{Device, Error, Result, Silent};
@@ -38,8 +36,8 @@ pub struct opendr_output {
     pub value: *mut opendr_value,
 }
 
-struct Loaded {
-    entry: &'static Entry,
+pub(crate) struct Loaded {
+    pub(crate) entry: &'static Entry,
     learner: Mutex<Box<dyn AnyLearner>>,
     texts: Texts,
 }
@@ -52,12 +50,12 @@ impl Held for Loaded {
 impl Loaded {
     /// # Safety
     /// As [`handle::held`].
-    unsafe fn of<'a>(learner: *const opendr_learner) -> Result<&'a Self> {
+    pub(crate) unsafe fn of<'a>(learner: *const opendr_learner) -> Result<&'a Self> {
         // SAFETY: the caller's promise.
         unsafe { handle::held(learner, "learner") }
     }
 
-    fn lock(&self) -> MutexGuard<'_, Box<dyn AnyLearner>> {
+    pub(crate) fn lock(&self) -> MutexGuard<'_, Box<dyn AnyLearner>> {
         self.learner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -88,29 +86,71 @@ unsafe fn load(
     learner: *mut *mut opendr_learner,
 ) -> Result<()> {
     // SAFETY: the caller's promise.
-    let (out, spec, device, params) = unsafe {
-        (
-            Out::new(learner, "learner")?,
-            text(name, "name")?,
-            optional_text(device, "device")?.unwrap_or("auto"),
-            optional_text(params_json, "params_json")?.unwrap_or("{}"),
-        )
-    };
-    let entry = opendr::registry().find(spec.split('/').next().unwrap_or(spec))?;
-    let device: Device = device.parse()?;
-    let params: ParamMap = serde_json::from_str(params).map_err(|error| {
-        Error::invalid_param("params_json is no JSON object of parameters").with_source(error)
-    })?;
+    let (out, wanted) = unsafe { (Out::new(learner, "learner")?, Wish::of(name, device, params_json)?) };
     let learner = if container.is_null() {
-        opendr::learner_with(spec, &params, device, &Silent)?
+        opendr::learner_with(wanted.spec, &wanted.params, wanted.device, &Silent)?
     } else {
-        let mut learner = entry.make(&params, device)?;
+        let mut learner = wanted.make()?;
         // SAFETY: the caller's promise.
         learner.load(unsafe { path(container, "path") }?)?;
         learner
     };
-    out.set(Loaded { entry, learner: Mutex::new(learner), texts: Texts::default() });
+    out.set(wanted.loaded(learner));
     Ok(())
+}
+
+/// A learner as the caller names it.
+struct Wish<'a> {
+    spec: &'a str,
+    entry: &'static Entry,
+    device: Device,
+    params: ParamMap,
+}
+
+impl<'a> Wish<'a> {
+    /// # Safety
+    /// As [`opendr_load`].
+    unsafe fn of(name: *const c_char, device: *const c_char, params_json: *const c_char) -> Result<Self> {
+        // SAFETY: the caller's promise.
+        let (spec, device, params) = unsafe {
+            (
+                text(name, "name")?,
+                optional_text(device, "device")?.unwrap_or("auto"),
+                optional_text(params_json, "params_json")?.unwrap_or("{}"),
+            )
+        };
+        let entry = opendr::registry().find(spec.split('/').next().unwrap_or(spec))?;
+        let device = device.parse()?;
+        let params = serde_json::from_str(params).map_err(|error| {
+            Error::invalid_param("params_json is no JSON object of parameters").with_source(error)
+        })?;
+        Ok(Self { spec, entry, device, params })
+    }
+
+    fn make(&self) -> Result<Box<dyn AnyLearner>> {
+        self.entry.make(&self.params, self.device)
+    }
+
+    fn loaded(&self, learner: Box<dyn AnyLearner>) -> Loaded {
+        Loaded { entry: self.entry, learner: Mutex::new(learner), texts: Texts::default() }
+    }
+}
+
+/// Makes a learner without a model, e.g. "ssd", to be trained by opendr_fit. device and params_json are as for
+/// opendr_load.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_create(
+    name: *const c_char,
+    device: *const c_char,
+    params_json: *const c_char,
+    learner: *mut *mut opendr_learner,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (out, wanted) = unsafe { (Out::new(learner, "learner")?, Wish::of(name, device, params_json)?) };
+        out.set(wanted.loaded(wanted.make()?));
+        Ok(())
+    })
 }
 
 /// Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
@@ -230,52 +270,6 @@ pub unsafe extern "C" fn opendr_output_name(learner: *const opendr_learner, inde
     })
 }
 
-/// Measures the learner on a data set on disk.
-///
-/// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
-/// "split", "limit", "folder", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
-/// the numbers by name; it is to be freed.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn opendr_eval(
-    learner: *const opendr_learner,
-    dataset: *const c_char,
-    dataset_type: *const c_char,
-    options_json: *const c_char,
-    outcome: *mut *mut opendr_string,
-) -> opendr_status {
-    // SAFETY: the rules at the top of opendr.h.
-    guard(|| unsafe { eval(learner, dataset, dataset_type, options_json, outcome) })
-}
-
-/// # Safety
-/// As [`opendr_eval`].
-unsafe fn eval(
-    learner: *const opendr_learner,
-    dataset: *const c_char,
-    dataset_type: *const c_char,
-    options_json: *const c_char,
-    outcome: *mut *mut opendr_string,
-) -> Result<()> {
-    // SAFETY: the caller's promise.
-    let (out, loaded, dataset, dataset_type, options) = unsafe {
-        (
-            Out::new(outcome, "outcome")?,
-            Loaded::of(learner)?,
-            path(dataset, "dataset")?,
-            optional_text(dataset_type, "dataset_type")?.unwrap_or("auto"),
-            optional_text(options_json, "options_json")?.unwrap_or("{}"),
-        )
-    };
-    let options: EvalOptions = serde_json::from_str(options).map_err(|error| {
-        Error::invalid_param("options_json is no JSON object of options of opendr_eval").with_source(error)
-    })?;
-    let external = ExternalDataset::new(dataset, dataset_type);
-    let dataset = DatasetRef::External(&external);
-    let measured = options.run(&mut loaded.lock(), loaded.entry, dataset, &Silent)?;
-    out.set(Text::new(serde_json::to_string(&measured).map_err(no_json)?));
-    Ok(())
-}
-
 /// Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_set_param(
@@ -305,7 +299,7 @@ pub unsafe extern "C" fn opendr_params(
         // SAFETY: the rules at the top of opendr.h.
         let (json, loaded) = unsafe { (Out::new(json, "json")?, Loaded::of(learner)?) };
         let params = loaded.lock().params();
-        json.set(Text::new(serde_json::to_string(&params).map_err(no_json)?));
+        json.set(Text::of_json(&params)?);
         Ok(())
     })
 }
@@ -330,7 +324,7 @@ pub unsafe extern "C" fn opendr_classes(
         // SAFETY: the rules at the top of opendr.h.
         let (json, loaded) = unsafe { (Out::new(json, "json")?, Loaded::of(learner)?) };
         let classes = loaded.lock().classes();
-        json.set(Text::new(serde_json::to_string(&classes).map_err(no_json)?));
+        json.set(Text::of_json(&classes)?);
         Ok(())
     })
 }
@@ -387,12 +381,7 @@ pub unsafe extern "C" fn opendr_learners(json: *mut *mut opendr_string) -> opend
         // SAFETY: the rules at the top of opendr.h.
         let json = unsafe { Out::new(json, "json") }?;
         let names: Vec<_> = opendr::registry().entries().iter().map(|entry| entry.spec.name).collect();
-        json.set(Text::new(serde_json::to_string(&names).map_err(no_json)?));
+        json.set(Text::of_json(&names)?);
         Ok(())
     })
-}
-
-#[cold]
-fn no_json(error: serde_json::Error) -> Error {
-    Error::internal("a value has no JSON form").with_source(error)
 }

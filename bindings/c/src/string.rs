@@ -3,6 +3,9 @@
 use std::ffi::{CString, c_char};
 use std::ptr;
 
+use opendr::{Error, Result};
+use serde::Serialize;
+
 use crate::handle::{self, Held};
 use crate::status::{guard, guard_value, opendr_status};
 
@@ -20,6 +23,11 @@ impl Held for Text {
 impl Text {
     pub(crate) fn new(text: impl Into<String>) -> Self {
         Self(CString::new(text.into().replace('\0', "\u{fffd}")).unwrap_or_default())
+    }
+
+    pub(crate) fn of_json(value: &impl Serialize) -> Result<Self> {
+        let no_json = |error| Error::internal("a value has no JSON form").with_source(error);
+        serde_json::to_string(value).map(Self::new).map_err(no_json)
     }
 }
 

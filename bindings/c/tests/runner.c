@@ -3,6 +3,8 @@
  * runner LEARNER[=CONTAINER] PARAMS_JSON PORT=PICTURE PORT=@TARGET.json ... , PORT=PICTURE ...
  *
  * Commas stand between the calls of one stream. Each gives a line with the JSON of the outputs by name.
+ *
+ * runner --fit LEARNER DATASET OPTIONS_JSON gives the report of a training, and how often it was told of, on standard error.
  */
 #include <opendr.h>
 #include <stdio.h>
@@ -68,12 +70,34 @@ static opendr_input input(char *word) {
     return input;
 }
 
+/* Counts the calls; stops at the call whose number the environment names. */
+static bool told(void *context, const char *what, uint64_t done, uint64_t total, const char *status) {
+    const char *stop = getenv("STOP_AT");
+    int *calls = (int *)context;
+    *calls += 1;
+    if (what == NULL || status == NULL || done > total) exit(3);
+    return stop == NULL || *calls < atoi(stop);
+}
+
+static int fit(char **words) {
+    opendr_learner *learner = NULL;
+    opendr_string *report = NULL;
+    int calls = 0;
+    check(opendr_create(words[0], "cpu", NULL, &learner));
+    check(opendr_fit(learner, words[1], NULL, words[2], told, &calls, &report));
+    puts(opendr_string_text(report));
+    fprintf(stderr, "%d\n", calls);
+    check(opendr_string_free(&report));
+    return opendr_learner_free(&learner);
+}
+
 int main(int argc, char **argv) {
     opendr_learner *learner = NULL;
     opendr_output outputs[MOST];
     size_t output_count = 0;
     char *container;
     if (argc < 4) return fprintf(stderr, "usage: runner LEARNER[=CONTAINER] PARAMS_JSON PORT=FILE ... [, PORT=FILE ...]\n"), 2;
+    if (argc == 5 && strcmp(argv[1], "--fit") == 0) return fit(argv + 2);
     container = strchr(argv[1], '=');
     if (container != NULL) *container++ = '\0';
     check(opendr_load(argv[1], container, NULL, argv[2], &learner));

@@ -7,7 +7,7 @@ use opendr::datasets::{OpenOptions, Problems};
 use opendr::learner::Port;
 use opendr::target::Classes;
 use opendr::{Error, Result, ValueType, datasets};
-use pyo3::exceptions::{PyIndexError, PyTypeError};
+use pyo3::exceptions::{PyIndexError, PyKeyboardInterrupt, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyString, PyTuple};
 
@@ -248,7 +248,16 @@ impl DatasetIterator for PythonDataset {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        Python::attach(|py| self.read(py, index).map_err(|raised| error_from_exception(py, raised)))
+        let read = |py| match self.read(py, index) {
+            // Ctrl-C came while Python was reading. It is no failure of the sample, but for whoever asks whether to stop.
+            Err(raised) if raised.is_instance_of::<PyKeyboardInterrupt>(py) => {
+                let sample = self.read(py, index);
+                py.import("_thread")?.call_method0("interrupt_main")?;
+                sample
+            }
+            sample => sample,
+        };
+        Python::attach(|py| read(py).map_err(|raised| error_from_exception(py, raised)))
     }
 
     fn classes(&self) -> Classes {

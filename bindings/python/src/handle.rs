@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use opendr::data::Pixels as Samples;
-use opendr::evaluation::EvalOptions;
+use opendr::evaluation::{EvalOptions, Teacher};
 use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
-use opendr::{Device, Error, Pool, Value, ValueType};
+use opendr::{Device, Error, FitData, FitOptions, Pool, Value, ValueType};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -19,7 +19,7 @@ use crate::error::ToPython;
 use crate::param::{params_from_python, python_from_params};
 use crate::pixels::image_from_python;
 use crate::target::{Payload, payloads};
-use crate::zoo;
+use crate::{plugin, zoo};
 
 /// A learner of the registry. Calls from several threads wait for each other; [`Handle::stream`] gives each its own.
 #[pyclass(frozen, module = "opendr._opendr")]
@@ -129,6 +129,38 @@ impl Handle {
         })
     }
 
+    /// Trains the learner; the report as JSON and as text. `options` are JSON; a `teacher` is another handle, or the name and
+    /// the object of a learner written in Python.
+    fn fit(
+        &self,
+        py: Python<'_>,
+        dataset: &Bound<'_, PyAny>,
+        val_dataset: Option<&Bound<'_, PyAny>>,
+        teacher: Option<&Bound<'_, PyAny>>,
+        options: &str,
+        silent: bool,
+    ) -> PyResult<(String, String)> {
+        let options = serde_json::from_str(options);
+        let options = options.map_err(|error| Error::invalid_param("no options of fit").with_source(error));
+        let mut options: FitOptions = options.to_python(py)?;
+        opendr::check_fit(self.entry, &options.params).to_python(py)?;
+        let given = |object| GivenDataset::from_python(object, self.entry.ports);
+        let (dataset, val_dataset) = (given(dataset)?, val_dataset.map(given).transpose()?);
+        let teacher = teacher.map(teacher_from_python).transpose()?;
+        options.name = Some(dataset.name());
+        PythonBar::new(silent).run(py, |bar| {
+            let data = FitData {
+                dataset: dataset.as_ref(),
+                val_dataset: val_dataset.as_ref().map(GivenDataset::as_ref),
+                teacher,
+            };
+            let fitted = opendr::fit(lock(&self.learner).as_mut(), self.entry, data, &options, bar)?;
+            let json = serde_json::to_string(&fitted);
+            let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
+            Ok((json, fitted.to_string()))
+        })
+    }
+
     fn reset(&self, py: Python<'_>) {
         py.detach(|| lock(&self.learner).reset());
     }
@@ -170,6 +202,18 @@ impl Stream {
     fn reset(&self, py: Python<'_>) {
         py.detach(|| lock(&self.stream).reset());
     }
+}
+
+/// The teacher that `fit` is given.
+fn teacher_from_python(teacher: &Bound<'_, PyAny>) -> PyResult<Teacher> {
+    let py = teacher.py();
+    let Ok(handle) = teacher.cast::<Handle>() else {
+        let (name, object): (String, Bound<'_, PyAny>) = teacher.extract()?;
+        return plugin::teacher(&name, &object);
+    };
+    let handle = handle.get();
+    let make = || opendr::teacher(handle.entry.spec.name, lock(&handle.learner).as_ref(), handle.entry);
+    py.detach(make).to_python(py)
 }
 
 /// Whoever waits here has released the interpreter, so that a learner written in Python can run meanwhile.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use opendr::dataset::DatasetRef;
+use opendr::evaluation::{Subject, Teacher};
 use opendr::learner::{
     AnyLearner, AnyStream, Capabilities, CheckOptions, Entry, FitJob, Output, Outputs, Port, Ports, Spec,
     empty_learner,
@@ -148,6 +149,20 @@ fn output(row: &Tables<'_, '_>) -> PyResult<Output> {
     let value_type = row.value_type()?;
     let name: Option<String> = row.get("name")?.extract()?;
     Ok(Output { name: name.map_or(value_type.port(), leak_text), doc: "", value_type })
+}
+
+/// An instance of a registered class as a teacher.
+pub fn teacher(name: &str, object: &Bound<'_, PyAny>) -> PyResult<Teacher> {
+    let entry = opendr::registry().find(name).to_python(object.py())?;
+    let classes = object.getattr("classes").and_then(|classes| classes.extract::<Vec<String>>());
+    let object = object.call_method0("stream")?.unbind();
+    let stream = PythonStream { ports: entry.ports, outputs: entry.outputs, object };
+    Ok(Teacher {
+        subject: Subject { learner: name.to_owned(), ..Subject::default() },
+        entry,
+        classes: classes.unwrap_or_default().into_iter().collect(),
+        streams: vec![Box::new(stream)],
+    })
 }
 
 /// Calls Python; what it raises becomes the source of the error.

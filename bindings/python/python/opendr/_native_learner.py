@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, NoReturn, Optional, Union
 
 from opendr import _opendr
@@ -182,6 +182,83 @@ class NativeLearner(Learner):
         outcome = json.loads(report)
         return {**outcome.get("scalars", {}), "report": outcome}
 
+    def fit(
+        self,
+        dataset: Dataset,
+        val_dataset: Optional[Dataset] = None,
+        logging_path: PathLike = "",
+        silent: bool = False,
+        verbose: bool = True,
+        *,
+        output: Optional[PathLike] = None,
+        resume: bool = False,
+        split: Optional[str] = None,
+        val_split: Optional[str] = None,
+        limit: Optional[int] = None,
+        teacher: Union[None, str, Learner] = None,
+        teacher_threshold: Optional[float] = None,
+        teacher_classes: Sequence[str] = (),
+        keep_empty: bool = False,
+        skip_broken: bool = False,
+        **fit_params: Any,
+    ) -> dict[str, Any]:
+        """Trains the learner, from the loaded model where there is one, and loads the result.
+
+        Ctrl-C saves what was done and raises ``KeyboardInterrupt``; ``resume`` goes on from there.
+
+        Args:
+            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
+                several inputs); a data set of yours names its classes in a list ``classes``.
+            val_dataset: What to measure on after each epoch.
+            logging_path: Folder of TensorBoard's event files and of curves; empty: none.
+            silent: Whether to show nothing at all.
+            verbose: Whether to print the outcome.
+            output: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
+                else ``runs/NAME-DATE``.
+            resume: Whether to go on from the last checkpoint in ``output``, or in the last run of this learner.
+            split: The part of an ``ExternalDataset`` to train on; by default the one for that.
+            val_split: The part to measure on, of ``val_dataset`` or, without it, of ``dataset``.
+            limit: Only the first so many samples.
+            teacher: A loaded learner, or the name of a pretrained one (``"nanodet"``, ``"movenet/multipose"``), whose
+                answers are learned from; ``dataset`` may then be without annotations, or a folder of pictures.
+            teacher_threshold: The teacher's answers below this score are dropped; 0.5 by default.
+            teacher_classes: What is learned from the teacher; by default the classes of the data set, or the teacher's.
+            keep_empty: Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
+            skip_broken: Whether what is broken is left out and listed, instead of ending it.
+            fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
+
+        Returns:
+            The curves (a list each, e.g. ``"loss"``) and numbers by name, and under ``"report"`` all there is: where the
+            model lies, what was left out.
+
+        Raises:
+            opendr.Unsupported: This learner does not train, or this build has no training.
+            ValueError: Data set, learner and parameters do not fit together, or a sample is broken.
+            OSError: Something cannot be written.
+        """
+        place = output or self.temp_path or None
+        options = {
+            "params": self._fit_params(fit_params),
+            "split": split,
+            "val_split": val_split,
+            "limit": limit,
+            "output": None if place is None else os.fspath(place),
+            "logging_path": os.fspath(logging_path) if logging_path else None,
+            "resume": resume or self.checkpoint_load_iter > 0,
+            "teacher": teacher if isinstance(teacher, str) else None,
+            "teacher_threshold": teacher_threshold,
+            "teacher_classes": list(teacher_classes),
+            "keep_empty": keep_empty,
+            "skip_broken": skip_broken,
+        }
+        given = None if isinstance(teacher, str) else _teacher(teacher)
+        report, text = self._handle.fit(dataset, val_dataset, given, json.dumps(options), silent)
+        vars(self).update(self._handle.params())
+        if verbose and not silent:
+            print(text, end="")
+        outcome = json.loads(report)
+        return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
+
     def reset(self) -> None:
         """Forgets what was seen: the next input begins anew."""
         self._handle.reset()
@@ -224,9 +301,20 @@ class NativeLearner(Learner):
     def __reduce__(self) -> NoReturn:
         raise TypeError(f"a {type(self).__name__} cannot be pickled or copied; save() it, and load() it there")
 
+    def _fit_params(self, given: dict[str, Any]) -> dict[str, Any]:
+        """The parameters of the training: those of this call over those of the constructor."""
+        names = [field["name"] for field in self._entry["fit_params"]]
+        params = {name: getattr(self, name) for name in names}
+        for name, value in self._known(given, stacklevel=4).items():
+            if name not in names:
+                raise TypeError(f"fit has no argument {name!r}; parameters of the training: {', '.join(names)}")
+            params[name] = value
+        return params
+
     def _known(self, arguments: dict[str, Any], stacklevel: int) -> dict[str, Any]:
         """Arguments under the names they have here; those without effect are left out, with a warning."""
-        renamed = {alias: field["name"] for field in self._entry["params"] for alias in field["aliases"]}
+        fields = [*self._entry["params"], *self._entry["fit_params"]]
+        renamed = {alias: field["name"] for field in fields for alias in field["aliases"]}
         idle = dict(self._entry["without_effect"])
         known: dict[str, Any] = {}
         for given, value in arguments.items():
@@ -339,6 +427,25 @@ def _value(value: Any, name: str, kind: str) -> Any:
     return wanted(value)
 
 
+def _teacher(teacher: Optional[Learner]) -> Any:
+    """A teacher as the native half takes it."""
+    if teacher is None:
+        return None
+    if isinstance(teacher, NativeLearner):
+        return teacher._handle
+    from opendr._registered import registered_name
+
+    name = registered_name(type(teacher))
+    if name is None:
+        raise TypeError(f"teacher should be a learner or a name, not {type(teacher).__name__}; register() a class of yours")
+    return name, teacher
+
+
+def _alias(name: str) -> property:
+    """OpenDR's name of a parameter as an attribute."""
+    return property(lambda self: getattr(self, name), lambda self, value: setattr(self, name, value))
+
+
 def _sample(folder: Optional[str], verbose: bool) -> PathLike:
     import shutil
 
@@ -358,13 +465,15 @@ def native_class(entry: Table, module: str) -> type[NativeLearner]:
     from opendr.engine._parameters import signature
 
     names = [output["name"] for output in entry["outputs"]]
+    fields = [*entry["fit_params"], *entry["params"]]
     namespace: dict[str, Any] = {
+        **{alias: _alias(field["name"]) for field in entry["fit_params"] for alias in field["aliases"]},
         "__doc__": document(entry),
         "__module__": module,
         "__annotations__": params_annotations(entry),
         "_entry": entry,
         "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
-        **{field["name"]: field["default"] for field in entry["params"]},
+        **{field["name"]: field["default"] for field in fields},
     }
     made: Any = type(entry["class_name"], (NativeLearner,), namespace)
     made.__signature__ = signature(made, by_place=BaseLearner.__signature__.parameters)

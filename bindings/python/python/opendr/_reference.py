@@ -13,8 +13,8 @@ _TYPES: dict[str, Any] = {"float": float, "int": int, "bool": bool, "text": str,
 
 
 def params_annotations(entry: Table) -> dict[str, Any]:
-    """The parameters of a learner as annotations of its class."""
-    return {field["name"]: _annotation(field) for field in entry["params"]}
+    """The parameters of a learner and of its training as annotations of its class."""
+    return {field["name"]: _annotation(field) for field in (*entry["fit_params"], *entry["params"])}
 
 
 def _annotation(field: Table) -> Any:
@@ -42,6 +42,10 @@ def document(entry: Table) -> str:
         f"Task: {entry['task']}. ``infer`` takes:\n\n{inputs}\n\nand gives: {outputs}.",
         f"Args:\n{params}\n    others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.",
     ]
+    if entry["fit_params"]:
+        own = {field["name"] for field in entry["params"]}
+        training = "\n".join(_line(field["name"], _param(field)) for field in entry["fit_params"] if field["name"] not in own)
+        parts.append(f"Parameters of ``fit``, for one call or, given here, for all of them:\n{training}")
     if idle:
         parts.append(f"Arguments of OpenDR that are taken and have no effect:\n{idle}")
     return "\n\n".join(parts)

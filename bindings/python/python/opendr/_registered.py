@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import types
-from typing import Any, TypeVar
+from typing import Any, Optional, TypeVar
 
 from opendr import _opendr
 from opendr._errors import NotFound
@@ -51,6 +51,11 @@ def learners() -> dict[str, type[BaseLearner]]:
         if found is not None:
             classes[entry["name"]] = found
     return classes
+
+
+def registered_name(cls: type) -> Optional[str]:
+    """The name under which a class was registered."""
+    return next((name for name, other in _OWN.items() if other is cls), None)
 
 
 def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:

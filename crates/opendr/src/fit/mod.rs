@@ -60,7 +60,7 @@ pub fn fit(
     progress: &dyn Progress,
 ) -> Result<Fitted> {
     let begun = Instant::now();
-    check(entry, &options.params)?;
+    check_fit(entry, &options.params)?;
     let output = options.output_folder(entry.spec.name)?;
     run_folder::prepare(&output, options.resume)?;
     progress.note(&format!("output: {}", output.display()));
@@ -101,6 +101,9 @@ pub fn fit(
         output,
     };
     fitted.write()?;
+    if !fitted.complete {
+        progress.note(&format!("stopped: what was done is in {}, to be resumed", fitted.output.display()));
+    }
     Ok(fitted)
 }
 
@@ -205,8 +208,11 @@ fn streams_at_once(device: Device) -> Result<usize> {
     }
 }
 
-/// That the learner trains, and takes the parameters: known before a teacher works for hours.
-fn check(entry: &Entry, params: &ParamMap) -> Result<()> {
+/// That a learner trains, and takes the parameters: known before data sets are opened, or a teacher works for hours.
+///
+/// # Errors
+/// `Unsupported`, with learners that train; `InvalidParam`.
+pub fn check_fit(entry: &Entry, params: &ParamMap) -> Result<()> {
     if !entry.capabilities.fit {
         return Err(cannot_fit(entry));
     }

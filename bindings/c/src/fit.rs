@@ -1,0 +1,66 @@
+//! A learner trained on a data set.
+
+use std::ffi::c_char;
+
+use opendr::dataset::{DatasetRef, ExternalDataset};
+use opendr::{Error, FitData, FitOptions, Result};
+
+use crate::handle::Out;
+use crate::learner::{Loaded, opendr_learner};
+use crate::pointer::{optional_text, path};
+use crate::progress::{Listener, opendr_progress};
+use crate::status::{guard, opendr_status};
+use crate::string::{Text, opendr_string};
+
+/// Trains the learner on a data set on disk, from its model where it has one, and loads the result.
+///
+/// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "params" (of the training), "split",
+/// "val", "val_format", "val_split", "limit", "output", "logging_path", "resume", "teacher", "teacher_threshold",
+/// "teacher_classes", "keep_empty", "skip_broken"; NULL takes the defaults. progress, which may be NULL, hears how it goes
+/// and may stop it: what was done is then saved, to be resumed. The report is an object of JSON: under "curves" and
+/// "scalars" the numbers by name, under "model" the path of the trained container; it is to be freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_fit(
+    learner: *const opendr_learner,
+    dataset: *const c_char,
+    dataset_type: *const c_char,
+    options_json: *const c_char,
+    progress: opendr_progress,
+    context: *mut std::ffi::c_void,
+    report: *mut *mut opendr_string,
+) -> opendr_status {
+    // SAFETY: the rules at the top of opendr.h.
+    guard(|| unsafe {
+        fit(learner, dataset, dataset_type, options_json, &Listener::new(progress, context), report)
+    })
+}
+
+/// # Safety
+/// As [`opendr_fit`].
+unsafe fn fit(
+    learner: *const opendr_learner,
+    dataset: *const c_char,
+    dataset_type: *const c_char,
+    options_json: *const c_char,
+    progress: &Listener,
+    report: *mut *mut opendr_string,
+) -> Result<()> {
+    // SAFETY: the caller's promise.
+    let (out, loaded, dataset, dataset_type, options) = unsafe {
+        (
+            Out::new(report, "report")?,
+            Loaded::of(learner)?,
+            path(dataset, "dataset")?,
+            optional_text(dataset_type, "dataset_type")?.unwrap_or("auto"),
+            optional_text(options_json, "options_json")?.unwrap_or("{}"),
+        )
+    };
+    let options: FitOptions = serde_json::from_str(options).map_err(|error| {
+        Error::invalid_param("options_json is no JSON object of options of opendr_fit").with_source(error)
+    })?;
+    let external = ExternalDataset::new(dataset, dataset_type);
+    let data = FitData::from(DatasetRef::External(&external));
+    let fitted = opendr::fit(loaded.lock().as_mut(), loaded.entry, data, &options, progress)?;
+    out.set(Text::of_json(&fitted)?);
+    Ok(())
+}
