@@ -35,11 +35,16 @@ pub fn flags() -> [Arg; 3] {
             .long("split")
             .value_name("NAME")
             .help("The part to read: val2017, train, testing, ..."),
-        Arg::new("skip-broken")
-            .long("skip-broken")
-            .action(ArgAction::SetTrue)
-            .help("Leave out what is broken, and list it, instead of ending with the first"),
+        skip_broken_flag(),
     ]
+}
+
+/// What to do with what is broken.
+pub fn skip_broken_flag() -> Arg {
+    Arg::new("skip-broken")
+        .long("skip-broken")
+        .action(ArgAction::SetTrue)
+        .help("Leave out what is broken, and list it, instead of ending with the first")
 }
 
 /// The data set that the user named.

@@ -36,7 +36,8 @@ fn is_own(entry: &Entry, field: &Field) -> bool {
     entry.params.iter().any(|own| own.name == field.name)
 }
 
-fn param_flag(heading: &str, field: &'static Field) -> Arg {
+/// The flag of a parameter.
+pub fn param_flag(heading: &str, field: &'static Field) -> Arg {
     let mut help = format!("{} [default: {}]", field.doc.trim_end_matches('.'), field.default.value());
     if let Some(range) = field.range {
         let unit = if field.unit.is_empty() { String::new() } else { format!(" {}", field.unit) };
@@ -96,8 +97,12 @@ pub fn fit_params(entry: &'static Entry, matches: &ArgMatches) -> Result<ParamMa
     values(entry.fit_params, matches)
 }
 
-fn values(fields: &'static [Field], matches: &ArgMatches) -> Result<ParamMap> {
-    let given = fields.iter().filter_map(|field| Some((field, matches.get_one::<String>(field.name)?)));
+/// The values of those of `fields` that the user set.
+///
+/// # Errors
+/// As [`params`].
+pub fn values(fields: impl IntoIterator<Item = &'static Field>, matches: &ArgMatches) -> Result<ParamMap> {
+    let given = fields.into_iter().filter_map(|field| Some((field, matches.get_one::<String>(field.name)?)));
     given.map(|(field, text)| Ok((field.name.to_owned(), field.parse(text)?))).collect()
 }
 

@@ -1,6 +1,6 @@
 //! From what the user typed to a loaded learner.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, ArgMatches, value_parser};
 use opendr::learner::{AnyLearner, Entry};
@@ -27,11 +27,7 @@ pub fn learner() -> Arg {
 /// The flags of every command that runs a learner.
 pub fn flags() -> [Arg; 5] {
     [
-        Arg::new("device")
-            .long("device")
-            .default_value("auto")
-            .value_name("DEVICE")
-            .help(format!("Where to run: {}", Device::NAMES.join(", "))),
+        device_flag(),
         threads(),
         Arg::new("model")
             .long("model")
@@ -41,6 +37,15 @@ pub fn flags() -> [Arg; 5] {
         offline(),
         quiet(),
     ]
+}
+
+/// The flag that says where to run.
+pub fn device_flag() -> Arg {
+    Arg::new("device")
+        .long("device")
+        .default_value("auto")
+        .value_name("DEVICE")
+        .help(format!("Where to run: {}", Device::NAMES.join(", ")))
 }
 
 /// The flag that says how many cores may be used.
@@ -142,6 +147,17 @@ pub fn pretrained(spec: &str, matches: &ArgMatches, progress: &dyn Progress) -> 
     let entry = entry(spec)?;
     let variant = spec.split_once('/').map_or(String::new(), |(_, variant)| format!("/{variant}"));
     zoo(matches)?.get(&format!("{}{variant}", entry.spec.name), progress)
+}
+
+/// The container that `source` is: one of the user's own, or a pretrained model.
+///
+/// # Errors
+/// As [`pretrained`].
+pub fn container(source: &str, matches: &ArgMatches, progress: &dyn Progress) -> Result<PathBuf> {
+    match Path::new(source).exists() {
+        true => Ok(PathBuf::from(source)),
+        false => pretrained(source, matches, progress),
+    }
 }
 
 /// How many learners work on `samples` that have nothing to do with each other. On a processor, side by side uses the

@@ -168,6 +168,11 @@ typedef struct opendr_observation_part {
     size_t axes;
 } opendr_observation_part;
 
+// Hears how long work goes: context is what was handed in with it, what the work in words, done of total (0 when it is not
+// known) what is done, status how it goes right now ("loss 0.31, 42 images/s", "" when there is nothing to say). It answers
+// whether to go on. It is called by one thread at a time, not always the same one, and must not use the learner that works.
+typedef bool (*opendr_progress)(void *context, const char *what, uint64_t done, uint64_t total, const char *status);
+
 // A named input.
 typedef struct opendr_input {
     // The input's name, e.g. "image".
@@ -453,6 +458,32 @@ enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_c
 // as they are.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
+// Measures the learner on a data set on disk.
+//
+// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
+// "split", "limit", "folder", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
+// the numbers by name; it is to be freed.
+enum opendr_status opendr_eval(const struct opendr_learner *learner,
+                               const char *dataset,
+                               const char *dataset_type,
+                               const char *options_json,
+                               struct opendr_string **outcome);
+
+// Trains the learner on a data set on disk, from its model where it has one, and loads the result.
+//
+// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "params" (of the training), "split",
+// "val", "val_format", "val_split", "limit", "output", "logging_path", "resume", "teacher", "teacher_threshold",
+// "teacher_classes", "keep_empty", "skip_broken"; NULL takes the defaults. progress, which may be NULL, hears how it goes
+// and may stop it: what was done is then saved, to be resumed. The report is an object of JSON: under "curves" and
+// "scalars" the numbers by name, under "model" the path of the trained container; it is to be freed.
+enum opendr_status opendr_fit(const struct opendr_learner *learner,
+                              const char *dataset,
+                              const char *dataset_type,
+                              const char *options_json,
+                              opendr_progress progress,
+                              void *context,
+                              struct opendr_string **report);
+
 // Loads a learner, e.g. "nanodet" or "yunet/320".
 //
 // path is a model container of your own; NULL takes the pretrained model, which is downloaded the first time. device is
@@ -462,6 +493,13 @@ enum opendr_status opendr_load(const char *name,
                                const char *device,
                                const char *params_json,
                                struct opendr_learner **learner);
+
+// Makes a learner without a model, e.g. "ssd", to be trained by opendr_fit. device and params_json are as for
+// opendr_load.
+enum opendr_status opendr_create(const char *name,
+                                 const char *device,
+                                 const char *params_json,
+                                 struct opendr_learner **learner);
 
 // Answers named inputs on the learner's own stream. Each output asked for gets a new handle, to be freed; outputs may be
 // left out. Inputs stay the caller's.
@@ -476,17 +514,6 @@ const char *opendr_input_name(const struct opendr_learner *learner, size_t index
 
 // The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
-
-// Measures the learner on a data set on disk.
-//
-// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
-// "split", "limit", "folder", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
-// the numbers by name; it is to be freed.
-enum opendr_status opendr_eval(const struct opendr_learner *learner,
-                               const char *dataset,
-                               const char *dataset_type,
-                               const char *options_json,
-                               struct opendr_string **outcome);
 
 // Sets a parameter that may change while the learner runs; value_json is a number, text, boolean, list or null.
 enum opendr_status opendr_set_param(const struct opendr_learner *learner, const char *name, const char *value_json);

@@ -1,6 +1,6 @@
 //! A learner trained on a data set.
 
-use std::ffi::c_char;
+use std::ffi::{c_char, c_void};
 
 use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::{Error, FitData, FitOptions, Result};
@@ -26,7 +26,7 @@ pub unsafe extern "C" fn opendr_fit(
     dataset_type: *const c_char,
     options_json: *const c_char,
     progress: opendr_progress,
-    context: *mut std::ffi::c_void,
+    context: *mut c_void,
     report: *mut *mut opendr_string,
 ) -> opendr_status {
     // SAFETY: the rules at the top of opendr.h.

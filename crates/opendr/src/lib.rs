@@ -38,7 +38,7 @@ mod registry;
 
 pub use by_name::{download, learner, learner_with};
 pub use export::export;
-pub use fit::{FitData, FitOptions, Fitted, check_fit, fit, teacher, teacher_with};
+pub use fit::{FitData, FitOptions, Fitted, Opening, check_fit, fit, teacher, teacher_with};
 pub use opendr_engine::*;
 pub use opendr_perception::{face_detection, object_detection_2d, pose_estimation, suppression};
 pub use registry::registry;

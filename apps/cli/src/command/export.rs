@@ -1,6 +1,6 @@
 //! `opendr export`: a model as others want it.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::Result;
@@ -50,10 +50,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if matches.get_flag("zip") && output.extension().is_none_or(|extension| extension != "zip") {
         output.as_mut_os_string().push(".zip");
     }
-    let path = match Path::new(source).exists() {
-        true => PathBuf::from(source),
-        false => loading::pretrained(source, matches, &Bar::new(matches.get_flag("quiet")))?,
-    };
+    let path = loading::container(source, matches, &Bar::new(matches.get_flag("quiet")))?;
     opendr::export(&Model::open(path)?, &output)?;
     stdout::print(output.display())?;
     Ok(Outcome::Done)

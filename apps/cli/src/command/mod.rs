@@ -9,6 +9,7 @@ mod export;
 mod fit;
 mod infer;
 mod models;
+mod optimize;
 mod runtime;
 mod score;
 
@@ -42,6 +43,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         eval::grammar(),
         fit::grammar(),
         export::grammar(),
+        optimize::grammar(),
         score::grammar(),
         data::grammar(),
         models::grammar(),
@@ -78,6 +80,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "eval" => eval::run(matches),
         "fit" => fit::run(matches),
         "export" => export::run(matches),
+        "optimize" => optimize::run(matches),
         "score" => score::run(matches),
         "data" => data::run(matches),
         "models" => models::run(matches),

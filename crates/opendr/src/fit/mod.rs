@@ -18,9 +18,10 @@ use opendr_inference as inference;
 
 pub use fitted::Fitted;
 pub use options::FitOptions;
+pub use samples::{Opening, Samples};
 
 use crate::{learner_with, registry};
-use samples::{Opening, Samples, limited, wanted};
+use samples::{limited, wanted};
 
 /// A teacher's answers below this score are no annotations, where nobody says otherwise.
 const TEACHER_THRESHOLD: f32 = 0.5;
