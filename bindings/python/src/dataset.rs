@@ -238,6 +238,13 @@ impl PythonDataset {
         let target = if target.is_none() { None } else { Some(target_from_python(&target)?) };
         Ok(Sample { data: values.collect::<PyResult<_>>()?, target })
     }
+
+    /// Reads a sample while which Ctrl-C came: that is no failure of the sample, but for whoever asks whether to stop.
+    fn read_again(&self, py: Python<'_>, index: usize) -> PyResult<Sample> {
+        let sample = self.read(py, index);
+        py.import("_thread")?.call_method0("interrupt_main")?;
+        sample
+    }
 }
 
 impl AnyDataset for PythonDataset {}
@@ -248,16 +255,13 @@ impl DatasetIterator for PythonDataset {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let read = |py| match self.read(py, index) {
-            // Ctrl-C came while Python was reading. It is no failure of the sample, but for whoever asks whether to stop.
-            Err(raised) if raised.is_instance_of::<PyKeyboardInterrupt>(py) => {
-                let sample = self.read(py, index);
-                py.import("_thread")?.call_method0("interrupt_main")?;
-                sample
-            }
-            sample => sample,
-        };
-        Python::attach(|py| read(py).map_err(|raised| error_from_exception(py, raised)))
+        Python::attach(|py| {
+            let sample = match self.read(py, index) {
+                Err(raised) if raised.is_instance_of::<PyKeyboardInterrupt>(py) => self.read_again(py, index),
+                sample => sample,
+            };
+            sample.map_err(|raised| error_from_exception(py, raised))
+        })
     }
 
     fn classes(&self) -> Classes {

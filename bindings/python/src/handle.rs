@@ -161,6 +161,31 @@ impl Handle {
         })
     }
 
+    /// Makes the model smaller and loads the result; the report as JSON and as text.
+    #[allow(clippy::too_many_arguments)] // They are the keywords of `optimize` in Python.
+    fn optimize(
+        &self,
+        py: Python<'_>,
+        output: PathBuf,
+        options: &Bound<'_, PyDict>,
+        calibration: Option<&Bound<'_, PyAny>>,
+        validation: Option<&Bound<'_, PyAny>>,
+        verbose: bool,
+    ) -> PyResult<(String, String)> {
+        let given = |object| GivenDataset::from_python(object, self.entry.ports);
+        let (calibration, validation) =
+            (calibration.map(given).transpose()?, validation.map(given).transpose()?);
+        let options = params_from_python(options)?;
+        PythonBar::new(!verbose).run(py, |bar| {
+            let data = [&calibration, &validation].map(|data| data.as_ref().map(GivenDataset::as_ref));
+            let mut learner = lock(&self.learner);
+            let report = opendr::optimize_loaded(learner.as_mut(), self.entry, data, &options, &output, bar)?;
+            let json = serde_json::to_string(&report);
+            let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
+            Ok((json, report.to_string()))
+        })
+    }
+
     fn reset(&self, py: Python<'_>) {
         py.detach(|| lock(&self.learner).reset());
     }

@@ -35,6 +35,7 @@ mod by_name;
 mod export;
 mod fit;
 mod registry;
+mod smaller;
 
 pub use by_name::{download, learner, learner_with};
 pub use export::export;
@@ -42,6 +43,7 @@ pub use fit::{FitData, FitOptions, Fitted, Opening, check_fit, fit, teacher, tea
 pub use opendr_engine::*;
 pub use opendr_perception::{face_detection, object_detection_2d, pose_estimation, suppression};
 pub use registry::registry;
+pub use smaller::optimize_loaded;
 pub use {
     opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
     opendr_metrics as metrics, opendr_optimize as optimize, opendr_vision as vision, opendr_zoo as zoo,

@@ -40,11 +40,15 @@ pub fn grammar() -> Command {
                 .help("A pretrained model, or a container of your own"),
         )
         .args(["int8", "fp16"].map(|name| {
-            let help = format!("Weights {}", if name == "int8" { "and values in 8 bits" } else { "in 16 bits" });
+            let help =
+                format!("Weights {}", if name == "int8" { "and values in 8 bits" } else { "in 16 bits" });
             Arg::new(name).long(name).action(ArgAction::SetTrue).help(help)
         }))
         .group(ArgGroup::new(PRECISION).args(["int8", "fp16"]).required(true))
-        .args(data_flags("calibration", "Pictures that --int8 takes the ranges of values from; a folder will do"))
+        .args(data_flags(
+            "calibration",
+            "Pictures that --int8 takes the ranges of values from; a folder will do",
+        ))
         .args(data_flags("validation", "Measure on this data set before and after"))
         .arg(
             Arg::new("output")

@@ -259,6 +259,50 @@ class NativeLearner(Learner):
         outcome = json.loads(report)
         return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
 
+    def optimize(
+        self,
+        target_device: str = "",
+        *,
+        output: Optional[PathLike] = None,
+        precision: str = "int8",
+        calibration: Union[None, Dataset] = None,
+        validation: Union[None, Dataset] = None,
+        verbose: bool = False,
+        **options: Any,
+    ) -> dict[str, Any]:
+        """Makes the loaded model smaller and faster, writes it as a container, and loads it.
+
+        Args:
+            target_device: Not taken: the result runs on every device.
+            output: Folder for the container.
+            precision: ``"int8"``: a quarter of the size, needs ``calibration``; ``"fp16"``: half the size.
+            calibration: What the learner looks at to find the ranges of its values; annotations are not needed.
+            validation: What it is measured on before and after.
+            verbose: Whether to show progress and print the report.
+            options: ``samples``, ``weight_bits``, ``keep_float``, ``max_drop``, ... as the flags of ``opendr optimize``; the
+                way ranges are found as ``method``.
+
+        Returns:
+            ``bytes`` and ``accuracy`` before and after, and a report of the ``layers``.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded.
+            ValueError: Something is missing, or an option is wrong.
+        """
+        if target_device:
+            raise Unsupported(f"{type(self).__name__} cannot optimize for {target_device!r}; give output and precision")
+        if output is None:
+            raise ValueError("optimize writes a model; give output, the folder for it")
+        if "method" in options:
+            options["calibration"] = options.pop("method")
+        given = {"precision": precision, **options}
+        report, text = self._handle.optimize(os.fspath(output), given, calibration, validation, verbose)
+        vars(self).update(self._handle.params())
+        if verbose:
+            print(text, end="")
+        outcome: dict[str, Any] = json.loads(report)
+        return outcome
+
     def reset(self) -> None:
         """Forgets what was seen: the next input begins anew."""
         self._handle.reset()

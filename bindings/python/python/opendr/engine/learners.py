@@ -129,7 +129,7 @@ class BaseLearner(ABC):
         """
         self._cannot("load")
 
-    def optimize(self, target_device: str) -> bool:
+    def optimize(self, target_device: str) -> Any:
         """Makes the model faster on ``target_device``.
 
         Raises:

@@ -1,0 +1,54 @@
+//! `optimize` of a loaded learner, as surfaces have it.
+
+use std::fs;
+use std::path::Path;
+
+use opendr_datasets::Problems;
+use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::learner::{AnyLearner, Entry};
+use opendr_engine::params::{ParamMap, Params};
+use opendr_engine::{Progress, Result, ResultExt};
+use opendr_optimize::{OptimizeJob, OptimizeOptions, Report};
+
+use crate::Opening;
+
+/// The model as it was, beside the one that is written, until that is done.
+const ORIGINAL: &str = "original";
+
+/// Makes the model of a loaded learner smaller: writes it to `output`, and loads it. `calibration` is what it looks at,
+/// `validation` what it is measured on before and after.
+///
+/// # Errors
+/// `NotFound` when nothing is loaded; `InvalidParam` for options that do not fit; as [`OptimizeJob::run`].
+pub fn optimize_loaded(
+    learner: &mut dyn AnyLearner,
+    entry: &Entry,
+    [calibration, validation]: [Option<DatasetRef<'_>>; 2],
+    options: &ParamMap,
+    output: &Path,
+    progress: &dyn Progress,
+) -> Result<Report> {
+    let options = OptimizeOptions::from_map(options)?;
+    let problems = Problems::strict();
+    let opening = |annotated| Opening { entry, annotated, problems: &problems, progress };
+    let calibration = calibration.map(|dataset| opening(false).to_train(dataset, None)).transpose()?;
+    let validation = validation.map(|dataset| opening(true).to_measure(dataset, None)).transpose()?;
+    let mut original = output.as_os_str().to_owned();
+    original.push(format!(".{}.{ORIGINAL}", std::process::id()));
+    learner.save(original.as_ref())?;
+    let job = OptimizeJob {
+        entry,
+        model: original.as_ref(),
+        options: &options,
+        calibration: calibration.as_deref().map(|samples| samples as &dyn DatasetIterator),
+        validation: validation.as_deref().map(|samples| samples as &dyn DatasetIterator),
+        output,
+        device: learner.device(),
+        progress,
+    };
+    let done = job.run();
+    fs::remove_dir_all(&original).context(|| format!("removing {}", Path::new(&original).display()))?;
+    let report = done?;
+    learner.load(output)?;
+    Ok(report)
+}
