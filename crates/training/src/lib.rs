@@ -7,8 +7,10 @@
 mod average;
 mod checkpoint;
 mod device;
+pub mod export;
 mod fit_learner;
 mod gradient;
+pub mod layers;
 mod objective;
 mod optimizer;
 mod params;

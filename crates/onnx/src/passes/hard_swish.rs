@@ -1,17 +1,39 @@
-//! Recognises MobileNetV3's activation in the four operators it is made of.
+//! Recognises MobileNetV3's activation in the operators it is made of.
 
 use super::rewriter::Rewriter;
 use crate::array::Array;
 use crate::proto::GraphProto;
 
-/// Rewrites `(x * c) * clip(x + 3, 0, 6)` as `HardSwish(x) * 6c`. The factor is 1 but for the rounding of `c` to half
-/// precision; [`fold_factor_into_conv`](super::fold_factor_into_conv) moves it on.
+/// Rewrites `(x * c) * clip(x + 3, 0, 6)` as `HardSwish(x) * 6c`, and `x * HardSigmoid(x)` as `HardSwish(x)`. The factor
+/// is 1 but for the rounding of `c` to half precision; [`fold_factor_into_conv`](super::fold_factor_into_conv) moves it
+/// on.
 pub fn fuse_hard_swish(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
     for index in 0..graph.node_count() {
-        fuse_one(&mut graph, index);
+        if fuse_sigmoid(&mut graph, index).is_none() {
+            fuse_one(&mut graph, index);
+        }
     }
     graph.finish();
+}
+
+/// `x * HardSigmoid(x)`, of slope 1/6 around 1/2.
+fn fuse_sigmoid(graph: &mut Rewriter, product: usize) -> Option<()> {
+    let node = graph.node_of(product, "Mul")?;
+    let [a, b] = node.input.as_slice() else { return None };
+    let (x, sigmoid) = match graph.made_by(b, "HardSigmoid") {
+        Some(sigmoid) => (a.clone(), sigmoid),
+        None => (b.clone(), graph.made_by(a, "HardSigmoid")?),
+    };
+    let node = graph.node(sigmoid)?;
+    let number = |key: &str| node.find(key).map(|attribute| attribute.f);
+    let as_swish = number("beta")? == 0.5 && (number("alpha")? - 1.0 / 6.0).abs() < 1e-6;
+    if !as_swish || *node.input.first()? != x || only_output_reader(graph, sigmoid) != Some(product) {
+        return None;
+    }
+    graph.remove(sigmoid);
+    graph.replace(product, "HardSwish", &[x]);
+    Some(())
 }
 
 fn fuse_one(graph: &mut Rewriter, product: usize) -> Option<()> {

@@ -1,0 +1,94 @@
+//! Activations by name.
+
+use std::fmt;
+use std::str::FromStr;
+
+use burn::tensor::{Tensor, activation};
+use opendr_engine::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// What follows a convolution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Activation {
+    /// Nothing.
+    Identity,
+    /// `max(0, x)`.
+    Relu,
+    /// `min(max(0, x), 6)`.
+    Relu6,
+    /// `x`, or a tenth of it where it is negative.
+    LeakyRelu,
+    /// `x · min(max(0, x / 6 + 1/2), 1)` (MobileNetV3).
+    HardSwish,
+    /// `x σ(x)`, also called swish.
+    Silu,
+    /// `x Φ(x)`.
+    Gelu,
+    /// `σ(x)`.
+    Sigmoid,
+    /// `tanh x`.
+    Tanh,
+}
+
+impl Activation {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Identity,
+        Self::Relu,
+        Self::Relu6,
+        Self::LeakyRelu,
+        Self::HardSwish,
+        Self::Silu,
+        Self::Gelu,
+        Self::Sigmoid,
+        Self::Tanh,
+    ];
+
+    /// Name in parameters.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Identity => "identity",
+            Self::Relu => "relu",
+            Self::Relu6 => "relu6",
+            Self::LeakyRelu => "leaky_relu",
+            Self::HardSwish => "hard_swish",
+            Self::Silu => "silu",
+            Self::Gelu => "gelu",
+            Self::Sigmoid => "sigmoid",
+            Self::Tanh => "tanh",
+        }
+    }
+
+    /// Applies it to every element.
+    pub fn apply<const D: usize>(self, x: Tensor<D>) -> Tensor<D> {
+        match self {
+            Self::Identity => x,
+            Self::Relu => activation::relu(x),
+            Self::Relu6 => activation::relu6(x),
+            Self::LeakyRelu => activation::leaky_relu(x, 0.1),
+            Self::HardSwish => activation::hard_swish(x),
+            Self::Silu => activation::silu(x),
+            Self::Gelu => activation::gelu(x),
+            Self::Sigmoid => activation::sigmoid(x),
+            Self::Tanh => activation::tanh(x),
+        }
+    }
+}
+
+impl fmt::Display for Activation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Activation {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self> {
+        Self::ALL.into_iter().find(|activation| activation.name() == name).ok_or_else(|| {
+            let names = Self::ALL.map(Self::name).join(", ");
+            Error::invalid_param(format!("no activation is called {name:?}; there are {names}"))
+        })
+    }
+}
