@@ -9,6 +9,7 @@ mod checkpoint;
 mod device;
 pub mod export;
 mod fit_learner;
+pub mod fuzzing;
 mod gradient;
 pub mod layers;
 mod objective;
@@ -17,6 +18,7 @@ mod params;
 mod schedule;
 mod standing;
 mod training;
+pub mod weights;
 
 pub use device::training_device;
 pub use fit_learner::{fit_learner, open_for_training};

@@ -1,0 +1,67 @@
+//! Elements of weights as they lie in files.
+
+/// The element types that weights are stored in; integers of checkpoints are counters and no weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Element {
+    F64,
+    F32,
+    F16,
+    Bf16,
+}
+
+impl Element {
+    /// Bytes of one element.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::F64 => 8,
+            Self::F32 => 4,
+            Self::F16 | Self::Bf16 => 2,
+        }
+    }
+
+    /// The numbers in little-endian `bytes`; what is left over at the end is dropped.
+    pub fn numbers(self, bytes: &[u8]) -> Vec<f32> {
+        match self {
+            Self::F64 => bytes.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b) as f32).collect(),
+            Self::F32 => bytes.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect(),
+            Self::F16 => bytes.as_chunks().0.iter().map(|&b| f32_from_f16(u16::from_le_bytes(b))).collect(),
+            Self::Bf16 => {
+                let number = |&b: &[u8; 2]| f32::from_bits(u32::from(u16::from_le_bytes(b)) << 16);
+                bytes.as_chunks().0.iter().map(number).collect()
+            }
+        }
+    }
+}
+
+/// IEEE 754 binary16 as binary32: exact for every value.
+fn f32_from_f16(bits: u16) -> f32 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let (exponent, fraction) = ((bits >> 10) & 0x1f, f32::from(bits & 0x3ff));
+    match exponent {
+        0 => sign * fraction * (-24f32).exp2(),
+        0x1f if fraction == 0.0 => sign * f32::INFINITY,
+        0x1f => f32::NAN,
+        _ => sign * (1024.0 + fraction) * (f32::from(exponent) - 25.0).exp2(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_width_reads_the_same_number() {
+        for number in [0.0f32, 1.0, -2.5, 0.375] {
+            assert_eq!(Element::F32.numbers(&number.to_le_bytes()), [number]);
+            assert_eq!(Element::F64.numbers(&f64::from(number).to_le_bytes()), [number]);
+            let brain = (number.to_bits() >> 16) as u16;
+            assert_eq!(Element::Bf16.numbers(&brain.to_le_bytes()), [number]);
+        }
+        let halves =
+            [(0x0000, 0.0), (0x3c00, 1.0), (0xc100, -2.5), (0x0001, 5.9604645e-8), (0x7bff, 65504.0)];
+        for (bits, number) in halves {
+            assert_eq!(Element::F16.numbers(&u16::to_le_bytes(bits)), [number]);
+        }
+        assert!(f32_from_f16(0x7e00).is_nan() && f32_from_f16(0xfc00) == f32::NEG_INFINITY);
+    }
+}
