@@ -5,6 +5,8 @@ mod nanodet;
 pub mod single_shot_detector;
 
 pub use centernet::{CenterNet, CenterNetParams};
+#[cfg(feature = "training")]
+pub use nanodet::{NanodetFitParams, NanodetFreeze, NanodetNetwork};
 pub use nanodet::{Nanodet, NanodetParams};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_vision::InputGeometry;

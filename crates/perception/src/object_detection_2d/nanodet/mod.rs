@@ -15,6 +15,22 @@ use crate::object_detection_2d::boxes_from_candidates;
 use crate::picture_network::PictureNetwork;
 use crate::suppression::{Candidate, Suppression, SuppressionKind};
 
+#[cfg(feature = "training")]
+mod assignment;
+#[cfg(feature = "training")]
+mod batch;
+#[cfg(feature = "training")]
+mod fit;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+
+#[cfg(feature = "training")]
+pub use fit::{NanodetFitParams, NanodetFreeze};
+#[cfg(feature = "training")]
+pub use network::NanodetNetwork;
+
 /// What a user may set.
 #[derive(Debug, Clone, Params)]
 pub struct NanodetParams {
@@ -58,10 +74,20 @@ struct Level {
 
 /// Side of the network's input, pixels.
 const SIDE: usize = 416;
+/// How far the cells of each level are apart, pixels.
+const STRIDES: [usize; 3] = [8, 16, 32];
+/// The network's outputs for each level: scores, and logits of distances.
+const SCORE_OUTPUTS: [&str; 3] = ["Identity", "Identity_1", "Identity_2"];
+const DISTANCE_OUTPUTS: [&str; 3] = ["Identity_3", "Identity_4", "Identity_5"];
 /// Bins of the distribution over each distance (`reg_max` + 1).
 const BINS: usize = 11;
 const MEAN_BGR: [f32; 3] = [103.53, 116.28, 123.675];
 const STD_BGR: [f32; 3] = [57.375, 57.12, 58.395];
+
+/// What a network with an input of `side` pixels each way is given.
+fn preprocess(side: usize) -> Preprocess {
+    Preprocess::new(side, side).order(ChannelOrder::Bgr).normalise(MEAN_BGR, STD_BGR)
+}
 
 impl Learner for Nanodet {
     const SPEC: Spec = Spec::new("nanodet", Task::ObjectDetection2d)
@@ -72,12 +98,7 @@ impl Learner for Nanodet {
             ("hf", "the runtime chooses the precision"),
             ("dynamic", "the network's input has one size"),
             ("ch_l", "the runtime chooses the memory layout"),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("warmup_steps", Spec::OF_TRAINING),
-            ("warmup_ratio", Spec::OF_TRAINING),
-            ("lr_schedule_T_max", Spec::OF_TRAINING),
-            ("lr_schedule_eta_min", Spec::OF_TRAINING),
-            ("grad_clip", Spec::OF_TRAINING),
+            ("lr_schedule_T_max", "the learning rate falls until the last epoch"),
         ]);
     type Params = NanodetParams;
     type Input<'a> = &'a Image;
@@ -85,19 +106,14 @@ impl Learner for Nanodet {
     type State = ();
 
     fn load(model: &Model, params: NanodetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
-            Preprocess::new(SIDE, SIDE).order(ChannelOrder::Bgr).normalise(MEAN_BGR, STD_BGR)
-        })?;
-        let level = |stride: usize, scores: &str, distances: &str| -> Result<Level> {
-            let (scores, distances) = (network.output(scores)?, network.output(distances)?);
-            Ok(Level { stride, columns: SIDE / stride, scores, distances })
+        let network = PictureNetwork::open(model, device, |_| preprocess(SIDE))?;
+        let level = |index: usize| -> Result<Level> {
+            let scores = network.output(SCORE_OUTPUTS[index])?;
+            let distances = network.output(DISTANCE_OUTPUTS[index])?;
+            Ok(Level { stride: STRIDES[index], columns: SIDE / STRIDES[index], scores, distances })
         };
         Ok(Self {
-            levels: [
-                level(8, "Identity", "Identity_3")?,
-                level(16, "Identity_1", "Identity_4")?,
-                level(32, "Identity_2", "Identity_5")?,
-            ],
+            levels: [level(0)?, level(1)?, level(2)?],
             classes: model.manifest().classes.clone(),
             scratch: Pool::default(),
             network,

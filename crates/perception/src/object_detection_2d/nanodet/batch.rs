@@ -1,0 +1,93 @@
+//! Batches for NanoDet: pictures, and which cells are to find what.
+
+use opendr_datasets::loader::{Collate, ImageBatch, ImageBatches};
+use opendr_engine::dataset::Sample;
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
+use opendr_engine::{Error, Result, Value};
+use opendr_vision::InputGeometry;
+
+use super::assignment::{Grid, Positive, Wanted};
+use super::{STRIDES, preprocess};
+
+/// Boxes with a side below this are not learned, pixels of the network's input.
+const SMALLEST: f32 = 2.0;
+
+/// Makes batches of pictures with boxes.
+pub struct Batches {
+    pictures: ImageBatches,
+    grid: Grid,
+    classes: Classes,
+}
+
+/// A batch.
+pub struct Batch {
+    pub pictures: ImageBatch,
+    /// With cells numbered through all pictures of the batch.
+    pub positives: Vec<Positive>,
+}
+
+impl Batches {
+    /// Of pictures with `side` pixels each way.
+    pub fn new(side: usize, classes: Classes) -> Self {
+        Self { pictures: ImageBatches::new(preprocess(side)), grid: Grid::new(side, &STRIDES), classes }
+    }
+
+    fn wanted(&self, boxes: &BoundingBoxList, geometry: &InputGeometry) -> Result<Vec<Wanted>> {
+        let mut wanted = Vec::with_capacity(boxes.boxes.len());
+        for found in &boxes.boxes {
+            if found.segment.as_ref().is_some_and(|segment| segment.iscrowd) {
+                continue;
+            }
+            let class = self.class(found)?;
+            let [x0, y0, x1, y1] = found.corners();
+            let ([x0, y0], [x1, y1]) =
+                (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
+            if x1 - x0 >= SMALLEST && y1 - y0 >= SMALLEST {
+                wanted.push(Wanted { class, corners: [x0, y0, x1, y1] });
+            }
+        }
+        Ok(wanted)
+    }
+
+    fn class(&self, found: &BoundingBox) -> Result<usize> {
+        let index = match &found.name {
+            Name::Index(index) => Some(*index),
+            Name::Label(label) => self.classes.index(label),
+        };
+        let class = index.and_then(|index| usize::try_from(index).ok());
+        class.filter(|class| *class < self.classes.len()).ok_or_else(|| {
+            Error::invalid_input(format!(
+                "a box of class {} in a data set of {} classes ({}); name all classes of the data set",
+                found.name,
+                self.classes.len(),
+                self.classes.iter().take(5).collect::<Vec<_>>().join(", ")
+            ))
+        })
+    }
+}
+
+impl Collate for Batches {
+    type Batch = Batch;
+
+    fn start(&self, capacity: usize) -> Batch {
+        Batch { pictures: self.pictures.start(capacity), positives: Vec::new() }
+    }
+
+    fn add(&self, batch: &mut Batch, mut sample: Sample) -> Result<()> {
+        let Some(Value::BoundingBoxList(boxes)) = sample.target.take() else {
+            return Err(Error::invalid_input(
+                "a sample without boxes; NanoDet learns from pictures with BoundingBoxList targets",
+            ));
+        };
+        // A class that is not there has to show before the picture is in.
+        boxes.boxes.iter().try_for_each(|found| self.class(found).map(drop))?;
+        let first = batch.pictures.len() * self.grid.cells();
+        self.pictures.add(&mut batch.pictures, sample)?;
+        let Some(geometry) = batch.pictures.geometries().last() else { return Ok(()) };
+        let positives = self.grid.positives(&self.wanted(&boxes, geometry)?);
+        batch.positives.extend(
+            positives.into_iter().map(|positive| Positive { cell: first + positive.cell, ..positive }),
+        );
+        Ok(())
+    }
+}

@@ -1,0 +1,129 @@
+//! `fit` of NanoDet: fine-tuning of a loaded model, also for other classes.
+
+use burn::tensor::Device;
+use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::learner::{Fit, FitJob, Learner};
+use opendr_engine::model::{Manifest, Model};
+use opendr_engine::params::Params;
+use opendr_engine::target::Classes;
+use opendr_engine::{Error, Result, ResultExt, Statistics};
+use opendr_training::weights::{Rules, WeightTable};
+use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+
+use super::network::{DISTANCES, NanodetNetwork};
+use super::objective::NanodetObjective;
+use super::{Nanodet, NanodetParams};
+
+opendr_engine::choices! {
+    /// What does not train.
+    pub enum NanodetFreeze {
+        /// Everything trains.
+        None = "none",
+        /// The backbone stays as it is; no gradient is computed for it.
+        Backbone = "backbone",
+        /// Backbone and pyramid stay; only the heads train, in a third of the time.
+        Features = "features",
+    }
+}
+
+/// What a user may set of the training.
+#[derive(Debug, Clone, Params)]
+pub struct NanodetFitParams {
+    /// What does not train: for few pictures, or little time.
+    pub freeze: NanodetFreeze,
+    /// Whether pictures are cropped, mirrored and recoloured at random.
+    #[param(default = true)]
+    pub augment: bool,
+    /// What every training takes.
+    #[param(
+        flatten,
+        epochs = 50,
+        batch_size = 8,
+        lr = 0.001,
+        weight_decay = 0.0005,
+        lr_schedule = ScheduleKind::Cosine,
+        lr_min = 0.00005,
+        warmup_steps = 20,
+        warmup_ratio = 0.01,
+        grad_clip = 35.0
+    )]
+    pub training: TrainingParams,
+}
+
+impl Fit for Nanodet {
+    type FitParams = NanodetFitParams;
+
+    fn fit(
+        base: Option<&Model>,
+        params: &NanodetParams,
+        fit_params: &NanodetFitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let NanodetFitParams { freeze, augment, training } = fit_params;
+        let dataset = open_for_training::<Self>(dataset, training)?;
+        let classes = classes_of(&*dataset, base)?;
+        let device = begin(job, training)?;
+        let network = match base {
+            Some(base) => NanodetNetwork::from_model(base, &device)?,
+            None => {
+                job.progress.note("no model is loaded: NanoDet starts from random weights, which takes long");
+                NanodetNetwork::new(classes.len(), &device)
+            }
+        };
+        let known = base.is_some_and(|base| base.manifest().classes == classes);
+        let network = if known { network } else { network.with_classes(classes.len()) };
+        let network = match freeze {
+            NanodetFreeze::None => network,
+            NanodetFreeze::Backbone => network.freeze_backbone(),
+            NanodetFreeze::Features => network.freeze_features(),
+        };
+        let manifest = manifest(classes.clone(), base);
+        let objective = NanodetObjective::new(classes, *augment, manifest);
+        fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
+    }
+}
+
+/// The classes to learn: those that the data set names, else those of the model.
+fn classes_of(dataset: &dyn DatasetIterator, base: Option<&Model>) -> Result<Classes> {
+    let classes = dataset.classes();
+    match base.map(|base| &base.manifest().classes) {
+        _ if !classes.is_empty() => Ok(classes),
+        Some(known) if !known.is_empty() => Ok(known.clone()),
+        _ => Err(Error::invalid_input(
+            "the data set does not name its classes; name them, or load a model first",
+        )),
+    }
+}
+
+impl NanodetNetwork {
+    /// The network in a container: the zoo's, or one that was trained here.
+    ///
+    /// # Errors
+    /// `InvalidInput` when its layers are not NanoDet-g's.
+    pub fn from_model(model: &Model, device: &Device) -> Result<Self> {
+        let what = || format!("{} does not hold NanoDet-g", model.path().display());
+        let table = WeightTable::from_bytes(&model.onnx()?)?;
+        let head = table.weights().iter().rev().find(|weight| weight.shape().len() == 4);
+        let classes = head.and_then(|head| head.shape().first()?.checked_sub(DISTANCES));
+        let classes = classes.filter(|classes| *classes > 0);
+        let classes =
+            classes.ok_or_else(|| Error::invalid_input("its last layer is no head")).context(what)?;
+        let network = Self::new(classes, device);
+        let (network, report) = table.apply(network, &Rules::by_order()).context(what)?;
+        report.complete().context(what)?;
+        Ok(network)
+    }
+}
+
+fn manifest(classes: Classes, base: Option<&Model>) -> Manifest {
+    let mut manifest = Manifest::new(Nanodet::SPEC.name, "");
+    manifest.task = Some(Nanodet::SPEC.task);
+    manifest.classes = classes;
+    if let Some(base) = base {
+        manifest.licence = base.manifest().licence.clone();
+        manifest.inputs = base.manifest().inputs.clone();
+    }
+    manifest
+}
