@@ -22,3 +22,15 @@ def log():
         subprocess.run([*command, *arguments], cwd=ROOT, input=text, text=True, check=True)
 
     return write
+
+
+@pytest.fixture(scope="session")
+def shrink():
+    """Makes an ONNX file smaller by crates/optimize/examples/shrink.rs."""
+    program = os.environ.get("OPENDR_OPTIMIZE_SHRINK")
+    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-optimize", "--example", "shrink", "--"]
+
+    def run(precision, source, target):
+        subprocess.run([*command, precision, str(source), str(target)], cwd=ROOT, check=True)
+
+    return run

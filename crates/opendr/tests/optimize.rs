@@ -36,7 +36,12 @@ fn optimized(models: &Models, model: &Path, precision: Precision) -> Report {
     let job = OptimizeJob {
         entry: opendr::registry().find("nanodet").unwrap(),
         model,
-        options: &OptimizeOptions { precision, ..OptimizeOptions::default() },
+        options: &OptimizeOptions {
+            precision,
+            samples: 16,
+            measured_by: Some("map50".to_owned()),
+            ..OptimizeOptions::default()
+        },
         calibration: Some(&*train),
         validation: Some(&*val),
         output: &output.0,

@@ -74,6 +74,8 @@ struct Writer<'a> {
     ranges: &'a HashMap<String, Range>,
     /// Tensors that became bytes, and what stands for them.
     rounded: HashMap<String, String>,
+    /// Initializers that were added, by what they hold: layers may share weights.
+    constants: HashMap<(i32, Vec<i64>, Vec<u8>), String>,
     /// Names of the scale and the zero point of each range.
     parameters: HashMap<&'a str, [String; 2]>,
 }
@@ -89,6 +91,7 @@ impl<'a> Writer<'a> {
             names: made.chain(given).chain(constant).collect(),
             ranges,
             rounded: HashMap::new(),
+            constants: HashMap::new(),
             parameters: HashMap::new(),
         }
     }
@@ -123,9 +126,14 @@ impl<'a> Writer<'a> {
     }
 
     fn constant(&mut self, hint: String, mut tensor: TensorProto) -> String {
-        tensor.name = self.unique(hint);
-        let name = tensor.name.clone();
+        let content = (tensor.data_type, tensor.dims.clone(), tensor.raw_data.clone());
+        if let Some(name) = self.constants.get(&content) {
+            return name.clone();
+        }
+        let name = self.unique(hint);
+        tensor.name.clone_from(&name);
         self.initializers.push(tensor);
+        self.constants.insert(content, name.clone());
         name
     }
 

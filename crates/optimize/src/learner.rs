@@ -92,7 +92,7 @@ impl OptimizeJob<'_> {
         Ok(recordings)
     }
 
-    /// The main number of the task's metric.
+    /// The number of the task's metric that counts.
     fn measure(&self, model: &Model) -> Result<(String, f64)> {
         let dataset = self.validation.ok_or_else(|| Error::internal("nothing to measure on"))?;
         let metric = opendr_metrics::find(metric_of(self.entry.spec.task)?)?;
@@ -105,9 +105,15 @@ impl OptimizeJob<'_> {
         if !outcome.complete {
             return Err(Error::invalid_input("stopped while measuring"));
         }
-        let name = outcome.report.headline;
-        let value = outcome.report.statistics.get(&name).ok_or_else(|| {
-            Error::invalid_input(format!("{} gives no {name:?} on this data set", metric.name))
+        let name = self.options.measured_by.clone().unwrap_or(outcome.report.headline);
+        let scalars = &outcome.report.statistics.scalars;
+        let value = scalars.get(&name).copied().ok_or_else(|| {
+            let names: Vec<_> = scalars.keys().map(String::as_str).collect();
+            Error::invalid_param(format!(
+                "measured_by: {} gives no {name:?}; it gives {}",
+                metric.name,
+                names.join(", ")
+            ))
         })?;
         Ok((name, value))
     }

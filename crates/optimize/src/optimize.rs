@@ -13,7 +13,7 @@ use opendr_onnx::{bytes_from_model, model_from_bytes};
 
 use crate::half::halve_weights;
 use crate::options::{OptimizeOptions, Precision};
-use crate::quantise::Quantiser;
+use crate::quantise::{Quantiser, check_version};
 use crate::report::{Accuracy, Report};
 
 /// The metric's main number of a model, and its name. More is better.
@@ -119,6 +119,7 @@ fn networks<'a>(
                 Kind::Half(Box::new(network))
             }
             Precision::Int8 => {
+                check_version(&network)?;
                 let own = of_network(recordings, &Session::open(&bytes, device)?);
                 Kind::Bytes(Box::new(Quantiser::new(network, own, options, device, progress)?))
             }

@@ -43,8 +43,10 @@ pub struct OptimizeOptions {
     /// Layers that stay in floats, by the names that the report has; of `int8` only.
     #[param(default = Vec::new())]
     pub keep_float: Vec<String>,
-    /// Layers go back to floats, those that lose most first, until the metric's main number is worse by at most this; needs
-    /// data with annotations.
+    /// The number of the task's metric that counts, e.g. `map50`; its main one where none is named.
+    pub measured_by: Option<String>,
+    /// Layers go back to floats, those that lose most first, until the number that counts is worse by at most this; needs data
+    /// with annotations.
     #[param(range = 0.0..=1e9)]
     pub max_drop: Option<f64>,
 }

@@ -23,6 +23,21 @@ const COMPARED: usize = 8;
 /// Tensors that are watched at once: all of a large network's would not fit into memory.
 const WATCHED: usize = 64;
 
+/// Checks that a network is written in operators that can be quantised.
+///
+/// # Errors
+/// `Unsupported` when they are too old.
+pub fn check_version(model: &ModelProto) -> Result<()> {
+    let opset =
+        model.opset_import.iter().find(|opset| opset.domain.is_empty()).map_or(1, |opset| opset.version);
+    if opset >= LEAST_OPSET {
+        return Ok(());
+    }
+    Err(Error::unsupported(format!(
+        "the network uses ONNX operators of version {opset}, int8 takes {LEAST_OPSET} or later: export it anew, or take fp16"
+    )))
+}
+
 /// A network that is being quantised.
 pub struct Quantiser<'a> {
     model: ModelProto,
@@ -39,7 +54,7 @@ impl<'a> Quantiser<'a> {
     ///
     /// # Errors
     /// `InvalidInput` when there is no recording, `InvalidParam` when `keep_float` names no layer, `Unsupported` when the
-    /// network is too old or has no layer to quantise.
+    /// network has no layer to quantise.
     pub fn new(
         mut model: ModelProto,
         recordings: Vec<&'a Recording>,
@@ -47,14 +62,6 @@ impl<'a> Quantiser<'a> {
         device: Device,
         progress: &dyn Progress,
     ) -> Result<Self> {
-        let opset =
-            model.opset_import.iter().find(|opset| opset.domain.is_empty()).map_or(1, |opset| opset.version);
-        if opset < LEAST_OPSET {
-            return Err(Error::unsupported(format!(
-                "the network uses ONNX operators of version {opset}, int8 takes {LEAST_OPSET} or later: export it anew, or \
-                 take fp16"
-            )));
-        }
         if recordings.is_empty() {
             return Err(Error::invalid_input(
                 "int8 takes its ranges from what the network sees, and there is no sample: name a data set",
@@ -93,11 +100,14 @@ impl<'a> Quantiser<'a> {
         let inputs: Vec<String> = self.graph.input.iter().map(|input| input.name.clone()).collect();
         let (given, made): (Vec<_>, Vec<_>) = seen.into_iter().partition(|name| inputs.contains(name));
         for name in given {
-            let place = inputs.iter().position(|input| *input == name).unwrap_or_default();
-            let histogram = self.histograms.entry(name).or_default();
-            for tensor in self.recordings.iter().filter_map(|recording| recording.given.get(place)) {
-                histogram.add(tensor.view()?.values()?);
+            let mut histogram = Histogram::default();
+            for recording in &self.recordings {
+                let tensors = recording.inputs.iter().zip(&recording.given);
+                for (_, tensor) in tensors.filter(|(info, _)| info.name == name) {
+                    histogram.add(tensor.view()?.values()?);
+                }
             }
+            self.histograms.insert(name, histogram);
         }
         let batches = made.len().div_ceil(WATCHED);
         progress.begin("calibrating", Some((self.recordings.len() * batches) as u64), Unit::Items);
@@ -162,16 +172,20 @@ impl<'a> Quantiser<'a> {
     /// What each layer loses by itself.
     fn own_reports(&self) -> Vec<LayerReport> {
         let ranges = self.ranges();
+        let plan = Plan::new(&self.graph, self.layers.clone());
+        let shared: HashMap<&String, &String> =
+            plan.tensors.iter().map(|(tensor, range)| (tensor, range)).collect();
         let report = |layer: &Layer| {
             let input = self.graph.node.get(layer.node).and_then(|node| node.input.first());
-            let plan = input.and_then(|input| self.histograms.get(input).zip(ranges.get(input)));
+            let range = |input| ranges.get(shared.get(input).copied().unwrap_or(input));
+            let seen = input.and_then(|input| self.histograms.get(input).zip(range(input)));
             let weights = ByteWeights::new(&layer.weights, layer.axis, self.options.weight_bits, |_| 0.0);
             LayerReport {
                 name: layer.name.clone(),
                 op: layer.op.clone(),
                 weights: layer.weights.data().len(),
                 weight_ratio: weights.map_or(0.0, |weights| weights.signal_to_noise),
-                input_ratio: plan.map_or(200.0, |(histogram, range)| range.signal_to_noise(histogram)),
+                input_ratio: seen.map_or(0.0, |(histogram, range)| range.signal_to_noise(histogram)),
                 output_ratio: 0.0,
                 is_float: layer.is_float,
             }

@@ -81,7 +81,7 @@ mod tests {
         assert_eq!(columns.scales.len(), 2);
         assert_eq!(columns.bytes, [1, -3, 127, 127, 0, 0]);
         let seven = ByteWeights::new(&by_row, 0, 7, |_| 0.0).unwrap();
-        assert_eq!(seven.bytes[..2], [63, -32]);
+        assert_eq!(seven.bytes[..2], [63, -31]);
         assert!(seven.signal_to_noise < rows.signal_to_noise);
         assert_eq!(ByteWeights::new(&by_row, 0, 8, |_| 10.0).unwrap().bytes[2], 10);
     }

@@ -170,13 +170,13 @@ fn int8_answers_nearly_the_same_on_every_engine() {
         assert_eq!(written.file("notes.txt").unwrap(), b"kept");
         assert!(written.manifest().lineage.importer.contains("int8"));
         let ratios = ratios(&model, &written);
-        assert!(ratios.iter().all(|ratio| *ratio > 25.0), "{calibration:?}: {ratios:?}\n{report}");
+        assert!(ratios.iter().all(|ratio| *ratio > 22.0), "{calibration:?}: {ratios:?}\n{report}");
         assert_eq!(
             report.layers.iter().map(|layer| layer.op.as_str()).collect::<Vec<_>>(),
             ["Conv", "Conv", "Conv", "Gemm"]
         );
         assert!(
-            report.layers.iter().all(|layer| layer.output_ratio > 25.0 && layer.weight_ratio > 30.0),
+            report.layers.iter().all(|layer| layer.output_ratio > 22.0 && layer.weight_ratio > 30.0),
             "{report}"
         );
     }
@@ -258,7 +258,7 @@ fn what_cannot_be_done_is_told() {
     let mut writer = ModelWriter::new(folder.0.join("old"), Manifest::new("", "")).unwrap();
     writer.add("model.onnx", &bytes_from_model(&old)).unwrap();
     let old = writer.finish().unwrap();
-    assert_eq!(run(&old, &recordings(&old, 1)).kind(), ErrorKind::Unsupported);
+    assert_eq!(run(&old, &recordings(&model, 1)).kind(), ErrorKind::Unsupported);
     let mut writer = ModelWriter::new(folder.0.join("none"), Manifest::new("", "")).unwrap();
     writer.add("weights.bin", b"").unwrap();
     assert_eq!(run(&writer.finish().unwrap(), &[]).kind(), ErrorKind::Unsupported);
