@@ -99,6 +99,26 @@ fn the_bare_network_is_exported() {
 }
 
 #[test]
+fn a_model_is_made_smaller() {
+    let Some((place, data)) = Place::with_data() else { return };
+    let done =
+        place.run(["optimize", "yunet/320", "--fp16", "--output", "half", "--json", "-q"]).ends_with(0);
+    let report: Value = serde_json::from_str(&done.stdout).unwrap();
+    let [before, after] = [0, 1].map(|at| report["bytes"][at].as_f64().unwrap());
+    assert!(report["precision"] == "fp16" && after < 0.6 * before, "{report}");
+    let photo = data.join("data/photos/zidane.jpg");
+    let faces = |flags: &[&str]| {
+        let found =
+            place.run(["infer", "yunet/320", photo.to_str().unwrap(), "--json", "-q"].iter().chain(flags));
+        found.ends_with(0).lines()[0]["outputs"]["boxes"]["boxes"].as_array().unwrap().len()
+    };
+    let before = faces(&[]);
+    assert!(before >= 2 && faces(&["--model", "half"]) == before, "{before}");
+    let refused = place.run(["optimize", "yunet/320", "--output", "small"]).ends_with(2);
+    assert!(refused.stderr.contains("--int8"), "{}", refused.stderr);
+}
+
+#[test]
 fn wrong_use_is_told() {
     let Some(place) = place() else { return };
     for (flags, code, wanted) in [
@@ -106,7 +126,7 @@ fn wrong_use_is_told() {
         (&["--epochs", "many"], 12, "epochs = many should be"),
         (&["--epoch", "1"], 2, "--epochs"),
         (&["--split", "nonsense"], 13, "nonsense"),
-        (&["--format", "mot"], 11, "learns from BoundingBoxList"),
+        (&["--format", "imagenet"], 11, "learns from BoundingBoxList"),
         (&["--val", "nowhere"], 13, "nowhere"),
         (&["--keep-empty"], 2, "--teacher"),
         (&["--teacher", "nonsense"], 13, "no learner \"nonsense\""),

@@ -26,7 +26,7 @@ fn learners(place: &Place) -> Vec<String> {
 fn help_of_every_command_has_examples() {
     let place = Place::new();
     let help = place.run(["--help"]).ends_with(0).stdout;
-    for command in ["infer", "fit", "export", "models", "download", "bench", "runtime", "demo"] {
+    for command in ["infer", "fit", "export", "optimize", "models", "download", "bench", "runtime", "demo"] {
         assert!(help.contains(command), "{help}");
         let own = place.run([command, "--help"]).ends_with(0).stdout;
         assert!(own.contains(&format!("Examples:\n  opendr {command}")), "{own}");

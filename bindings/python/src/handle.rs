@@ -162,7 +162,6 @@ impl Handle {
     }
 
     /// Makes the model smaller and loads the result; the report as JSON and as text.
-    #[allow(clippy::too_many_arguments)] // They are the keywords of `optimize` in Python.
     fn optimize(
         &self,
         py: Python<'_>,

@@ -23,7 +23,11 @@ fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     table.set_item("task", task.name())?;
     table.set_item("class_name", class)?;
     table.set_item("about", about)?;
-    table.set_item("without_effect", without_effect.to_vec())?;
+    // What trains in this build has its effect.
+    let fields = || entry.params.iter().chain(entry.fit_params);
+    let has = |name: &str| fields().any(|field| field.name == name || field.aliases.contains(&name));
+    let idle: Vec<_> = without_effect.iter().filter(|(name, _)| !has(name)).copied().collect();
+    table.set_item("without_effect", idle)?;
     table.set_item("params", rows(py, entry.params, field)?)?;
     table.set_item("fit_params", rows(py, entry.fit_params, field)?)?;
     table.set_item("ports", rows(py, entry.ports, port)?)?;

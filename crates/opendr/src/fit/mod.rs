@@ -63,8 +63,7 @@ pub fn fit(
     let begun = Instant::now();
     check_fit(entry, &options.params)?;
     let output = options.output_folder(entry.spec.name)?;
-    run_folder::prepare(&output, options.resume)?;
-    progress.note(&format!("output: {}", output.display()));
+    run_folder::check(&output, options.resume)?;
     let problems = options.problems();
     let preparation = Preparation { entry, options, output: &output, problems: &problems, progress };
     let external = options
@@ -150,6 +149,8 @@ impl Preparation<'_> {
         let name = self.options.name.clone().unwrap_or(path);
         let samples = self.opening(teacher.is_none()).to_train(dataset, self.options.split.as_deref())?;
         let mut samples = limited(samples, self.options.limit);
+        run_folder::make(self.output)?;
+        self.progress.note(&format!("output: {}", self.output.display()));
         if let Some(teacher) = teacher {
             samples = Box::new(self.lesson(name.clone())?.teach(teacher, samples)?);
         }

@@ -26,20 +26,27 @@ impl FitOptions {
     }
 }
 
+/// That nothing would be written over.
+///
+/// # Errors
+/// `InvalidInput` when something is in the folder, unless a training is resumed.
+pub(super) fn check(folder: &Path, resume: bool) -> Result<()> {
+    let is_empty = fs::read_dir(folder).map_or(true, |mut entries| entries.next().is_none());
+    if resume || is_empty {
+        return Ok(());
+    }
+    Err(Error::invalid_input(format!(
+        "{} is not empty: resume the training in it, or name another folder, so that nothing is lost",
+        folder.display()
+    )))
+}
+
 /// Makes the folder.
 ///
 /// # Errors
-/// `InvalidInput` when something is in it, unless a training is resumed; `Io` when it cannot be made.
-pub(super) fn prepare(folder: &Path, resume: bool) -> Result<()> {
-    let context = || format!("making {}", folder.display());
-    fs::create_dir_all(folder).context(context)?;
-    if !resume && fs::read_dir(folder).context(context)?.next().is_some() {
-        return Err(Error::invalid_input(format!(
-            "{} is not empty: resume the training in it, or name another folder, so that nothing is lost",
-            folder.display()
-        )));
-    }
-    Ok(())
+/// `Io` when it cannot be made.
+pub(super) fn make(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))
 }
 
 fn last_run(runs: &Path, name: &str) -> Result<PathBuf> {
@@ -108,8 +115,10 @@ mod tests {
         }
         assert_eq!(last_run(&runs, "ssd").unwrap(), runs.join("ssd-20260102-000000"));
         assert_eq!(new_run(&runs, "ssd", "20260102-000000"), runs.join("ssd-20260102-000000-2"));
-        assert!(prepare(&runs, false).unwrap_err().to_string().contains("is not empty"));
-        prepare(&runs, true).unwrap();
+        assert!(check(&runs, false).unwrap_err().to_string().contains("is not empty"));
+        check(&runs, true).unwrap();
+        check(&runs.join("ssd"), false).unwrap();
+        check(&runs.join("none"), false).unwrap();
         fs::remove_dir_all(runs).unwrap();
     }
 }
