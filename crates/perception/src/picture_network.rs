@@ -48,12 +48,31 @@ impl PictureNetwork {
     pub fn run(
         &self,
         image: &Image,
+        sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+    ) -> Result<()> {
+        self.run_through(&self.preprocess, image, sink)
+    }
+
+    /// The same with an input of `width` x `height` pixels, for networks that take several sizes.
+    pub fn run_sized(
+        &self,
+        image: &Image,
+        [width, height]: [usize; 2],
+        sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
+    ) -> Result<()> {
+        self.run_through(&self.preprocess.with_size(width, height), image, sink)
+    }
+
+    fn run_through(
+        &self,
+        preprocess: &Preprocess,
+        image: &Image,
         mut sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
     ) -> Result<()> {
-        let (shape, count) = (self.preprocess.shape(), self.preprocess.len());
+        let (shape, count) = (preprocess.shape(), preprocess.len());
         let mut input = self.inputs.take();
         input.resize(count, 0.0);
-        let geometry = self.preprocess.run_into(image.view(), &mut input)?;
+        let geometry = preprocess.run_into(image.view(), &mut input)?;
         let input = TensorView::new(&shape, &input[..])?;
         self.session.run(&[input], |outputs| sink(outputs, &geometry))
     }

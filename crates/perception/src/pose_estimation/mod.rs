@@ -1,9 +1,14 @@
 //! Key points of persons in a picture.
 
+mod lightweight_open_pose;
 mod movenet;
+mod one_euro;
+pub mod part_affinity;
 mod part_tree;
+mod pose_tracks;
 mod posenet;
 
+pub use lightweight_open_pose::{LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState};
 pub use movenet::{Movenet, MovenetParams};
 use opendr_engine::target::{Keypoint, Pose, Skeleton};
 pub use posenet::{Posenet, PosenetParams};

@@ -1,0 +1,53 @@
+//! The size of the network's input.
+
+use super::STRIDE;
+
+/// Which sizes a network takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum InputSize {
+    /// Any whole number of cells.
+    Free,
+    /// Width and height, pixels.
+    Fixed([usize; 2]),
+}
+
+/// No input is wider than so many heights: the picture may be anything, memory may not.
+const MOST_HEIGHTS: usize = 4;
+
+impl InputSize {
+    /// What a network with an input `[1, 3, height, width]` takes.
+    pub(super) fn of_network(dims: &[Option<usize>]) -> Self {
+        match dims {
+            [_, _, Some(height), Some(width)] if *height > 0 && *width > 0 => Self::Fixed([*width, *height]),
+            _ => Self::Free,
+        }
+    }
+
+    /// Width and height of the input for a picture of `[width, height]` pixels.
+    pub(super) fn of_picture(self, [width, height]: [usize; 2], base_height: usize) -> [usize; 2] {
+        match self {
+            Self::Fixed(size) => size,
+            Self::Free => {
+                let rows = base_height.div_ceil(STRIDE).max(1);
+                let columns = (rows * width).div_ceil(height.max(1)).clamp(1, MOST_HEIGHTS * rows);
+                [columns * STRIDE, rows * STRIDE]
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_are_whole_cells() {
+        let free = InputSize::of_network(&[Some(1), Some(3), None, None]);
+        assert_eq!(free.of_picture([1920, 1080], 256), [456, 256]);
+        assert_eq!(free.of_picture([480, 640], 256), [192, 256]);
+        assert_eq!(free.of_picture([100_000, 1], 250), [1024, 256]);
+        assert_eq!(free.of_picture([1, 100_000], 64), [8, 64]);
+        let fixed = InputSize::of_network(&[Some(1), Some(3), Some(64), Some(96)]);
+        assert_eq!(fixed.of_picture([1920, 1080], 256), [96, 64]);
+    }
+}

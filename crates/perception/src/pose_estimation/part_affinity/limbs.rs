@@ -1,0 +1,90 @@
+//! Limbs: which peaks the fields join.
+
+use super::maps::{PartMaps, Plane};
+use super::peaks::Peak;
+use super::{JOINTS, PartAffinity};
+
+/// The limbs: the skeleton's bones, and two from shoulder to ear that hold a person together whose neck is hidden.
+/// Fields lie in this order and point from the first joint to the second.
+pub const LIMBS: [[usize; 2]; 19] = [
+    [1, 2],
+    [1, 5],
+    [2, 3],
+    [3, 4],
+    [5, 6],
+    [6, 7],
+    [1, 8],
+    [8, 9],
+    [9, 10],
+    [1, 11],
+    [11, 12],
+    [12, 13],
+    [1, 0],
+    [0, 14],
+    [14, 16],
+    [0, 15],
+    [15, 17],
+    [2, 16],
+    [5, 17],
+];
+
+/// Two peaks that may be the ends of a limb.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Candidate {
+    /// The mean field along the limb.
+    pub(super) score: f32,
+    pub(super) limb: usize,
+    /// Numbers of the peaks.
+    pub(super) ends: [usize; 2],
+}
+
+/// Places along a limb at which the field is read.
+const SAMPLES: usize = 10;
+
+/// Fills `candidates`, best first.
+pub(super) fn find(
+    how: &PartAffinity,
+    maps: &PartMaps<'_>,
+    peaks: &[Peak],
+    ends: &[usize; JOINTS],
+    candidates: &mut Vec<Candidate>,
+) {
+    candidates.clear();
+    let peaks_of = |joint: usize| joint.checked_sub(1).map_or(0, |before| ends[before])..ends[joint];
+    for (limb, [from, to]) in LIMBS.into_iter().enumerate() {
+        let field = maps.field(limb);
+        for first in peaks_of(from) {
+            for second in peaks_of(to) {
+                let along = [peaks[first].place, peaks[second].place];
+                if let Some(score) = how.limb_score(&field, along) {
+                    candidates.push(Candidate { score, limb, ends: [first, second] });
+                }
+            }
+        }
+    }
+    candidates.sort_unstable_by(|a, b| {
+        b.score.total_cmp(&a.score).then(a.limb.cmp(&b.limb)).then(a.ends.cmp(&b.ends))
+    });
+}
+
+impl PartAffinity {
+    /// The line integral of the field from one place to another (Cao et al., Eq. 10), by samples; `None` where there is
+    /// no limb.
+    fn limb_score(&self, [x, y]: &[Plane<'_>; 2], [from, to]: [[f32; 2]; 2]) -> Option<f32> {
+        let way = [to[0] - from[0], to[1] - from[1]];
+        let length = way[0].hypot(way[1]);
+        if length < 1e-3 {
+            return None;
+        }
+        let (mut sum, mut above) = (0.0, 0);
+        for sample in 0..SAMPLES {
+            let part = sample as f32 / (SAMPLES - 1) as f32;
+            let place = [from[0] + part * way[0], from[1] + part * way[1]];
+            let along = (x.between(place) * way[0] + y.between(place) * way[1]) / length;
+            sum += along;
+            above += usize::from(along >= self.limb_threshold);
+        }
+        let is_limb = above as f32 >= self.limb_share * SAMPLES as f32;
+        (is_limb && sum.is_finite()).then_some(sum / SAMPLES as f32)
+    }
+}

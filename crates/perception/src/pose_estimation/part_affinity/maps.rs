@@ -1,0 +1,123 @@
+//! The maps of one picture, and the grid that they lie on.
+
+use opendr_engine::{Error, Result};
+
+use super::{FIELDS, HEAT_MAPS, JOINTS};
+
+/// Cells over a network's input.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grid {
+    /// Cells down.
+    pub rows: usize,
+    /// Cells across.
+    pub columns: usize,
+    /// Pixels from cell to cell.
+    pub stride: f32,
+}
+
+/// Where the first cell looks: the middle of the first pixel, as strided convolutions with equal padding do.
+const ORIGIN: f32 = 0.5;
+
+impl Grid {
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        self.rows * self.columns
+    }
+
+    /// Where the place `[x, y]`, in cells, is in the network's input, in pixels.
+    pub fn point_from_cell(&self, place: [f32; 2]) -> [f32; 2] {
+        place.map(|part| part * self.stride + ORIGIN)
+    }
+
+    /// The place, in cells, of a point `[x, y]` of the network's input.
+    pub fn cell_from_point(&self, point: [f32; 2]) -> [f32; 2] {
+        point.map(|part| (part - ORIGIN) / self.stride)
+    }
+}
+
+/// What a network answers to one picture.
+#[derive(Debug, Clone, Copy)]
+pub struct PartMaps<'a> {
+    grid: Grid,
+    heat: &'a [f32],
+    fields: &'a [f32],
+}
+
+impl<'a> PartMaps<'a> {
+    /// Heat maps `[19, rows, columns]`, of which the background may be left out, and fields `[38, rows, columns]`: x and y
+    /// of each of [`LIMBS`](super::LIMBS).
+    ///
+    /// # Errors
+    /// `Format` when the sizes do not fit.
+    pub fn new(grid: Grid, heat: &'a [f32], fields: &'a [f32]) -> Result<Self> {
+        let cells = grid.cells();
+        let fits = [JOINTS, HEAT_MAPS].iter().any(|maps| Some(heat.len()) == cells.checked_mul(*maps))
+            && Some(fields.len()) == cells.checked_mul(FIELDS);
+        if cells == 0 || !fits {
+            return Err(Error::format(format!(
+                "{} and {} numbers are no {HEAT_MAPS} heat maps and {FIELDS} fields of {} x {} cells",
+                heat.len(),
+                fields.len(),
+                grid.columns,
+                grid.rows
+            )));
+        }
+        Ok(Self { grid, heat, fields })
+    }
+
+    /// The grid of all maps.
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
+    pub(super) fn heat(&self, joint: usize) -> Plane<'a> {
+        self.plane(self.heat, joint)
+    }
+
+    /// x and y along a limb.
+    pub(super) fn field(&self, limb: usize) -> [Plane<'a>; 2] {
+        [self.plane(self.fields, 2 * limb), self.plane(self.fields, 2 * limb + 1)]
+    }
+
+    fn plane(&self, maps: &'a [f32], number: usize) -> Plane<'a> {
+        let cells = self.grid.cells();
+        let values = &maps[number * cells..(number + 1) * cells];
+        Plane { values, rows: self.grid.rows, columns: self.grid.columns }
+    }
+}
+
+/// One map.
+#[derive(Clone, Copy)]
+pub(super) struct Plane<'a> {
+    pub(super) values: &'a [f32],
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+}
+
+impl Plane<'_> {
+    /// The value of a cell; beyond the border that of the nearest.
+    pub(super) fn at(&self, x: isize, y: isize) -> f32 {
+        let inside = |at: isize, count: usize| at.clamp(0, count as isize - 1) as usize;
+        self.values[inside(y, self.rows) * self.columns + inside(x, self.columns)]
+    }
+
+    /// Between the four cells around a place, in cells; beyond the border as at the border.
+    pub(super) fn between(&self, [x, y]: [f32; 2]) -> f32 {
+        let (x, right, left_part) = self::between(x, self.columns);
+        let (y, lower, upper_part) = self::between(y, self.rows);
+        let row = |row: usize| {
+            let row = &self.values[row * self.columns..(row + 1) * self.columns];
+            row[x] + left_part * (row[right] - row[x])
+        };
+        let upper = row(y);
+        upper + upper_part * (row(lower) - upper)
+    }
+}
+
+/// The cell before a place, the one after, and how far from the one to the other.
+fn between(place: f32, count: usize) -> (usize, usize, f32) {
+    // The maximum of NaN and 0 is 0.
+    let place = place.max(0.0).min((count - 1) as f32);
+    let before = place as usize;
+    (before, (before + 1).min(count - 1), place - before as f32)
+}
