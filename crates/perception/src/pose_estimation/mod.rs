@@ -1,5 +1,7 @@
 //! Key points of persons in a picture.
 
+#[cfg(feature = "training")]
+mod joints;
 mod lightweight_open_pose;
 mod movenet;
 mod one_euro;
@@ -8,6 +10,8 @@ mod part_tree;
 mod pose_tracks;
 mod posenet;
 
+#[cfg(feature = "training")]
+pub use lightweight_open_pose::LightweightOpenPoseFitParams;
 pub use lightweight_open_pose::{LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState};
 pub use movenet::{Movenet, MovenetParams};
 use opendr_engine::target::{Keypoint, Pose, Skeleton};

@@ -3,8 +3,22 @@
 //! Osokin, "Real-time 2D Multi-Person Pose Estimation on CPU: Lightweight OpenPose", 2018; OpenDR's default pose
 //! estimator, and one that trains. How maps become persons: [`part_affinity`](super::part_affinity).
 
+#[cfg(feature = "training")]
+mod fit;
 mod input;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+#[cfg(feature = "training")]
+mod open_sides;
+#[cfg(feature = "training")]
+mod person_crop;
+#[cfg(all(test, feature = "training"))]
+mod tests;
 
+#[cfg(feature = "training")]
+pub use fit::LightweightOpenPoseFitParams;
 use input::InputSize;
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -78,9 +92,7 @@ impl Learner for LightweightOpenPose {
         .without_effect(&[
             ("mobilenet_use_stride", "the maps lie at every 8th pixel"),
             ("shufflenet_groups", "the backbone is MobileNet"),
-            ("batches_per_iter", "`accumulate` of `fit` says it"),
             ("experiment_name", "the folder of a training says it"),
-            ("num_workers", "the loader has a thread for each core"),
             ("weights_only", "`resume` of `fit` says it"),
             ("output_name", "`eval` says where answers are written"),
             ("multiscale", "a larger `base_height` finds smaller persons"),

@@ -103,8 +103,8 @@ impl Plane<'_> {
 
     /// Between the four cells around a place, in cells; beyond the border as at the border.
     pub(super) fn between(&self, [x, y]: [f32; 2]) -> f32 {
-        let (x, right, left_part) = self::between(x, self.columns);
-        let (y, lower, upper_part) = self::between(y, self.rows);
+        let (x, right, left_part) = between(x, self.columns);
+        let (y, lower, upper_part) = between(y, self.rows);
         let row = |row: usize| {
             let row = &self.values[row * self.columns..(row + 1) * self.columns];
             row[x] + left_part * (row[right] - row[x])

@@ -80,6 +80,6 @@ impl Growing {
             let score = joints.iter().map(|joint| joint.confidence).sum::<f32>() / JOINTS as f32;
             Person { joints, score }
         }));
-        persons.sort_by(|a, b| b.score.total_cmp(&a.score));
+        persons.sort_unstable_by(|a, b| b.score.total_cmp(&a.score));
     }
 }

@@ -1,0 +1,283 @@
+//! The network: MobileNetV1, an initial stage, and stages that refine what the one before answered.
+
+use burn::config::Config;
+use burn::module::{Module, Param};
+use burn::nn::conv::{Conv2d, Conv2dConfig};
+use burn::nn::{Initializer, PaddingConfig2d};
+use burn::tensor::activation::relu;
+use burn::tensor::{Device, Tensor};
+use opendr_training::layers::{
+    Activation, MobileNetV1, MobileNetV1Config, SeparableConv, SeparableConvConfig,
+};
+
+use super::STRIDE;
+use crate::pose_estimation::part_affinity::{FIELDS, HEAT_MAPS};
+
+/// Blocks of MobileNetV1 that the paper takes: up to its `conv5_5`.
+const BLOCKS: usize = 11;
+/// Channels of the last of them at width 1.
+const BLOCK_CHANNELS: usize = 512;
+/// Blocks of a refinement stage.
+const REFINEMENTS: usize = 5;
+/// The initial stage's maps are made of so many times the channels of a stage.
+const EXPANSION: usize = 4;
+
+/// Sizes of a [`Network`].
+#[derive(Config, Debug, PartialEq)]
+pub struct NetworkConfig {
+    /// Factor on the backbone's channels.
+    #[config(default = 1.0)]
+    pub width: f64,
+    /// Blocks after the paper's, of as many channels as the last; PoseNet's backbone has 2.
+    #[config(default = 0)]
+    pub extra_blocks: usize,
+    /// Channels of the stages.
+    #[config(default = 128)]
+    pub channels: usize,
+    /// Whether convolutions of the stages are separable: a seventh of the weights.
+    #[config(default = false)]
+    pub separable: bool,
+    /// Stages after the initial one.
+    #[config(default = 1)]
+    pub refinement_stages: usize,
+}
+
+/// Maps of one stage: heat maps `[batch, 19, height / 8, width / 8]` and fields `[batch, 38, height / 8, width / 8]`.
+pub type Maps = [Tensor<4>; 2];
+
+/// Lightweight OpenPose's network (Osokin, 2018, figure 3).
+///
+/// Beyond the paper: all blocks of the backbone after the stride that was left out are dilated, so that weights which
+/// were trained with that stride see what they saw; the stages have no normalisation, so that small batches train and
+/// an exported network is read back without a loss.
+#[derive(Module, Debug)]
+pub struct Network {
+    /// From the picture to features.
+    pub backbone: Backbone,
+    features: Features,
+    initial: Heads,
+    initial_trunk: Vec<Conv>,
+    refinement: Vec<Refinement>,
+}
+
+impl NetworkConfig {
+    /// A network with random weights.
+    pub fn init(&self, device: &Device) -> Network {
+        let mobilenet = MobileNetV1Config::new()
+            .with_width(self.width)
+            .with_blocks(BLOCKS)
+            .with_output_stride(STRIDE)
+            .with_dilated(true);
+        let wide = mobilenet.scaled(BLOCK_CHANNELS);
+        let extra = || {
+            let block = SeparableConvConfig::new([wide, wide]).with_dilation(2);
+            block.with_activation(Activation::Relu6).init(device)
+        };
+        let backbone = Backbone {
+            mobilenet: mobilenet.init(device),
+            extra: (0..self.extra_blocks).map(|_| extra()).collect(),
+        };
+        let channels = self.channels;
+        let conv = || self.conv(1, device);
+        Network {
+            backbone,
+            features: Features {
+                align: point([wide, channels], device),
+                trunk: (0..3).map(|_| Conv::separable(channels, 1, device)).collect(),
+                last: conv(),
+            },
+            initial_trunk: (0..3).map(|_| conv()).collect(),
+            initial: Heads::new([channels, EXPANSION * channels], device),
+            refinement: (0..self.refinement_stages).map(|_| self.refinement(device)).collect(),
+        }
+    }
+
+    fn refinement(&self, device: &Device) -> Refinement {
+        let block = |from: usize| RefinementBlock {
+            align: point([from, self.channels], device),
+            trunk: vec![self.conv(1, device), self.conv(2, device)],
+        };
+        let first = self.channels + HEAT_MAPS + FIELDS;
+        Refinement {
+            blocks: (0..REFINEMENTS).map(|at| block(if at == 0 { first } else { self.channels })).collect(),
+            heads: Heads::new([self.channels; 2], device),
+        }
+    }
+
+    fn conv(&self, dilation: usize, device: &Device) -> Conv {
+        match self.separable {
+            true => Conv::separable(self.channels, dilation, device),
+            false => Conv::dense(self.channels, dilation, device),
+        }
+    }
+}
+
+impl Network {
+    /// `[batch, 3, height, width]` of levels in -1..=1, whose sides are multiples of 8, to the maps of every stage.
+    pub fn forward(&self, pictures: Tensor<4>) -> Vec<Maps> {
+        let features = self.features.forward(self.backbone.forward(pictures));
+        let first = self.initial_trunk.iter().fold(features.clone(), |x, conv| conv.forward(x));
+        let mut stages = vec![self.initial.forward(first)];
+        for refinement in &self.refinement {
+            let before = stages.last().into_iter().flatten().cloned();
+            let seen = Tensor::cat([features.clone()].into_iter().chain(before).collect(), 1);
+            stages.push(refinement.forward(seen));
+        }
+        stages
+    }
+
+    /// The same for the maps of the last stage alone.
+    pub fn answer(&self, pictures: Tensor<4>) -> Maps {
+        let mut stages = self.forward(pictures);
+        // There is an initial stage at least.
+        stages.swap_remove(stages.len() - 1)
+    }
+
+    /// The same with a backbone that keeps its weights.
+    #[must_use]
+    pub fn freeze_backbone(self) -> Self {
+        Self { backbone: self.backbone.freeze(), ..self }
+    }
+
+    /// The same with a backbone whose normalisations keep their weights and statistics: those that an exported network
+    /// was folded into have none of their own.
+    #[must_use]
+    pub fn freeze_norms(mut self) -> Self {
+        let Backbone { mobilenet, extra } = &mut self.backbone;
+        let stem = std::iter::once(&mut mobilenet.stem);
+        let blocks = mobilenet.blocks.iter_mut().chain(extra);
+        for layer in stem.chain(blocks.flat_map(|block| [&mut block.depthwise, &mut block.pointwise])) {
+            layer.norm = layer.norm.clone().freeze();
+        }
+        self
+    }
+}
+
+/// MobileNetV1 at stride 8.
+#[derive(Module, Debug)]
+pub struct Backbone {
+    mobilenet: MobileNetV1,
+    extra: Vec<SeparableConv>,
+}
+
+impl Backbone {
+    fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
+        self.extra.iter().fold(self.mobilenet.forward(pictures), |x, block| block.forward(x))
+    }
+}
+
+/// From the backbone's channels to those of the stages (the paper's `Cpm`).
+#[derive(Module, Debug)]
+struct Features {
+    align: Conv2d,
+    trunk: Vec<Conv>,
+    last: Conv,
+}
+
+impl Features {
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let x = relu(self.align.forward(x));
+        let trunk = self.trunk.iter().fold(x.clone(), |x, conv| conv.forward(x));
+        self.last.forward(x + trunk)
+    }
+}
+
+/// The two kinds of maps of a stage.
+#[derive(Module, Debug)]
+struct Heads {
+    heat: [Conv2d; 2],
+    fields: [Conv2d; 2],
+}
+
+impl Heads {
+    /// `[input, hidden]` channels.
+    fn new([input, hidden]: [usize; 2], device: &Device) -> Self {
+        let head = |maps: usize| [point([input, hidden], device), maps_of([hidden, maps], device)];
+        Self { heat: head(HEAT_MAPS), fields: head(FIELDS) }
+    }
+
+    fn forward(&self, x: Tensor<4>) -> Maps {
+        let maps = |[hidden, last]: &[Conv2d; 2], x: Tensor<4>| last.forward(relu(hidden.forward(x)));
+        [maps(&self.heat, x.clone()), maps(&self.fields, x)]
+    }
+}
+
+/// A stage that looks again, having seen the maps of the one before.
+#[derive(Module, Debug)]
+struct Refinement {
+    blocks: Vec<RefinementBlock>,
+    heads: Heads,
+}
+
+impl Refinement {
+    fn forward(&self, x: Tensor<4>) -> Maps {
+        self.heads.forward(self.blocks.iter().fold(x, |x, block| block.forward(x)))
+    }
+}
+
+/// Sees as far as a 7x7 convolution.
+#[derive(Module, Debug)]
+struct RefinementBlock {
+    align: Conv2d,
+    trunk: Vec<Conv>,
+}
+
+impl RefinementBlock {
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let x = relu(self.align.forward(x));
+        self.trunk.iter().fold(x.clone(), |x, conv| conv.forward(x)) + x
+    }
+}
+
+/// A 3x3 convolution that keeps the number of channels, then ReLU; in one or, separably, in two steps.
+#[derive(Module, Debug)]
+struct Conv {
+    over_space: Conv2d,
+    over_channels: Option<Conv2d>,
+}
+
+impl Conv {
+    fn dense(channels: usize, dilation: usize, device: &Device) -> Self {
+        Self { over_space: spatial(channels, dilation, 1, device), over_channels: None }
+    }
+
+    fn separable(channels: usize, dilation: usize, device: &Device) -> Self {
+        let over_channels = Some(point([channels; 2], device));
+        Self { over_space: spatial(channels, dilation, channels, device), over_channels }
+    }
+
+    fn forward(&self, x: Tensor<4>) -> Tensor<4> {
+        let x = relu(self.over_space.forward(x));
+        match &self.over_channels {
+            Some(conv) => relu(conv.forward(x)),
+            None => x,
+        }
+    }
+}
+
+/// Weights after He et al. (2015), for a ReLU that follows.
+const BEFORE_RELU: Initializer =
+    Initializer::KaimingNormal { gain: std::f64::consts::SQRT_2, fan_out_only: false };
+
+fn spatial(channels: usize, dilation: usize, groups: usize, device: &Device) -> Conv2d {
+    let pad = PaddingConfig2d::Explicit(dilation, dilation, dilation, dilation);
+    let config = Conv2dConfig::new([channels; 2], [3; 2]).with_padding(pad).with_groups(groups);
+    without_bias(config.with_dilation([dilation; 2]).with_initializer(BEFORE_RELU), device)
+}
+
+fn point(channels: [usize; 2], device: &Device) -> Conv2d {
+    without_bias(Conv2dConfig::new(channels, [1; 2]).with_initializer(BEFORE_RELU), device)
+}
+
+/// A last layer, whose answers begin near 0.
+fn maps_of(channels: [usize; 2], device: &Device) -> Conv2d {
+    let small = Initializer::Normal { mean: 0.0, std: 0.01 };
+    without_bias(Conv2dConfig::new(channels, [1; 2]).with_initializer(small), device)
+}
+
+/// A convolution whose bias begins at 0.
+fn without_bias(config: Conv2dConfig, device: &Device) -> Conv2d {
+    let mut conv = config.init(device);
+    conv.bias = conv.bias.map(|bias| Param::from_tensor(bias.val().zeros_like()));
+    conv
+}
