@@ -54,9 +54,10 @@ pub type Maps = [Tensor<4>; 2];
 pub struct Network {
     /// From the picture to features.
     pub backbone: Backbone,
+    // In the order of their use: so an exported network is read back.
     features: Features,
-    initial: Heads,
     initial_trunk: Vec<Conv>,
+    initial: Heads,
     refinement: Vec<Refinement>,
 }
 
