@@ -57,7 +57,7 @@ with file and line or key. The first ends the work; with `--skip-broken` it is l
 """
 TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": "list[Any]"}
 #: What stands for a datum in `infer`, besides an object of its class.
-ALSO = {"Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
+ALSO = {"Audio": ["Timeseries"], "Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
 HEADER = '''"""Learners of the task {task}. Made by bindings/python/stubs.py; do not edit."""
 
 import os
@@ -170,6 +170,7 @@ def learner(entry):
 
 def module(task, entries):
     kinds = {row["type"] for entry in entries for row in (*entry["ports"], *entry["outputs"])}
+    kinds |= {kind for of in kinds for kind in ALSO.get(of, ()) if kind.isidentifier() and kind != "str"}
     functions = sorted({name for kind in kinds for name in _DRAWING.get(kind, ())})
     imports = "".join(f"from opendr._drawing import {name} as {name}\n" for name in functions)
     trains = any(entry["fit"] for entry in entries)

@@ -64,15 +64,17 @@ fn references(environment: &Environment) -> Result<()> {
     let alone = Some("tests/metrics/requirements_without_dependencies.txt");
     let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
     let mut build = command("cargo");
-    let packages = ["opendr-metrics", "opendr-datasets", "opendr-runlog", "opendr-optimize"];
+    let packages =
+        ["opendr-metrics", "opendr-datasets", "opendr-perception", "opendr-runlog", "opendr-optimize"];
     build.args(["build", "--examples"]).args(packages.iter().flat_map(|package| ["--package", package]));
-    step("runners of metrics, data sets, logs and networks", &mut build)?;
+    step("runners of metrics, data sets, cepstra, logs and networks", &mut build)?;
     let examples = target().join("debug/examples");
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra"]).args(tests);
     pytest
         .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
+        .env("OPENDR_MFCC", examples.join("mfcc"))
         .env("OPENDR_RUNLOG_LOG", examples.join("log"))
         .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"));
     environment.apply(&mut pytest);

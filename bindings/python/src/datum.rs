@@ -28,6 +28,10 @@ pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResu
         ValueType::Timeseries => Value::Timeseries(numbers()?.datum(Timeseries::new)?),
         ValueType::Vector => Value::Vector(numbers()?.datum(Vector::new)?),
         ValueType::SkeletonSequence => Value::SkeletonSequence(numbers()?.datum(SkeletonSequence::new)?),
+        // A series has no rate of its own.
+        ValueType::Audio if !object.hasattr("sample_rate")? => {
+            Value::Timeseries(numbers()?.datum(Timeseries::new)?)
+        }
         ValueType::Audio => Value::Audio(audio(object)?),
         ValueType::Calibration => Value::Calibration(calibration(object)?),
         ValueType::Observation => Value::Observation(observation(object)?),

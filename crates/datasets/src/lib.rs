@@ -66,7 +66,7 @@ pub use pictures::Pictures;
 pub use problems::{Place, Problem, Problems};
 pub use registry::{find, format_of, formats, open, recognise};
 pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
-pub use speech_commands::{SpeechCommands, SpeechSplit, split_of_clip};
+pub use speech_commands::{SpeechCommands, SpeechSplit, speaker_of_clip, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
 pub use ucr::{TsHeader, Ucr, series_from_line, series_from_ts_line};
 pub use voc::Voc;

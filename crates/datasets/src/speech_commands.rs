@@ -16,7 +16,7 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions, o
 mod split;
 mod write;
 
-pub use split::{SpeechSplit, split_of_clip};
+pub use split::{SpeechSplit, speaker_of_clip, split_of_clip};
 
 /// Noise to be mixed in: no word.
 const NOISE: &str = "_background_noise_";

@@ -38,6 +38,10 @@ tasks! {
     ImageClassification = "image_classification";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
+    /// Whether a heart signal is normal.
+    HeartAnomalyDetection = "heart_anomaly_detection";
+    /// Which word was spoken.
+    SpeechRecognition = "speech_recognition";
 }
 
 impl fmt::Display for Task {

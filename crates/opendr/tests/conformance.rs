@@ -2,24 +2,19 @@
 
 mod models;
 
+use opendr::dataset::{DatasetIterator as _, ExternalDataset};
+use opendr::datasets::{OpenOptions, Problems, open};
 use opendr::learner::{CheckOptions, Entry, check_learner};
-use opendr::{Header, Value};
+use opendr::{Header, Value, ValueType};
 
 #[test]
 fn every_learner_keeps_its_promises() {
     let Some(models) = models::Models::find() else { return };
     let scratch = std::env::temp_dir().join(format!("opendr-conformance-{}", std::process::id()));
-    let calls: Vec<_> = ["photos/zidane.jpg", "photos/t1.jpg", "photos/chelsea.png"]
-        .iter()
-        .zip(1..)
-        .map(|(name, stamp)| {
-            let image = opendr::vision::open(models.data(name)).unwrap();
-            vec![("image", Value::from(image.with_header(Header::new(stamp, "camera"))))]
-        })
-        .collect();
     let mut checked = 0;
     for entry in learners() {
         let Some(model) = models.get(entry.spec.name) else { continue };
+        let calls = calls(entry.ports[0].value_type, &models);
         let options = CheckOptions { model: &model, scratch: &scratch, calls: &calls };
         check_learner(entry, &options).unwrap();
         checked += 1;
@@ -27,6 +22,32 @@ fn every_learner_keeps_its_promises() {
     println!("{checked} learners checked");
     assert!(checked > 0);
     std::fs::remove_dir_all(&scratch).ok();
+}
+
+/// Three different data of a type, each with a stamp.
+fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Value)>> {
+    let values: Vec<Value> = match kind {
+        ValueType::Image => ["photos/zidane.jpg", "photos/t1.jpg", "photos/chelsea.png"]
+            .map(|name| opendr::vision::open(models.data(name)).unwrap().into())
+            .into(),
+        kind => {
+            let (format, path) = match kind {
+                ValueType::Audio => ("speech_commands", "speech_commands_v0.02_test"),
+                ValueType::Timeseries => ("ucr", "ecg/ECG5000_TRAIN.txt"),
+                other => panic!("there are no test data of the type {}", other.name()),
+            };
+            let dataset = ExternalDataset::new(models.data(path), format);
+            let dataset = open(&dataset, &OpenOptions::default(), &Problems::strict()).unwrap();
+            [0, dataset.len() / 2, dataset.len() - 1]
+                .map(|index| dataset.get(index).unwrap().data.remove(0))
+                .into()
+        }
+    };
+    let stamped = values.into_iter().zip(1..).map(|(mut value, stamp)| {
+        *value.header_mut() = Header::new(stamp, "sensor");
+        vec![(kind.port(), value)]
+    });
+    stamped.collect()
 }
 
 /// All but the test learner, which the engine's own tests check: it takes more than a picture.

@@ -1,8 +1,18 @@
 //! Perception learners: one folder per task, one file per learner.
 
 pub mod face_detection;
+pub mod heart_anomaly_detection;
+pub mod mfcc;
 pub mod object_detection_2d;
 pub mod pose_estimation;
+pub mod speech_recognition;
 pub mod suppression;
 
+mod category_scores;
+#[cfg(feature = "training")]
+mod labelled;
+#[cfg(all(test, feature = "training"))]
+mod overfit;
 mod picture_network;
+#[cfg(feature = "training")]
+mod trainable_weights;

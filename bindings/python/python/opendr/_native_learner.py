@@ -463,6 +463,8 @@ def _value(value: Any, name: str, kind: str) -> Any:
         return value
     if kind == "Image" and isinstance(value, (str, os.PathLike)):
         return _opendr.open_image(os.fspath(value))
+    if kind == "Audio" and isinstance(value, data.Timeseries):
+        return value  # Speech learners take it at the rate they are made for, as OpenDR's did.
     article = "an" if kind[0] in "AEIOU" else "a"
     if is_target or kind in OF_SEVERAL_PARTS:
         raise TypeError(f"{name} should be {article} {kind}, not {type(value).__name__}")

@@ -33,11 +33,19 @@ impl SpeechSplit {
 const PERCENT: f64 = 10.0;
 const MAX_CLIPS_A_WORD: u64 = (1 << 27) - 1;
 
-/// The part of a clip by the name of its file: what stands before `_nohash_` is the speaker, whose SHA-1 decides, so
-/// that a speaker is in one part, and stays there when the data set grows (`which_set` of the paper's code).
+/// Who speaks in a clip, by the name of its file: what stands before `_nohash_`, without the word that the test files
+/// put before it (`bird_653a48f5_nohash_0.wav`). Clips without a speaker, of noise, have their own name.
+pub fn speaker_of_clip(file_name: &str) -> &str {
+    match file_name.split_once("_nohash_") {
+        Some((speaker, _)) => speaker.rsplit('_').next().unwrap_or(speaker),
+        None => file_name,
+    }
+}
+
+/// The part of a clip by the name of its file: the SHA-1 of its [speaker](speaker_of_clip) decides, so that a speaker
+/// is in one part, and stays there when the data set grows (`which_set` of the paper's code).
 pub fn split_of_clip(file_name: &str) -> SpeechSplit {
-    let speaker = file_name.find("_nohash_").map_or(file_name, |end| &file_name[..end]);
-    let [.., a, b, c, d] = sha1(speaker.as_bytes());
+    let [.., a, b, c, d] = sha1(speaker_of_clip(file_name).as_bytes());
     let last = u64::from(u32::from_be_bytes([a, b, c, d])) & MAX_CLIPS_A_WORD;
     match last as f64 * (100.0 / MAX_CLIPS_A_WORD as f64) {
         percent if percent < PERCENT => SpeechSplit::Validation,
@@ -101,6 +109,8 @@ mod tests {
     #[test]
     fn a_speaker_is_in_one_part() {
         assert_eq!(split_of_clip("0bac8a71_nohash_0.wav"), split_of_clip("0bac8a71_nohash_7.wav"));
+        assert_eq!(split_of_clip("bird_0bac8a71_nohash_0.wav.wav"), split_of_clip("0bac8a71_nohash_0.wav"));
+        assert_eq!(speaker_of_clip("1097.wav"), "1097.wav");
         assert!(SpeechSplit::from_name("other").is_err());
     }
 }

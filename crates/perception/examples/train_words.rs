@@ -1,0 +1,68 @@
+//! Trains MatchboxNet on the words of Speech Commands, and measures it on the clips of a fifth of the speakers, kept apart.
+//!
+//! The clips are of the test set of version 0.02, of ten words, silence and other words. It makes the zoo's
+//! `matchboxnet/commands_12`:
+//!
+//! ```console
+//! $ cargo run --release -p opendr-perception --features training --example train_words -- speech_commands_v0.02_test out
+//! ```
+
+use std::path::Path;
+
+use opendr_datasets::{OpenOptions, Problems, open, speaker_of_clip};
+use opendr_engine::dataset::{DatasetIterator, ExternalDataset, Subset};
+use opendr_engine::learner::{FitJob, Handle};
+use opendr_engine::{Device, Error, Result, Value};
+use opendr_perception::speech_recognition::{MatchboxNet, MatchboxNetFitParams, MatchboxNetParams, Sound};
+use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [clips, output] = &arguments[..] else {
+        return Err(Error::invalid_param("give the folder of the clips and one for the model"));
+    };
+    let clips = ExternalDataset::new(clips, "speech_commands");
+    let clips = &*open(&clips, &OpenOptions::default(), &Problems::strict())?;
+    let (kept_apart, training) = (0..clips.len()).partition(|index| is_kept_apart(&clips.name(*index)));
+    let (training, kept_apart) = (Subset::new(clips, training)?, Subset::new(clips, kept_apart)?);
+    let defaults = MatchboxNetFitParams::default();
+    let fit_params = MatchboxNetFitParams {
+        dropout: 0.1,
+        training: TrainingParams {
+            epochs: 60,
+            batch_size: 32,
+            lr: 0.003,
+            lr_schedule: ScheduleKind::Cosine,
+            optimizer: OptimizerKind::Adamw,
+            weight_decay: 0.01,
+            ..defaults.training
+        },
+        ..defaults
+    };
+    let mut handle = Handle::<MatchboxNet>::new(MatchboxNetParams::default(), Device::Cpu)?;
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
+    let statistics = handle.fit(&fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
+    println!("{statistics}");
+    let mut right = 0;
+    for index in 0..kept_apart.len() {
+        let sample = kept_apart.get(index)?;
+        let (Some(Value::Audio(audio)), Some(Value::Category(word))) = (sample.data.first(), &sample.target)
+        else {
+            return Err(Error::invalid_input("no clip with its word"));
+        };
+        right += usize::from(handle.infer(Sound::from(audio))?.class == word.class);
+    }
+    let (count, trained) = (kept_apart.len(), training.len());
+    println!(
+        "trained on {trained} clips; of {count} of other speakers {right} are right: {:.4}",
+        right as f64 / count as f64
+    );
+    Ok(())
+}
+
+/// A fifth of the speakers, by the hash that names them; noise, which nobody speaks, by its number.
+fn is_kept_apart(name: &str) -> bool {
+    let file = name.rsplit('/').next().unwrap_or(name);
+    let speaker = speaker_of_clip(file).trim_end_matches(".wav");
+    u64::from_str_radix(speaker, 16).is_ok_and(|hash| hash % 5 == 4)
+}

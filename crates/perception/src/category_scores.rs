@@ -1,0 +1,44 @@
+//! From a classifier's outputs to a category.
+
+use opendr_engine::target::{Category, Classes};
+use opendr_engine::{Error, Result};
+
+/// Fills `category` with the class of the highest of `logits`, its probability and those of all classes.
+///
+/// # Errors
+/// `Format` when there are no logits, or not as many as `classes` names.
+pub(crate) fn category_from_logits(category: &mut Category, logits: &[f32], classes: &Classes) -> Result<()> {
+    if logits.is_empty() || !(classes.is_empty() || classes.len() == logits.len()) {
+        let (scores, names) = (logits.len(), classes.len());
+        return Err(Error::format(format!(
+            "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
+        )));
+    }
+    let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    category.probabilities.clear();
+    category.probabilities.extend(logits.iter().map(|logit| (logit - highest).exp()));
+    let sum: f32 = category.probabilities.iter().sum();
+    category.probabilities.iter_mut().for_each(|probability| *probability /= sum);
+    let class = logits.iter().position(|logit| *logit == highest).unwrap_or_default();
+    category.class = class as i64;
+    category.confidence = category.probabilities.get(class).copied();
+    category.description = classes.name(category.class).cloned();
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_highest_logit_wins() {
+        let classes: Classes = ["no", "yes"].into_iter().collect();
+        let mut category = Category::default();
+        category_from_logits(&mut category, &[1000.0, 1000.0 + 3f32.ln()], &classes).unwrap();
+        assert_eq!((category.class, category.description.as_deref()), (1, Some("yes")));
+        assert!((category.confidence.unwrap() - 0.75).abs() < 1e-4);
+        assert!((category.probabilities[0] - 0.25).abs() < 1e-4);
+        assert!(category_from_logits(&mut category, &[1.0], &classes).is_err());
+        assert!(category_from_logits(&mut category, &[], &Classes::default()).is_err());
+    }
+}

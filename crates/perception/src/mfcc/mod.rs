@@ -1,0 +1,127 @@
+//! Mel-frequency cepstral coefficients: what speech networks are given instead of sound.
+//!
+//! Davis and Mermelstein, Comparison of Parametric Representations for Monosyllabic Word Recognition, 1980. The recipes
+//! of the field differ in every detail, and a network knows only its own: [`MfccOptions`] says which one, and gives
+//! TensorFlow's and librosa's numbers to rounding.
+//!
+//! ```
+//! use opendr_perception::mfcc::{Mfcc, MfccOptions};
+//!
+//! let mfcc = Mfcc::new(MfccOptions::keywords())?;
+//! let second = vec![0.1; 16_000];
+//! let mut cepstra = Vec::new();
+//! let frames = mfcc.run_into(&second, &mut cepstra);
+//! assert_eq!((frames, cepstra.len()), (49, 49 * 10));
+//! # Ok::<(), opendr_engine::Error>(())
+//! ```
+
+mod fourier;
+mod mel_bank;
+mod options;
+mod stream;
+mod transform;
+
+#[cfg(test)]
+mod tests;
+
+use opendr_engine::{Pool, Result};
+
+pub use options::{CosineScale, Edges, Log, MelBands, MelScale, MfccOptions, Sides, Spectrum};
+pub use stream::MfccStream;
+
+use mel_bank::MelBank;
+use transform::{CosineTransform, FrameSpectrum, FrameWork};
+
+/// Cepstra of sound by one recipe. After the first sound of a length nothing is allocated.
+pub struct Mfcc {
+    options: MfccOptions,
+    spectrum: FrameSpectrum,
+    bank: MelBank,
+    cosine: CosineTransform,
+    work: Pool<Work>,
+}
+
+#[derive(Default)]
+struct Work {
+    frame: FrameWork,
+    /// Logarithms of the bands `[frames, bands]`.
+    bands: Vec<f32>,
+}
+
+impl Mfcc {
+    /// Makes the tables of a recipe.
+    ///
+    /// # Errors
+    /// `InvalidParam` for sizes that are zero, too large or do not fit each other, or frequencies that do not rise.
+    pub fn new(options: MfccOptions) -> Result<Self> {
+        options.check()?;
+        let MelBands { count, .. } = options.bands;
+        Ok(Self {
+            spectrum: FrameSpectrum::new(&options),
+            bank: MelBank::new(&options.bands, options.fft, options.sample_rate),
+            cosine: CosineTransform::new(count, options.coefficients, options.scale),
+            work: Pool::default(),
+            options,
+        })
+    }
+
+    /// The recipe.
+    pub fn options(&self) -> &MfccOptions {
+        &self.options
+    }
+
+    /// How many frames sound of one channel with so many samples has.
+    pub fn frames(&self, samples: usize) -> usize {
+        match self.options.edges {
+            _ if samples == 0 => 0,
+            Edges::Inside => {
+                samples.checked_sub(self.options.window).map_or(0, |rest| 1 + rest / self.options.hop)
+            }
+            Edges::Reflected | Edges::Silent => 1 + samples / self.options.hop,
+        }
+    }
+
+    /// Replaces `cepstra` by those of `samples`, `[frames, coefficients]`, and tells the number of frames.
+    pub fn run_into(&self, samples: &[f32], cepstra: &mut Vec<f32>) -> usize {
+        let frames = self.frames(samples.len());
+        let (count, coefficients) = (self.options.bands.count, self.options.coefficients);
+        let Work { frame, bands } = &mut *self.work.take();
+        bands.resize(frames * count, 0.0);
+        for (index, bands) in bands.chunks_exact_mut(count).enumerate() {
+            self.spectrum.fill(samples, index, frame);
+            self.log_bands(frame, bands);
+        }
+        self.limit_range(bands);
+        cepstra.resize(frames * coefficients, 0.0);
+        for (bands, cepstrum) in bands.chunks_exact(count).zip(cepstra.chunks_exact_mut(coefficients)) {
+            self.cosine.run(bands, cepstrum);
+        }
+        frames
+    }
+
+    /// The logarithms of the bands of the frame in `frame`.
+    fn log_bands(&self, frame: &mut FrameWork, bands: &mut [f32]) {
+        self.bank.sums(self.spectrum.run(frame), bands);
+        match self.options.log {
+            Log::Natural { offset } => bands.iter_mut().for_each(|band| *band = (*band + offset).ln()),
+            Log::Decibel { least, .. } => {
+                bands.iter_mut().for_each(|band| *band = 10.0 * band.max(least).log10());
+            }
+        }
+    }
+
+    fn limit_range(&self, bands: &mut [f32]) {
+        if let Log::Decibel { range: Some(range), .. } = self.options.log {
+            let least = bands.iter().copied().fold(f32::NEG_INFINITY, f32::max) - range;
+            bands.iter_mut().for_each(|band| *band = band.max(least));
+        }
+    }
+}
+
+/// Divides sound by its highest sample, as TensorFlow's keyword spotting does; silence stays.
+pub fn normalise_peak(samples: &mut [f32]) {
+    let peak = samples.iter().copied().fold(0.0, f32::max);
+    if peak > 0.0 {
+        samples.iter_mut().for_each(|sample| *sample /= peak);
+    }
+}

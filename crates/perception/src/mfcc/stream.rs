@@ -1,0 +1,57 @@
+//! Cepstra of sound that comes in pieces.
+
+use opendr_engine::{Error, Result};
+
+use crate::mfcc::{Edges, Log, Mfcc};
+
+/// What one stream of sound remembers between its pieces: less than a window of samples.
+#[derive(Debug, Default, Clone)]
+pub struct MfccStream {
+    /// Samples from the begin of the next frame on.
+    pending: Vec<f32>,
+    /// Samples to be left out before the next frame, where the hop is longer than the window.
+    skip: usize,
+}
+
+impl MfccStream {
+    /// Forgets the stream: the next piece begins a new one.
+    pub fn reset(&mut self) {
+        self.pending.clear();
+        self.skip = 0;
+    }
+}
+
+impl Mfcc {
+    /// Takes the next piece of a stream, of any length, and hands on the coefficients of each frame that it completes:
+    /// in all the same as [`Mfcc::run_into`] gives for the stream in one piece.
+    ///
+    /// # Errors
+    /// `Unsupported` for a recipe that needs the whole sound: frames that reach over its edges, or loudness that is
+    /// limited in relation to the loudest.
+    pub fn push(&self, stream: &mut MfccStream, piece: &[f32], mut frame: impl FnMut(&[f32])) -> Result<()> {
+        let options = self.options();
+        if options.edges != Edges::Inside || matches!(options.log, Log::Decibel { range: Some(_), .. }) {
+            return Err(Error::unsupported(
+                "this recipe of MFCC needs the whole sound; use Edges::Inside and no range for pieces",
+            ));
+        }
+        let (bands, coefficients) = (options.bands.count, options.coefficients);
+        let left_out = stream.skip.min(piece.len());
+        stream.skip -= left_out;
+        stream.pending.extend(&piece[left_out..]);
+        let work = &mut *self.work.take();
+        work.bands.resize(bands + coefficients, 0.0);
+        let (bands, cepstrum) = work.bands.split_at_mut(bands);
+        let mut start = 0;
+        while let Some(samples) = stream.pending.get(start..start + options.window) {
+            self.spectrum.place(samples.iter().copied(), &mut work.frame);
+            self.log_bands(&mut work.frame, bands);
+            self.cosine.run(bands, cepstrum);
+            frame(cepstrum);
+            start += options.hop;
+        }
+        stream.skip += start.saturating_sub(stream.pending.len());
+        stream.pending.drain(..start.min(stream.pending.len()));
+        Ok(())
+    }
+}

@@ -1,0 +1,131 @@
+//! From a frame of sound to its spectrum, and from bands to coefficients.
+
+use std::f64::consts::PI;
+
+use crate::mfcc::fourier::{FourierWork, RealFourier};
+use crate::mfcc::options::{CosineScale, Edges, MfccOptions, Spectrum};
+
+/// Windowed frames and their spectrum.
+pub(super) struct FrameSpectrum {
+    fourier: RealFourier,
+    window: Vec<f32>,
+    /// Where the window begins in the frame that is transformed.
+    begin: usize,
+    hop: usize,
+    edges: Edges,
+    kind: Spectrum,
+}
+
+/// Memory for one frame.
+#[derive(Default)]
+pub(super) struct FrameWork {
+    /// The frame, windowed.
+    samples: Vec<f32>,
+    fourier: FourierWork,
+    /// Magnitude or power of each frequency.
+    values: Vec<f32>,
+}
+
+impl FrameSpectrum {
+    pub fn new(options: &MfccOptions) -> Self {
+        let MfccOptions { window, hop, fft, edges, spectrum: kind, .. } = *options;
+        let hann = |at: usize| 0.5 - 0.5 * (2.0 * PI * at as f64 / window as f64).cos();
+        Self {
+            fourier: RealFourier::new(fft),
+            window: (0..window).map(|at| hann(at) as f32).collect(),
+            begin: if edges == Edges::Inside { 0 } else { (fft - window) / 2 },
+            hop,
+            edges,
+            kind,
+        }
+    }
+
+    /// Puts frame number `index` of `samples`, which are not empty, into `work`.
+    pub fn fill(&self, samples: &[f32], index: usize, work: &mut FrameWork) {
+        let (size, start) = (self.fourier.size(), index * self.hop);
+        let inside = |first: usize| samples.get(first..first + self.window.len());
+        let first = match self.edges {
+            Edges::Inside => Some(start),
+            Edges::Reflected | Edges::Silent => (start + self.begin).checked_sub(size / 2),
+        };
+        if let Some(frame) = first.and_then(inside) {
+            return self.place(frame.iter().copied(), work);
+        }
+        let sample = |at: usize| {
+            let at = (start + self.begin + at) as isize - (size / 2) as isize;
+            match usize::try_from(at).ok().and_then(|at| samples.get(at)) {
+                Some(sample) => *sample,
+                None if self.edges == Edges::Reflected => samples[reflected(at, samples.len())],
+                None => 0.0,
+            }
+        };
+        self.place((0..self.window.len()).map(sample), work);
+    }
+
+    /// Puts the samples of a frame, as many as the window spans, into `work`.
+    pub fn place(&self, frame: impl Iterator<Item = f32>, work: &mut FrameWork) {
+        work.samples.clear();
+        work.samples.resize(self.fourier.size(), 0.0);
+        let places = work.samples[self.begin..].iter_mut().zip(&self.window);
+        places.zip(frame).for_each(|((place, weight), sample)| *place = weight * sample);
+    }
+
+    /// The spectrum of the frame in `work`.
+    pub fn run<'w>(&self, work: &'w mut FrameWork) -> &'w [f32] {
+        let FrameWork { samples, fourier, values } = work;
+        self.fourier.power(samples, fourier, values);
+        if self.kind == Spectrum::Magnitude {
+            values.iter_mut().for_each(|value| *value = value.sqrt());
+        }
+        values
+    }
+}
+
+/// The place within `count` samples that `at` is reflected to, at the first and the last sample, as often as needed.
+fn reflected(at: isize, count: usize) -> usize {
+    let period = (2 * (count - 1)).max(1);
+    let at = at.rem_euclid(period as isize) as usize;
+    at.min(period - at).min(count - 1)
+}
+
+/// The first coefficients of a DCT-II.
+pub(super) struct CosineTransform {
+    /// `[bands, coefficients]`.
+    table: Vec<f32>,
+}
+
+impl CosineTransform {
+    pub fn new(bands: usize, coefficients: usize, scale: CosineScale) -> Self {
+        let entry = |index: usize| {
+            let (band, coefficient) = (index / coefficients, index % coefficients);
+            let size = match (coefficient, scale) {
+                (0, CosineScale::Orthonormal) => 1.0,
+                _ => 2.0,
+            };
+            let angle = PI * coefficient as f64 * (2 * band + 1) as f64 / (2 * bands) as f64;
+            ((size / bands as f64).sqrt() * angle.cos()) as f32
+        };
+        Self { table: (0..bands * coefficients).map(entry).collect() }
+    }
+
+    /// Replaces `cepstrum` by the coefficients of `bands`.
+    pub fn run(&self, bands: &[f32], cepstrum: &mut [f32]) {
+        cepstrum.fill(0.0);
+        for (band, row) in bands.iter().zip(self.table.chunks_exact(cepstrum.len())) {
+            cepstrum.iter_mut().zip(row).for_each(|(sum, weight)| *sum += band * weight);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::reflected;
+
+    /// `numpy.pad(range(4), 7, "reflect")`, and one sample.
+    #[test]
+    fn reflections_repeat() {
+        let places: Vec<usize> = (-7..8).map(|at| reflected(at, 4)).collect();
+        assert_eq!(places, [1, 0, 1, 2, 3, 2, 1, 0, 1, 2, 3, 2, 1, 0, 1]);
+        assert!((-3..4).all(|at| reflected(at, 1) == 0));
+    }
+}

@@ -1,0 +1,110 @@
+//! What speech learners take.
+
+use std::borrow::Cow;
+
+use opendr_engine::data::{Audio, Timeseries};
+use opendr_engine::learner::{Inputs, Port, Ports};
+use opendr_engine::{Error, Header, Result, ValueRef, ValueType};
+
+/// Sound: [`Audio`], which knows its rate, or a [`Timeseries`] that is taken to be at the learner's (as in OpenDR).
+#[derive(Debug, Clone, Copy)]
+pub enum Sound<'a> {
+    /// With its rate.
+    Audio(&'a Audio),
+    /// One feature through time, or one row as in OpenDR.
+    Series(&'a Timeseries),
+}
+
+const PORT: &str = ValueType::Audio.port();
+
+impl<'a> Sound<'a> {
+    /// The samples of one channel at `sample_rate`.
+    ///
+    /// # Errors
+    /// `InvalidInput` for another rate, a series of several features, or a sample that is no number.
+    pub fn samples(self, sample_rate: u32) -> Result<Cow<'a, [f32]>> {
+        let samples = match self {
+            Self::Audio(audio) if audio.sample_rate() != sample_rate => {
+                return Err(Error::invalid_input(format!(
+                    "sound at {} Hz, the learner hears at {sample_rate} Hz; resample it",
+                    audio.sample_rate()
+                )));
+            }
+            Self::Audio(audio) => audio.mono(),
+            Self::Series(series) if series.shape().contains(&1) => Cow::Borrowed(series.as_slice()),
+            Self::Series(series) => {
+                let [time, features] = series.shape();
+                return Err(Error::invalid_input(format!(
+                    "a series of {time} instants with {features} features is no sound; give one feature"
+                )));
+            }
+        };
+        match samples.iter().position(|sample| !sample.is_finite()) {
+            Some(at) => Err(Error::invalid_input(format!(
+                "sample {at} of the sound is {}; give numbers within -1 and 1",
+                samples[at]
+            ))),
+            None => Ok(samples),
+        }
+    }
+}
+
+impl<'a> Inputs<'a> for Sound<'a> {
+    const PORTS: &'static [Port] = &[Port {
+        name: PORT,
+        doc: "What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.",
+        value_type: ValueType::Audio,
+        optional: false,
+        init: false,
+    }];
+
+    fn from_ports(ports: &Ports<'a>) -> Result<Self> {
+        match ports.get(PORT) {
+            Some(ValueRef::Timeseries(series)) => Ok(Self::Series(series)),
+            _ => ports.required(PORT).map(Self::Audio),
+        }
+    }
+
+    fn header(&self) -> &Header {
+        match self {
+            Self::Audio(audio) => &audio.header,
+            Self::Series(series) => &series.header,
+        }
+    }
+}
+
+impl<'a> From<&'a Audio> for Sound<'a> {
+    fn from(audio: &'a Audio) -> Self {
+        Self::Audio(audio)
+    }
+}
+
+impl<'a> From<&'a Timeseries> for Sound<'a> {
+    fn from(series: &'a Timeseries) -> Self {
+        Self::Series(series)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::ErrorKind;
+
+    use super::*;
+
+    #[test]
+    fn sound_and_series_give_samples() {
+        let audio = Audio::new(vec![0.0, 0.5, 1.0, 0.5], 2, 16_000).unwrap();
+        let column = Timeseries::new(vec![0.25, 0.75], [2, 1]).unwrap();
+        let row = Timeseries::new(vec![0.25, 0.75], [1, 2]).unwrap();
+        for sound in [Sound::from(&audio), Sound::from(&column), Sound::from(&row)] {
+            assert_eq!(*sound.samples(16_000).unwrap(), [0.25, 0.75]);
+        }
+        assert_eq!(Sound::from(&audio).samples(8000).unwrap_err().kind(), ErrorKind::InvalidInput);
+        let wide = Timeseries::new(vec![0.0; 4], [2, 2]).unwrap();
+        assert!(Sound::from(&wide).samples(16_000).is_err());
+        let broken = Timeseries::new(vec![0.0, f32::NAN], [2, 1]).unwrap();
+        assert!(Sound::from(&broken).samples(16_000).is_err());
+        let Ok(Sound::Series(_)) = Sound::from_ports(&Ports::default().with("audio", &row)) else { panic!() };
+        assert!(Sound::from_ports(&Ports::default()).is_err());
+    }
+}
