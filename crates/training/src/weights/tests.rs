@@ -11,6 +11,7 @@ use super::*;
 
 mod hostile;
 mod onnx;
+mod torch;
 
 #[derive(Module, Debug)]
 struct Normed {
@@ -56,7 +57,7 @@ fn picture() -> Tensor<4> {
 }
 
 fn head(features: Tensor<4>, dense: &Linear) -> Vec<f32> {
-    dense.forward(features.reshape([1, 2])).into_data().to_vec().unwrap()
+    dense.forward(features.reshape([1, 2])).into_data().try_to_vec().unwrap()
 }
 
 fn assert_near(a: &[f32], b: &[f32]) {
@@ -172,10 +173,10 @@ fn names_find_their_parameters() {
     let (module, report) = table(true, true).apply(normed(true), &rules).unwrap();
     report.complete().unwrap();
     assert_eq!((report.taken.len(), report.left.len()), (8, 0));
-    let dense: Vec<f32> = module.dense.weight.val().into_data().to_vec().unwrap();
+    let dense: Vec<f32> = module.dense.weight.val().into_data().try_to_vec().unwrap();
     let [a, b, c, d, e, f] = numbers(6, 6)[..] else { panic!() };
     assert_eq!(dense, [a, c, e, b, d, f]);
-    let mean: Vec<f32> = module.norm.running_mean.value().into_data().to_vec().unwrap();
+    let mean: Vec<f32> = module.norm.running_mean.value().into_data().try_to_vec().unwrap();
     assert_eq!(mean, numbers(2, 5));
 }
 

@@ -64,7 +64,7 @@ fn other_files_are_refused_by_name() {
 #[test]
 fn damaged_files_are_read_or_refused() {
     let weights = weights(true, true);
-    let onnx = super::onnx::quantised();
+    let onnx = onnx::quantised();
     for (number, whole) in [safetensors(&weights), checkpoint(&weights), onnx].into_iter().enumerate() {
         let mut random = Random::new(number as u64);
         for _ in 0..400 {

@@ -72,7 +72,7 @@ fn integers_become_what_they_stand_for() {
     assert_eq!((dense.shape(), dense.values()), (&[3, 2][..], &[1.0, 4.0, 2.0, 5.0, 3.0, 6.0][..]));
     let (module, report) = table.apply(plain(true), &Rules::by_order()).unwrap();
     report.complete().unwrap();
-    let weight: Vec<f32> = module.dense.weight.val().into_data().to_vec().unwrap();
+    let weight: Vec<f32> = module.dense.weight.val().into_data().try_to_vec().unwrap();
     assert_eq!(weight, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
 }
 
