@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
+use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet};
 use opendr_perception::pose_estimation::{Movenet, Posenet};
 
@@ -20,6 +21,7 @@ pub fn registry() -> &'static Registry {
             Yunet,
             Movenet,
             Posenet,
+            GatedRecurrentUnit,
             #[cfg(feature = "test-learner")] opendr_engine::learner::counter::Counter,
         ]
     })
