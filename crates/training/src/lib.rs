@@ -12,6 +12,7 @@ mod fit_learner;
 pub mod fuzzing;
 mod gradient;
 pub mod layers;
+mod memory;
 mod objective;
 mod optimizer;
 mod params;

@@ -19,6 +19,7 @@ use opendr_runlog::{Checkpoints, RunLog};
 use crate::average::Average;
 use crate::checkpoint::Saved;
 use crate::gradient::{gradient_norm, scaled};
+use crate::memory::{TRIED, check_memory};
 use crate::optimizer::optimizer;
 use crate::schedule::Schedule;
 use crate::standing::{Best, Setting, Standing};
@@ -210,6 +211,7 @@ impl<'a, O: Objective> Training<'a, O> {
         let loader = Loader::new(self.dataset, options)?
             .augment(self.objective.pipeline()?)
             .collate(self.objective.collate()?);
+        check_memory(loader.options().batch_size, || self.try_step())?;
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
         self.job.progress.advance(self.standing.step);
         while self.standing.epoch < self.params.epochs as u64 && self.halt.is_none() {
@@ -228,6 +230,22 @@ impl<'a, O: Objective> Training<'a, O> {
             }
         }
         self.finish(validate)
+    }
+
+    /// A few samples forwards and backwards, without a trace: on a copy of the network.
+    fn try_step(&self) -> Result<()> {
+        let options = LoaderOptions { batch_size: TRIED, threads: 0, ..Self::options(self.params, self.dataset).0 };
+        let loader = Loader::new(self.dataset, options)?
+            .augment(self.objective.pipeline()?)
+            .collate(self.objective.collate()?);
+        let Some(network) = &self.network else { return Err(Error::internal("a training without a network")) };
+        let network = network.valid().to_device(&self.device).train();
+        let tried = loader.for_each(0, 0, |batch| {
+            let loss = self.objective.loss(&network, &batch.content, &self.device)?;
+            drop(loss.total.backward());
+            Ok(ControlFlow::Break(()))
+        });
+        tried.map(drop)
     }
 
     /// One batch forwards and backwards, and a step of the optimiser where enough gradients are there.

@@ -1,0 +1,81 @@
+//! Training.
+
+use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::learner::{Fit, FitJob};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::Classes;
+use opendr_engine::{Error, Result, Statistics, Value};
+use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
+
+use super::network::Network;
+use super::objective::Classify;
+use super::{ImageClassifier, ImageClassifierParams};
+
+/// How it is trained.
+#[derive(Debug, Clone, Params)]
+pub struct ImageClassifierFitParams {
+    /// Side of the network's input; pictures are stretched to it.
+    #[param(default = 64, range = 8..=1024, unit = "px")]
+    pub side: usize,
+    /// Channels of the first block; the others have up to twice as many.
+    #[param(default = 32, range = 4..=1024)]
+    pub width: usize,
+    /// Share of the features that are left out at random.
+    #[param(default = 0.1, range = 0.0..=0.9)]
+    pub dropout: f64,
+    /// The least share of a picture that a random crop shows; 1 for no crops.
+    #[param(default = 0.6, range = 0.05..=1.0)]
+    pub crop: f32,
+    /// How often a picture is mirrored.
+    #[param(default = 0.5, range = 0.0..=1.0)]
+    pub flip: f32,
+    /// Share of the probability that is spread over all classes.
+    #[param(default = 0.0, range = 0.0..=0.5)]
+    pub label_smoothing: f64,
+    /// What every training has.
+    #[param(flatten, epochs = 20, batch_size = 64, lr = 0.002, lr_schedule = opendr_training::ScheduleKind::Cosine)]
+    pub training: TrainingParams,
+}
+
+impl Fit for ImageClassifier {
+    type FitParams = ImageClassifierFitParams;
+
+    fn fit(
+        _: Option<&Model>,
+        params: &ImageClassifierParams,
+        fit_params: &ImageClassifierFitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let training = &fit_params.training;
+        let dataset = open_for_training::<Self>(dataset, training)?;
+        let classes = classes_of(&dataset)?;
+        let device = begin(job, training)?;
+        let network = Network::new(classes.len(), fit_params.width, fit_params.dropout, &device);
+        let ImageClassifierFitParams { side, crop, flip, label_smoothing, .. } = *fit_params;
+        let objective = Classify { classes, side, crop, flip, label_smoothing };
+        fit_learner::<Self, _>(&objective, network, params, training, &dataset, val_dataset, job)
+    }
+}
+
+/// The classes of the data set; where it names none, those of its targets, called by their numbers.
+fn classes_of(dataset: &dyn DatasetIterator) -> Result<Classes> {
+    let classes = dataset.classes();
+    if !classes.is_empty() {
+        return Ok(classes);
+    }
+    let mut most = None;
+    for index in 0..dataset.len() {
+        if let Some(Value::Category(category)) = dataset.target(index)? {
+            most = most.max(Some(category.class));
+        }
+    }
+    match most {
+        Some(most @ 1..=100_000) => Ok((0..=most).map(|class| class.to_string()).collect()),
+        _ => Err(Error::invalid_input(
+            "the data set tells no two classes apart: nothing can be learnt from it",
+        )),
+    }
+}

@@ -1,0 +1,5 @@
+//! The class that a whole picture belongs to.
+
+mod image_classifier;
+
+pub use image_classifier::{ImageClassifier, ImageClassifierParams};
