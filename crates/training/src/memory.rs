@@ -51,8 +51,10 @@ fn status(row: &str) -> Option<u64> {
 /// Memory that can still be had, in bytes: of the machine, or of the control group where that is less.
 fn free() -> Option<u64> {
     let machine = kilobytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")?;
-    let number = |name: &str| fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?.trim().parse::<u64>().ok();
-    let group = number("memory.max").zip(number("memory.current")).map(|(most, used)| most.saturating_sub(used));
+    let number =
+        |name: &str| fs::read_to_string(format!("/sys/fs/cgroup/{name}")).ok()?.trim().parse::<u64>().ok();
+    let group =
+        number("memory.max").zip(number("memory.current")).map(|(most, used)| most.saturating_sub(used));
     Some(group.map_or(machine, |group| group.min(machine)))
 }
 

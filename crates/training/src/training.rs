@@ -57,6 +57,9 @@ pub fn begin(job: &FitJob<'_>, params: &TrainingParams) -> Result<Device> {
 
 /// Trains `network` on `dataset` and writes the result as a container into [`FitJob::model`].
 ///
+/// The same seed gives the same weights, bit for bit, on the processor of one machine, as long as no other training runs in
+/// the same process: Burn has one stream of random numbers.
+///
 /// With `validate`, what is written is the network that did best; without, the last. When the user stops it, a checkpoint
 /// is written from which a resumed training goes on as if nothing had happened, and the container of what was reached.
 ///
@@ -234,11 +237,14 @@ impl<'a, O: Objective> Training<'a, O> {
 
     /// A few samples forwards and backwards, without a trace: on a copy of the network.
     fn try_step(&self) -> Result<()> {
-        let options = LoaderOptions { batch_size: TRIED, threads: 0, ..Self::options(self.params, self.dataset).0 };
+        let options =
+            LoaderOptions { batch_size: TRIED, threads: 0, ..Self::options(self.params, self.dataset).0 };
         let loader = Loader::new(self.dataset, options)?
             .augment(self.objective.pipeline()?)
             .collate(self.objective.collate()?);
-        let Some(network) = &self.network else { return Err(Error::internal("a training without a network")) };
+        let Some(network) = &self.network else {
+            return Err(Error::internal("a training without a network"));
+        };
         let network = network.valid().to_device(&self.device).train();
         let tried = loader.for_each(0, 0, |batch| {
             let loss = self.objective.loss(&network, &batch.content, &self.device)?;

@@ -1,5 +1,7 @@
 //! The loop of every `fit`: it learns, resumes bit for bit after a kill, and tells what went wrong.
 
+#![allow(clippy::unwrap_used)]
+
 mod small;
 
 use std::env;
@@ -7,6 +9,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use opendr_engine::learner::FitJob;
@@ -39,7 +42,11 @@ fn params() -> TrainingParams {
     }
 }
 
+/// Burn's random numbers are one stream a process.
+static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+
 fn train(params: &TrainingParams, dataset: &Spirals, job: &FitJob<'_>) -> Result<Statistics> {
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let network = Network::new(&begin(job, params)?);
     fit_network(&TellApart::default(), network, params, dataset, None, job)
 }
@@ -114,7 +121,9 @@ impl Progress for StopAfter {
     fn begin(&self, _: &str, _: Option<u64>, _: Unit) {}
 
     fn advance(&self, amount: u64) {
-        self.0.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| Some(left.saturating_sub(amount))).ok();
+        self.0
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| Some(left.saturating_sub(amount)))
+            .ok();
     }
 
     fn end(&self) {}
@@ -129,7 +138,8 @@ fn stopped_and_resumed_is_the_same_with_its_log() {
     let (whole, stopped) = (scratch("unstopped"), scratch("stopped"));
     let logs = [whole.join("log"), stopped.join("log")];
     let dataset = Spirals { count: 320, broken: None };
-    let statistics = train(&params(), &dataset, &FitJob { logging_path: Some(&logs[0]), ..job(&whole) }).unwrap();
+    let statistics =
+        train(&params(), &dataset, &FitJob { logging_path: Some(&logs[0]), ..job(&whole) }).unwrap();
     let stop = StopAfter(AtomicU64::new(33));
     let first = FitJob { progress: &stop, logging_path: Some(&logs[1]), ..job(&stopped) };
     assert_eq!(train(&params(), &dataset, &first).unwrap().get("steps"), Some(33.0));
@@ -191,9 +201,11 @@ fn the_best_by_metric_is_kept_and_early_stopping_stops() {
         let value = values[seen.len() - 1];
         Ok(Score { name: "score".to_owned(), value, numbers: [("score".to_owned(), value)].into() })
     };
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let job = job(&output);
     let network = Network::new(&begin(&job, &params).unwrap());
-    let statistics = fit_network(&TellApart::default(), network, &params, &dataset, Some(&mut validate), &job).unwrap();
+    let statistics =
+        fit_network(&TellApart::default(), network, &params, &dataset, Some(&mut validate), &job).unwrap();
     assert_eq!(statistics.curves["val_score"], values[..5]);
     assert_eq!((statistics.get("best"), statistics.get("best_step")), (Some(0.5), Some(4.0)));
     assert!(weights(&output) == seen[1]);
@@ -206,6 +218,7 @@ fn the_best_by_metric_is_kept_and_early_stopping_stops() {
 fn a_batch_too_large_for_memory_is_refused() {
     let output = scratch("memory");
     let params = TrainingParams { batch_size: 65_536, accumulate: 1, ..params() };
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let job = job(&output);
     let network = Network::new(&begin(&job, &params).unwrap());
     let objective = TellApart { ballast: 8 << 20 };

@@ -34,7 +34,10 @@ impl DatasetIterator for Spirals {
         let angle = turn * 6.0 + class as f32 * std::f32::consts::PI;
         let x = if self.broken == Some(index) { f32::NAN } else { turn * angle.cos() };
         let point = Vector::from_data(vec![x, turn * angle.sin()])?;
-        Ok(Sample { data: vec![Value::Vector(point)], target: Some(Value::Category(Category::new(class, None))) })
+        Ok(Sample {
+            data: vec![Value::Vector(point)],
+            target: Some(Value::Category(Category::new(class, None))),
+        })
     }
 
     fn name(&self, index: usize) -> String {
@@ -91,10 +94,12 @@ impl Collate for Points {
     }
 
     fn add(&self, batch: &mut Batch, sample: Sample) -> Result<()> {
-        let (Some(Value::Vector(point)), Some(Value::Category(category))) = (sample.data.first(), &sample.target) else {
+        let (Some(Value::Vector(point)), Some(Value::Category(category))) =
+            (sample.data.first(), &sample.target)
+        else {
             return Err(Error::invalid_input("no point with a class"));
         };
-        batch.points.extend(point.data());
+        batch.points.extend(point.as_slice());
         batch.classes.push(category.class);
         Ok(())
     }
@@ -121,7 +126,10 @@ impl Objective for TellApart {
     fn container(&self, network: &Network) -> Result<Container> {
         let mut weights = Weights(Vec::new());
         network.visit(&mut weights);
-        Ok(Container { manifest: Manifest::new("spirals", ""), files: vec![("weights.bin".to_owned(), weights.0)] })
+        Ok(Container {
+            manifest: Manifest::new("spirals", ""),
+            files: vec![("weights.bin".to_owned(), weights.0)],
+        })
     }
 }
 
@@ -129,6 +137,6 @@ struct Weights(Vec<u8>);
 
 impl ModuleVisitor for Weights {
     fn visit_float<const D: usize>(&mut self, param: &Param<Tensor<D>>) {
-        self.0.extend_from_slice(&param.val().into_data().bytes());
+        self.0.extend_from_slice(param.val().into_data().bytes());
     }
 }

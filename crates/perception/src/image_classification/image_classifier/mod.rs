@@ -62,7 +62,7 @@ impl Learner for ImageClassifier {
     fn load(model: &Model, params: ImageClassifierParams, device: Device) -> Result<Self> {
         let mut side = 0;
         let network = PictureNetwork::open(model, device, |input| {
-            side = input.shape.last().copied().flatten().unwrap_or_default();
+            side = input.dims.last().copied().flatten().unwrap_or_default();
             preprocess(side)
         })?;
         if side == 0 {

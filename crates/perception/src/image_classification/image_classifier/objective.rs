@@ -74,7 +74,7 @@ impl Objective for Classify {
             pipeline = pipeline.then(RandomResizedCrop {
                 width: side,
                 height: side,
-                scale_min: self.crop,
+                min_area: self.crop,
                 ..Default::default()
             })?;
         }
@@ -97,9 +97,7 @@ impl Objective for Classify {
 
     fn container(&self, network: &Network) -> Result<Container> {
         let input = Input::new("image", [1, 3, self.side, self.side]);
-        let model = onnx(network, [input], [SCORES], Batch::Fixed, |network, [image]| {
-            [network.forward(image).into()]
-        })?;
+        let model = onnx(network, input, &[SCORES], Network::forward)?;
         let mut manifest = Manifest::new("image_classifier", "");
         manifest.classes = self.classes.clone();
         Ok(Container { manifest, files: vec![("model.onnx".to_owned(), model)] })
