@@ -42,8 +42,8 @@ pub use export::export;
 pub use fit::{FitData, FitOptions, Fitted, Opening, check_fit, fit, teacher, teacher_with};
 pub use opendr_engine::*;
 pub use opendr_perception::{
-    face_detection, heart_anomaly_detection, mfcc, object_detection_2d, pose_estimation, speech_recognition,
-    suppression,
+    face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
+    pose_estimation, speech_recognition, suppression,
 };
 pub use registry::registry;
 pub use smaller::optimize_loaded;

@@ -1,12 +1,9 @@
 //! Perception learners: one folder per task, one file per learner.
 
 pub mod face_detection;
-<<<<<<< HEAD
 pub mod heart_anomaly_detection;
-pub mod mfcc;
-=======
 pub mod image_classification;
->>>>>>> 332d51e (wip)
+pub mod mfcc;
 pub mod object_detection_2d;
 pub mod pose_estimation;
 pub mod speech_recognition;
@@ -18,9 +15,5 @@ mod labelled;
 #[cfg(all(test, feature = "training"))]
 mod overfit;
 mod picture_network;
-<<<<<<< HEAD
 #[cfg(feature = "training")]
 mod trainable_weights;
-=======
-mod softmax;
->>>>>>> 332d51e (wip)

@@ -5,9 +5,9 @@ mod nanodet;
 pub mod single_shot_detector;
 
 pub use centernet::{CenterNet, CenterNetParams};
+pub use nanodet::{Nanodet, NanodetParams};
 #[cfg(feature = "training")]
 pub use nanodet::{NanodetFitParams, NanodetFreeze, NanodetNetwork};
-pub use nanodet::{Nanodet, NanodetParams};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_vision::InputGeometry;
 pub use single_shot_detector::{SingleShotDetector, SingleShotDetectorParams};

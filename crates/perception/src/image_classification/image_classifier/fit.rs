@@ -1,16 +1,17 @@
 //! Training.
 
-use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
-use opendr_engine::target::Classes;
-use opendr_engine::{Error, Result, Statistics, Value};
+use opendr_engine::{Result, Statistics};
 use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
 
 use super::network::Network;
 use super::objective::Classify;
 use super::{ImageClassifier, ImageClassifierParams};
+use crate::labelled::classes_to_train;
+use crate::trainable_weights::network_from_base;
 
 /// How it is trained.
 #[derive(Debug, Clone, Params)]
@@ -42,7 +43,7 @@ impl Fit for ImageClassifier {
     type FitParams = ImageClassifierFitParams;
 
     fn fit(
-        _: Option<&Model>,
+        base: Option<&Model>,
         params: &ImageClassifierParams,
         fit_params: &ImageClassifierFitParams,
         dataset: DatasetRef<'_>,
@@ -51,31 +52,12 @@ impl Fit for ImageClassifier {
     ) -> Result<Statistics> {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, training)?;
-        let classes = classes_of(&dataset)?;
+        let classes = classes_to_train(&dataset, None, "classes")?;
         let device = begin(job, training)?;
         let network = Network::new(classes.len(), fit_params.width, fit_params.dropout, &device);
+        let network = network_from_base(network, base)?;
         let ImageClassifierFitParams { side, crop, flip, label_smoothing, .. } = *fit_params;
         let objective = Classify { classes, side, crop, flip, label_smoothing };
         fit_learner::<Self, _>(&objective, network, params, training, &dataset, val_dataset, job)
-    }
-}
-
-/// The classes of the data set; where it names none, those of its targets, called by their numbers.
-fn classes_of(dataset: &dyn DatasetIterator) -> Result<Classes> {
-    let classes = dataset.classes();
-    if !classes.is_empty() {
-        return Ok(classes);
-    }
-    let mut most = None;
-    for index in 0..dataset.len() {
-        if let Some(Value::Category(category)) = dataset.target(index)? {
-            most = most.max(Some(category.class));
-        }
-    }
-    match most {
-        Some(most @ 1..=100_000) => Ok((0..=most).map(|class| class.to_string()).collect()),
-        _ => Err(Error::invalid_input(
-            "the data set tells no two classes apart: nothing can be learnt from it",
-        )),
     }
 }

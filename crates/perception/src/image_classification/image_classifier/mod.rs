@@ -18,8 +18,8 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_vision::Preprocess;
 
+use crate::category_scores::category_from_logits;
 use crate::picture_network::PictureNetwork;
-use crate::softmax::softmax;
 
 #[cfg(feature = "training")]
 pub use fit::ImageClassifierFitParams;
@@ -86,13 +86,7 @@ impl Learner for ImageClassifier {
 
     fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
         self.network.run(image, |outputs, _| {
-            softmax(outputs[self.scores].values()?, &mut category.probabilities);
-            let scores = category.probabilities.iter().enumerate();
-            let best = scores.max_by(|a, b| a.1.total_cmp(b.1)).map(|(class, score)| (class as i64, *score));
-            let (class, score) = best.ok_or_else(|| Error::format("the network knows no class"))?;
-            category.class = class;
-            category.confidence = Some(score);
-            category.description = self.classes.name(class).cloned();
+            category_from_logits(category, outputs[self.scores].values()?, &self.classes)?;
             if !self.params.probabilities {
                 category.probabilities.clear();
             }

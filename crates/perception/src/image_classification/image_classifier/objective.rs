@@ -4,15 +4,17 @@ use burn::nn::loss::{CrossEntropyLoss, CrossEntropyLossConfig};
 use burn::tensor::{Device, Int, Tensor, TensorData};
 use opendr_datasets::augment::{Flip, Pipeline, RandomResizedCrop};
 use opendr_datasets::loader::{Collate, ImageBatch, ImageBatches};
+use opendr_engine::Result;
 use opendr_engine::dataset::Sample;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::Classes;
-use opendr_engine::{Error, Result, Value};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::Network;
 use super::{SCORES, preprocess};
+use crate::labelled::class_of;
+use crate::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Pictures with classes, cross entropy.
 pub struct Classify {
@@ -43,19 +45,10 @@ impl Collate for Collator {
     }
 
     fn add(&self, batch: &mut ClassifiedPictures, sample: Sample) -> Result<()> {
-        let class = match &sample.target {
-            Some(Value::Category(category)) => category.class,
-            _ => return Err(Error::invalid_input("a picture without a class cannot be learnt from")),
-        };
-        if usize::try_from(class).is_ok_and(|class| class < self.classes) {
-            self.pictures.add(&mut batch.pictures, sample)?;
-            batch.classes.push(class);
-            return Ok(());
-        }
-        Err(Error::invalid_input(format!(
-            "class {class} is none of the {} classes of the data set, numbered from 0",
-            self.classes
-        )))
+        let class = class_of(&sample, self.classes)?;
+        self.pictures.add(&mut batch.pictures, sample)?;
+        batch.classes.push(class);
+        Ok(())
     }
 }
 
@@ -100,6 +93,12 @@ impl Objective for Classify {
         let model = onnx(network, input, &[SCORES], Network::forward)?;
         let mut manifest = Manifest::new("image_classifier", "");
         manifest.classes = self.classes.clone();
-        Ok(Container { manifest, files: vec![("model.onnx".to_owned(), model)] })
+        Ok(Container {
+            manifest,
+            files: vec![
+                ("model.onnx".to_owned(), model),
+                (TRAINABLE.to_owned(), bytes_from_network(network)?),
+            ],
+        })
     }
 }
