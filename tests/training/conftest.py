@@ -34,3 +34,13 @@ def shrink():
         subprocess.run([*command, precision, str(source), str(target)], cwd=ROOT, check=True)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def exported(tmp_path_factory):
+    """The folder that crates/training/examples/export_all.rs fills."""
+    folder = tmp_path_factory.mktemp("exported")
+    program = os.environ.get("OPENDR_TRAINING_EXPORT_ALL")
+    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-training", "--example", "export_all", "--"]
+    subprocess.run([*command, str(folder)], cwd=ROOT, check=True)
+    return folder

@@ -57,17 +57,23 @@ pub fn run() -> Result<()> {
     Ok(())
 }
 
-/// Metrics, data sets and logs of trainings beside the tools that papers cite and people use.
+/// Metrics, data sets, logs of trainings and exported networks beside the tools that papers cite and people use.
 fn references(environment: &Environment) -> Result<()> {
     let tests = ["tests/metrics", "tests/datasets", "tests/training"];
     let requirements = tests.map(|tests| format!("{tests}/requirements.txt"));
     let alone = Some("tests/metrics/requirements_without_dependencies.txt");
     let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
     let mut build = command("cargo");
-    let packages =
-        ["opendr-metrics", "opendr-datasets", "opendr-perception", "opendr-runlog", "opendr-optimize"];
+    let packages = [
+        "opendr-metrics",
+        "opendr-datasets",
+        "opendr-perception",
+        "opendr-runlog",
+        "opendr-optimize",
+        "opendr-training",
+    ];
     build.args(["build", "--examples"]).args(packages.iter().flat_map(|package| ["--package", package]));
-    step("runners of metrics, data sets, cepstra, logs and networks", &mut build)?;
+    step("runners of metrics, data sets, cepstra, logs, networks and exports", &mut build)?;
     let examples = target().join("debug/examples");
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra"]).args(tests);
@@ -76,7 +82,8 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
         .env("OPENDR_MFCC", examples.join("mfcc"))
         .env("OPENDR_RUNLOG_LOG", examples.join("log"))
-        .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"));
+        .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"))
+        .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"));
     environment.apply(&mut pytest);
     step("tests beside the reference tools", &mut pytest)
 }

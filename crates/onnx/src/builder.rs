@@ -46,17 +46,17 @@ impl Builder {
     }
 
     /// Declares an output. The tensor gets that name; one that has a name of its own already (an input, a
-    /// constant, another output) is passed through an `Identity`.
+    /// constant, another output) is passed through an `Identity`. Open dimensions get the names given, or none.
     ///
     /// # Errors
     /// `Format` when the graph has grown too large.
-    pub fn output(&mut self, name: &str, wire: &Wire, doc: &str) -> Result<()> {
+    pub fn output(&mut self, name: &str, wire: &Wire, doc: &str, open: &[&str]) -> Result<()> {
         let source = self.source_name(wire)?;
         let mut node = Operator::new("Identity").into_node(name);
         node.input.push(source);
         node.output.push(name.to_owned());
         self.push(node)?;
-        let mut info = value_info(name, wire.kind(), wire.dims(), &[]);
+        let mut info = value_info(name, wire.kind(), wire.dims(), open);
         info.doc_string = doc.to_owned();
         self.outputs.push(info);
         Ok(())
@@ -205,8 +205,8 @@ fn value_info(name: &str, kind: Kind, dims: &[Dim], open: &[&str]) -> ValueInfoP
     let dimension = |(axis, dim): (usize, &Dim)| {
         let value = match (dim, open.get(axis)) {
             (Some(dim), _) => Some(DimensionValue::Value(*dim as i64)),
-            (None, Some(name)) => Some(DimensionValue::Param((*name).to_owned())),
-            (None, None) => None,
+            (None, Some(name)) if !name.is_empty() => Some(DimensionValue::Param((*name).to_owned())),
+            (None, _) => None,
         };
         Dimension { value, ..Dimension::default() }
     };

@@ -82,14 +82,14 @@ fn network() -> Vec<u8> {
         .text("nearest_mode", "floor");
     let larger = plain(&mut graph, resize, &[&joined, &Wire::absent(), &scales], &[1, 32, 16, 16]);
     let map = conv(&mut graph, &larger, 8, 1, 1);
-    graph.output("map", &map, "").unwrap();
+    graph.output("map", &map, "", &[]).unwrap();
     let mean = plain(&mut graph, Operator::new("GlobalAveragePool"), &[&joined], &[1, 32, 1, 1]);
     let flat = plain(&mut graph, Operator::new("Flatten"), &[&mean], &[1, 32]);
     let kernel = weights(&mut Random::new(9), &[10, 32]);
     let bias = Wire::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
     let gemm = Operator::new("Gemm").int("transB", 1);
     let scores = plain(&mut graph, gemm, &[&flat, &kernel, &bias], &[1, 10]);
-    graph.output("scores", &scores, "").unwrap();
+    graph.output("scores", &scores, "", &[]).unwrap();
     bytes_from_model(&model_from_graph(graph.finish("small")))
 }
 

@@ -52,7 +52,7 @@ pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOpti
     }
     for ((name, _), value) in outputs.iter().zip(values) {
         let (wire, doc) = output_wire(&mut trace, &value)?;
-        trace.lowering.graph.output(name, &wire, doc)?;
+        trace.lowering.graph.output(name, &wire, doc, &[])?;
     }
     let mut graph = trace.lowering.graph.finish("tfjs");
     passes::simplify(&mut graph);

@@ -2,7 +2,7 @@
 
 use super::rewriter::Rewriter;
 use crate::array::{Array, Data, element_count};
-use crate::proto::GraphProto;
+use crate::proto::{GraphProto, NodeProto};
 
 /// What follows a convolution: `y * scale + shift`, per output channel.
 struct Affine {
@@ -11,7 +11,7 @@ struct Affine {
 }
 
 /// Folds `Add`, `Sub`, `Mul`, `Div` with a constant per channel, and `BatchNormalization`, into the weights and bias
-/// of the `Conv` before them.
+/// of the `Conv` or `ConvTranspose` before them.
 pub fn fold_affine_into_conv(graph: &mut GraphProto) {
     let mut graph = Rewriter::new(graph);
     for index in 0..graph.node_count() {
@@ -21,11 +21,12 @@ pub fn fold_affine_into_conv(graph: &mut GraphProto) {
 }
 
 fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
-    let node = graph.node_of(conv, "Conv")?;
+    let node = graph.node_of(conv, "Conv").or_else(|| graph.node_of(conv, "ConvTranspose"))?;
     let (weights, bias) =
         (node.input.get(1)?.clone(), node.input.get(2).filter(|name| !name.is_empty()).cloned());
     let dims = graph.constant_dims(&weights)?;
-    let (rank, filters) = (dims.len(), *dims.first()?);
+    let layout = Layout::from_node(node, &dims)?;
+    let (rank, filters) = (dims.len(), layout.filters);
     let affordable = graph.affords(element_count(&dims)?.checked_add(filters)?);
     following(graph, conv).filter(|_| affordable)?;
     let shift = match bias {
@@ -43,9 +44,12 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
             _ => break,
         }
     }
-    let block = weights.data().len().checked_div(filters)?.max(1);
-    let scaled = weights.as_floats()?.chunks(block).zip(&affine.scale);
-    let scaled = scaled.flat_map(|(filter, scale)| filter.iter().map(move |weight| weight * scale)).collect();
+    let blocks = weights.as_floats()?.chunks(layout.block.max(1)).enumerate();
+    let scaled = blocks.flat_map(|(block, weights)| {
+        let scale = affine.scale[layout.filter_of(block)];
+        weights.iter().map(move |weight| weight * scale)
+    });
+    let scaled = scaled.collect();
     let output = graph.node(conv)?.output.first()?.clone();
     let weights = Array::new(weights.dims().to_vec(), Data::Float(scaled))?;
     let weights = graph.add_constant(&format!("{output}/weights"), &weights)?;
@@ -54,6 +58,44 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     graph.set_input(conv, 1, &weights);
     graph.set_input(conv, 2, &bias);
     Some(())
+}
+
+/// How weights belong to filters: `[filters, inputs / groups, ..]`, or `[inputs, filters / groups, ..]` where the
+/// convolution is transposed.
+struct Layout {
+    filters: usize,
+    /// Weights that lie together and belong to one filter.
+    block: usize,
+    /// Of a transposed convolution: filters and inputs of one group.
+    group: Option<[usize; 2]>,
+}
+
+impl Layout {
+    fn from_node(node: &NodeProto, dims: &[usize]) -> Option<Self> {
+        let [first, second, kernel @ ..] = dims else { return None };
+        if node.op_type == "Conv" {
+            return Some(Self {
+                filters: *first,
+                block: element_count(dims)?.checked_div(*first)?,
+                group: None,
+            });
+        }
+        let groups = usize::try_from(node.int_or("group", 1)).ok()?;
+        let inputs = first.checked_div(groups).filter(|inputs| *inputs > 0 && first % groups == 0)?;
+        let group = Some([*second, inputs]).filter(|_| *second > 0);
+        Some(Self {
+            filters: second.checked_mul(groups)?,
+            block: element_count(kernel)?,
+            group: Some(group?),
+        })
+    }
+
+    fn filter_of(&self, block: usize) -> usize {
+        match self.group {
+            None => block,
+            Some([filters, inputs]) => block / filters / inputs * filters + block % filters,
+        }
+    }
 }
 
 fn following(graph: &Rewriter, conv: usize) -> Option<usize> {

@@ -53,7 +53,7 @@ impl<'a> Lowering<'a> {
             if let Some(dim) = input.open.and_then(|axis| dims.get_mut(axis)) {
                 *dim = None;
             }
-            let names = vec!["batch"; dims.len()];
+            let names = vec![Size::Batch(1).open_name(); dims.len()];
             let wire = builder.input(&input.name, input.kind, dims, &names);
             if let Some(axis) = input.open {
                 open = Some((wire.clone(), axis));
@@ -84,7 +84,8 @@ impl<'a> Lowering<'a> {
         }
         for (&id, name) in self.trace.outputs.iter().zip(outputs) {
             let wire = self.wire_of(id)?;
-            self.builder.output(name, &wire, "")?;
+            let open: Vec<&str> = self.sizes.of_id(id).iter().map(|size| size.open_name()).collect();
+            self.builder.output(name, &wire, "", &open)?;
         }
         Ok(self.builder.finish("network"))
     }

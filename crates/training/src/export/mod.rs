@@ -118,3 +118,6 @@ pub fn onnx<M: Module, I: Inputs, O: Outputs>(
     "opendr-training".clone_into(&mut model.producer_name);
     Ok(bytes_from_model(&model))
 }
+
+#[cfg(test)]
+mod tests;

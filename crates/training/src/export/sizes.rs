@@ -27,6 +27,11 @@ impl Size {
             Self::Batch(_) => None,
         }
     }
+
+    /// What the size is called in the file; empty where it has no name.
+    pub(super) fn open_name(self) -> &'static str {
+        if self == Self::Batch(1) { "batch" } else { "" }
+    }
 }
 
 /// The sizes of all tensors of a recording.
@@ -44,6 +49,14 @@ impl Sizes {
         match self {
             Self::Fixed => recorded(),
             Self::Reconciled(sizes) => sizes.get(&tensor.id).cloned().unwrap_or_else(recorded),
+        }
+    }
+
+    /// The sizes of the tensor with that id, if they were reconciled.
+    pub(super) fn of_id(&self, id: TensorId) -> &[Size] {
+        match self {
+            Self::Fixed => &[],
+            Self::Reconciled(sizes) => sizes.get(&id).map_or(&[], Vec::as_slice),
         }
     }
 
