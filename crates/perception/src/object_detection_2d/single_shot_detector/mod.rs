@@ -7,8 +7,20 @@
 pub mod anchors;
 pub mod coding;
 pub mod decode;
+#[cfg(feature = "training")]
+mod fit;
 mod layout;
+#[cfg(feature = "training")]
+mod loss;
 pub mod matching;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+#[cfg(feature = "training")]
+mod targets;
+#[cfg(all(test, feature = "training"))]
+mod tests;
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -23,7 +35,11 @@ use crate::picture_network::PictureNetwork;
 use crate::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
 use anchors::AnchorLevel;
 use decode::LevelMaps;
+#[cfg(feature = "training")]
+pub use fit::{Backbone, SingleShotDetectorFitParams};
 pub use layout::{Fitting, ImageLayout, Layout};
+#[cfg(feature = "training")]
+pub use objective::DetectionObjective;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]
@@ -82,6 +98,8 @@ impl Learner for SingleShotDetector {
         .without_effect(&[
             ("keep_size", "the network's input has one size"),
             ("extract_maps", "the feature maps stay inside the network"),
+            ("temp_path", "what fit writes lies in its output folder"),
+            ("checkpoint_load_iter", "fit goes on from the last checkpoint of its output folder"),
         ]);
     type Params = SingleShotDetectorParams;
     type Input<'a> = &'a Image;

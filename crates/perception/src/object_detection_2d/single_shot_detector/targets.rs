@@ -1,0 +1,196 @@
+//! From annotated pictures to batches: pre-processing, matching and encoding, on the loader's threads.
+
+use opendr_datasets::loader::Collate;
+use opendr_engine::dataset::Sample;
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
+use opendr_engine::{Error, Result, Value};
+use opendr_vision::{InputGeometry, Preprocess};
+
+use super::anchors::Anchor;
+use super::coding::offsets_from_corners;
+use super::layout::Layout;
+use super::matching::{Match, Matching};
+
+/// Makes [`DetectionBatch`]es of pictures with boxes.
+pub struct DetectionBatches {
+    preprocess: Preprocess,
+    anchors: Vec<Anchor>,
+    matching: Matching,
+    classes: Classes,
+    least_score: f32,
+}
+
+/// Pictures, and what each anchor should answer. Anchors are numbered through the batch.
+#[derive(Debug, Default)]
+pub struct DetectionBatch {
+    /// `[pictures, 3, height, width]`.
+    pub images: Vec<f32>,
+    /// Width and height of the pictures.
+    pub size: [usize; 2],
+    /// How many pictures there are.
+    pub pictures: usize,
+    /// The anchors that show an object.
+    pub objects: Vec<i64>,
+    /// The class of each object.
+    pub object_classes: Vec<i64>,
+    /// The offsets of each object from its anchor, four each.
+    pub object_offsets: Vec<f32>,
+    /// Whether each anchor counts, 1 or 0.
+    pub counts: Vec<f32>,
+}
+
+/// Objects smaller than this are not asked for: nothing of them is left at the network's size.
+const LEAST_SIDE: f32 = 2.0;
+
+impl DetectionBatches {
+    /// Batches for a network of `layout` that answers `classes`. Boxes below `least_score` are neither object nor
+    /// background.
+    pub fn new(layout: &Layout, matching: Matching, classes: Classes, least_score: f32) -> Self {
+        Self {
+            // The loader has its threads already.
+            preprocess: layout.image.preprocess().threads(1),
+            anchors: layout.anchors.anchors(layout.image.size()),
+            matching,
+            classes,
+            least_score,
+        }
+    }
+
+    /// The class that a box of a list is of; `None` when the network does not answer it.
+    fn class(&self, list: &BoundingBoxList, found: &BoundingBox) -> Option<usize> {
+        match (list.label(found), &found.name) {
+            (Some(label), _) => usize::try_from(self.classes.index(label)?).ok(),
+            (None, Name::Index(index)) => {
+                usize::try_from(*index).ok().filter(|index| *index < self.classes.len())
+            }
+            (None, Name::Label(_)) => None,
+        }
+    }
+
+    fn add_targets(&self, batch: &mut DetectionBatch, list: &BoundingBoxList, geometry: &InputGeometry) {
+        let (mut objects, mut classes, mut crowds) = (Vec::new(), Vec::new(), Vec::new());
+        for found in &list.boxes {
+            let Some(class) = self.class(list, found) else { continue };
+            let [x0, y0, x1, y1] = found.corners();
+            let ([x0, y0], [x1, y1]) =
+                (geometry.input_from_image([x0, y0]), geometry.input_from_image([x1, y1]));
+            let corners = [x0, y0, x1, y1];
+            let crowd = found.segment.as_ref().is_some_and(|segment| segment.iscrowd);
+            // Written so that NaN is no object.
+            let clear =
+                x1 - x0 >= LEAST_SIDE && y1 - y0 >= LEAST_SIDE && found.confidence >= self.least_score;
+            if crowd || !clear {
+                crowds.push(corners);
+            } else {
+                objects.push(corners);
+                classes.push(class as i64);
+            }
+        }
+        let first = batch.counts.len();
+        let matches = self.matching.run(&self.anchors, &objects, &crowds);
+        for (at, (anchor, matched)) in self.anchors.iter().zip(matches).enumerate() {
+            batch.counts.push(if matched == Match::Ignored { 0.0 } else { 1.0 });
+            if let Match::Object(object) = matched {
+                batch.objects.push((first + at) as i64);
+                batch.object_classes.push(classes[object]);
+                batch.object_offsets.extend(offsets_from_corners(objects[object], anchor));
+            }
+        }
+    }
+}
+
+impl Collate for DetectionBatches {
+    type Batch = DetectionBatch;
+
+    fn start(&self, capacity: usize) -> DetectionBatch {
+        DetectionBatch {
+            images: Vec::with_capacity(capacity * self.preprocess.len()),
+            size: self.preprocess.size(),
+            counts: Vec::with_capacity(capacity * self.anchors.len()),
+            ..DetectionBatch::default()
+        }
+    }
+
+    fn add(&self, batch: &mut DetectionBatch, sample: Sample) -> Result<()> {
+        let ([Value::Image(image)], Some(Value::BoundingBoxList(list))) = (&sample.data[..], &sample.target)
+        else {
+            return Err(Error::invalid_input(
+                "a detector trains on samples of one picture with boxes; open the data set with boxes",
+            ));
+        };
+        let start = batch.images.len();
+        batch.images.resize(start + self.preprocess.len(), 0.0);
+        match self.preprocess.run_into(image.view(), &mut batch.images[start..]) {
+            Ok(geometry) => {
+                batch.pictures += 1;
+                self.add_targets(batch, list, &geometry);
+                Ok(())
+            }
+            Err(error) => {
+                batch.images.truncate(start);
+                Err(error)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::data::Image;
+    use opendr_engine::target::{Segment, Segmentation};
+
+    use super::super::anchors::{AnchorLevel, Anchors};
+    use super::super::layout::{Fitting, ImageLayout};
+    use super::*;
+
+    fn batches() -> DetectionBatches {
+        let anchors = Anchors { levels: vec![AnchorLevel { stride: 32, sides: vec![[32.0, 32.0]] }] };
+        let layout = Layout { image: ImageLayout::new(64, Fitting::Stretch), anchors };
+        let classes = ["cat", "person"].into_iter().collect();
+        DetectionBatches::new(&layout, Matching::default(), classes, 0.5)
+    }
+
+    fn batch(boxes: Vec<BoundingBox>) -> DetectionBatch {
+        let batches = batches();
+        let list = BoundingBoxList { boxes, ..BoundingBoxList::default() };
+        let image = Image::from_rgb8(vec![255; 128 * 128 * 3], 128, 128).unwrap();
+        let sample = Sample { data: vec![image.into()], target: Some(list.into()) };
+        let mut batch = batches.start(2);
+        batches.add(&mut batch, sample.clone()).unwrap();
+        batches.add(&mut batch, sample).unwrap();
+        batch
+    }
+
+    #[test]
+    fn objects_lie_in_pixels_of_the_input() {
+        let batch = batch(vec![BoundingBox::new("person", 64.0, 0.0, 64.0, 64.0, 1.0)]);
+        assert_eq!((batch.pictures, batch.images.len()), (2, 2 * 3 * 64 * 64));
+        assert!(batch.images.iter().all(|value| (value - 1.0).abs() < 1e-5));
+        assert_eq!((batch.objects, batch.object_classes), (vec![1, 5], vec![1, 1]));
+        assert_eq!(batch.object_offsets, [0.0; 8]);
+        assert_eq!(batch.counts, [1.0; 8]);
+    }
+
+    #[test]
+    fn what_nobody_is_asked_for_does_not_count() {
+        let crowd = Segment { segmentation: Segmentation::default(), area: 1.0, iscrowd: true };
+        let boxes = vec![
+            BoundingBox { segment: Some(Box::new(crowd)), ..BoundingBox::new(0, 0.0, 0.0, 64.0, 64.0, 1.0) },
+            BoundingBox::new(0, 64.0, 0.0, 64.0, 64.0, 0.3),
+            BoundingBox::new("dog", 0.0, 64.0, 64.0, 64.0, 1.0),
+            BoundingBox::new(7, 64.0, 64.0, 64.0, 64.0, 1.0),
+            BoundingBox::new(0, f32::NAN, 0.0, 64.0, 64.0, 1.0),
+        ];
+        let batch = batch(boxes);
+        assert!(batch.objects.is_empty());
+        assert_eq!(batch.counts, [0.0, 0.0, 1.0, 1.0].repeat(2));
+    }
+
+    #[test]
+    fn samples_without_boxes_are_refused() {
+        let (batches, mut batch) = (batches(), DetectionBatch::default());
+        let image = Image::from_rgb8(vec![0; 12], 2, 2).unwrap();
+        assert!(batches.add(&mut batch, Sample { data: vec![image.into()], target: None }).is_err());
+        assert_eq!(batch.pictures, 0);
+    }
+}
