@@ -9,6 +9,7 @@ use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet};
 use opendr_perception::pose_estimation::{Movenet, Posenet};
+use opendr_perception::speech_recognition::MatchboxNet;
 
 /// Every learner: those compiled in, and those that the program adds.
 #[rustfmt::skip] // One line a learner.
@@ -24,6 +25,7 @@ pub fn registry() -> &'static Registry {
             Movenet,
             Posenet,
             GatedRecurrentUnit,
+            MatchboxNet,
             #[cfg(feature = "test-learner")] opendr_engine::learner::counter::Counter,
         ]
     })
