@@ -1,4 +1,5 @@
 //! Every learner of the registry keeps every promise of the interface.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod models;
 

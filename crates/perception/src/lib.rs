@@ -12,7 +12,8 @@ pub mod suppression;
 mod category_scores;
 #[cfg(feature = "training")]
 mod labelled;
-#[cfg(all(test, feature = "training"))]
+#[cfg(test)]
+#[cfg(feature = "training")]
 mod overfit;
 mod picture_network;
 #[cfg(feature = "training")]

@@ -136,5 +136,6 @@ fn check_series(series: &Timeseries, shape: [usize; 2]) -> Result<()> {
     }
 }
 
-#[cfg(all(test, feature = "training"))]
+#[cfg(test)]
+#[cfg(feature = "training")]
 mod tests;

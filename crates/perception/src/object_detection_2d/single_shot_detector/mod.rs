@@ -19,7 +19,8 @@ mod network;
 mod objective;
 #[cfg(feature = "training")]
 mod targets;
-#[cfg(all(test, feature = "training"))]
+#[cfg(test)]
+#[cfg(feature = "training")]
 mod tests;
 
 use opendr_engine::data::Image;

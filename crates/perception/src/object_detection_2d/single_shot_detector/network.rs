@@ -297,7 +297,7 @@ mod tests {
         last.bias = Some(Param::from_data(tensor(heat + 1, vec![17]), &device));
         let images = TensorData::new(picture.clone(), [1, 3, side, side]);
         let trunk = network.trunk(Tensor::from_data(images, &device)).pop().unwrap();
-        let ours = last.forward(trunk).permute([0, 2, 3, 1]).into_data().to_vec::<f32>().unwrap();
+        let ours = last.forward(trunk).permute([0, 2, 3, 1]).into_data().try_to_vec::<f32>().unwrap();
 
         let session = Session::open(&bytes, Place::Cpu).unwrap();
         // This file takes its pictures with the channels last.

@@ -14,7 +14,8 @@ mod objective;
 mod open_sides;
 #[cfg(feature = "training")]
 mod person_crop;
-#[cfg(all(test, feature = "training"))]
+#[cfg(test)]
+#[cfg(feature = "training")]
 mod tests;
 
 #[cfg(feature = "training")]

@@ -122,5 +122,6 @@ impl Learner for MatchboxNet {
     }
 }
 
-#[cfg(all(test, feature = "training"))]
+#[cfg(test)]
+#[cfg(feature = "training")]
 mod tests;
