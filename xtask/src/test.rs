@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
-use crate::{install_c, parity};
+use crate::{install_c, parity, surfaces};
 
 /// Runs every check; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -28,7 +28,7 @@ pub fn run() -> Result<()> {
     )?;
     step(
         "free-threaded Python",
-        cargo(&["check", "--package", "opendr-python"])
+        cargo(&["check", "--package", "opendr-python", "--no-default-features"])
             .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
             .env("PYO3_BUILD_EXTENSION_MODULE", "1"),
     )?;
@@ -63,17 +63,7 @@ fn references(environment: &Environment) -> Result<()> {
     let requirements = tests.map(|tests| format!("{tests}/requirements.txt"));
     let alone = Some("tests/metrics/requirements_without_dependencies.txt");
     let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
-    let mut build = command("cargo");
-    let packages = [
-        "opendr-metrics",
-        "opendr-datasets",
-        "opendr-perception",
-        "opendr-runlog",
-        "opendr-optimize",
-        "opendr-training",
-    ];
-    build.args(["build", "--examples"]).args(packages.iter().flat_map(|package| ["--package", package]));
-    step("runners of metrics, data sets, cepstra, logs, networks and exports", &mut build)?;
+    surfaces::build()?;
     let examples = target().join("debug/examples");
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra"]).args(tests);

@@ -6,7 +6,6 @@ use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
-use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet};
 use opendr_perception::pose_estimation::{Movenet, Posenet};
 use opendr_perception::speech_recognition::MatchboxNet;
@@ -21,7 +20,6 @@ pub fn registry() -> &'static Registry {
             Nanodet,
             UltraLightFace,
             Yunet,
-            ImageClassifier,
             Movenet,
             Posenet,
             GatedRecurrentUnit,

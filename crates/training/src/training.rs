@@ -326,7 +326,6 @@ impl<'a, O: Objective> Training<'a, O> {
             for (name, part) in parts {
                 self.log.scalar(&format!("train/{name}"), step, scalar(part.clone()))?;
             }
-            self.log.flush()?;
         }
         if self.shown_at.elapsed() > Duration::from_millis(200) {
             let rate = self.images as f64 / self.begun.elapsed().as_secs_f64();
@@ -438,6 +437,8 @@ impl<'a, O: Objective> Training<'a, O> {
             return Err(Error::internal("a training without a network"));
         };
         let average = self.average.as_ref().map(Average::network);
+        // Rows before the checkpoint are not written again by a training that goes on from it.
+        self.log.flush()?;
         let saved = Saved::files(&self.standing, network.valid(), average, &self.optimizer)?;
         let files: Vec<_> = saved.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
         self.checkpoints.save(self.standing.step, &files)?;
