@@ -12,8 +12,6 @@ pub fn run() -> Result<()> {
     stubs.arg(root().join("bindings/python/stubs.py")).env("PYTHONPATH", &folder);
     step("stubs and pages", &mut stubs)?;
     let mut headers = command("cargo");
-    headers
-        .args(["test", "--package", "opendr-c", TEST_LEARNER, "--test", "header"])
-        .env("OPENDR_UPDATE", "1");
+    headers.args(["test", "--workspace", TEST_LEARNER, "--test", "header"]).env("OPENDR_UPDATE", "1");
     step("C headers", &mut headers)
 }

@@ -1054,4 +1054,79 @@ static inline opendr_status opendr_infer_posenet(const opendr_learner *learner,
     return status_;
 }
 
+/*
+ * GatedRecurrentUnitLearner: A gated recurrent unit tells abnormal heart beats from normal ones.
+ *
+ * Parameters:
+ *   in_channels (an int 1..=1024, default none): Features of a series (leads of a recording). None: as the data have.
+ *   series_length (an int 1..=1000000, default none): Instants of a series. None: as the data have.
+ *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   recurrent_unit (an int 1..=4096, default 512): Features of the recurrent unit's state.
+ *   dropout (a float 0..=0.99, default 0.2): Share of the state's features that are left out at random in each training step.
+ *
+ * Inputs:
+ *   timeseries (Timeseries)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_gated_recurrent_unit(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("gated_recurrent_unit", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_gated_recurrent_unit(const opendr_learner *learner,
+    const opendr_timeseries *timeseries,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "timeseries";
+    inputs_[0].value = (const opendr_value *)timeseries;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * MatchboxNetLearner: MatchboxNet tells which of a few words was spoken; small and quick.
+ *
+ * Parameters:
+ *   number_of_blocks (an int 1..=64, default 3): Blocks with a way past them (B in the paper).
+ *   number_of_subblocks (an int 1..=64, default 1): Convolutions in a block (R in the paper).
+ *   number_of_channels (an int 1..=4096, default 64): Channels of the blocks (C in the paper).
+ *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, 64 a frame.
+ *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
+ *
+ * Inputs:
+ *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_matchboxnet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("matchboxnet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_matchboxnet(const opendr_learner *learner,
+    const opendr_audio *audio,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
 #endif /* OPENDR_H */

@@ -25,7 +25,7 @@ pub fn open_for_training<'a, L: Learner>(
         DatasetRef::Iterator(dataset) => Ok(Box::new(dataset)),
         DatasetRef::External(external) => {
             let target = L::Target::OUTPUTS.first().map(|output| output.value_type);
-            let problems = if params.skip_broken { Problems::skipping() } else { Problems::strict() };
+            let problems = if params.skip_unreadable { Problems::skipping() } else { Problems::strict() };
             opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
         }
     }

@@ -78,7 +78,7 @@ pub struct TrainingParams {
     #[param(default = 2, range = 0..=1024)]
     pub num_workers: usize,
     /// Whether samples that cannot be read are left out and listed, instead of ending the training.
-    pub skip_broken: bool,
+    pub skip_unreadable: bool,
     /// What first weights, order, augmentation and dropout follow from.
     #[param(default = 0)]
     pub seed: u64,

@@ -175,7 +175,7 @@ impl<'a, O: Objective> Training<'a, O> {
             seed: params.seed,
             // A last batch of one or two would spoil the statistics of batch normalisation.
             drop_last: true,
-            skip_broken: params.skip_broken,
+            skip_broken: params.skip_unreadable,
             ..LoaderOptions::default()
         };
         (options, dataset.len() / batch_size)
@@ -278,7 +278,11 @@ impl<'a, O: Objective> Training<'a, O> {
         self.images += batch.indices.len() as u64;
         self.standing.loss_sum += value;
         self.standing.batches += 1;
+        let first = self.standing.position == 0;
         self.standing.position = batch.next_position;
+        if first && let Some(picture) = self.objective.picture(&network, &batch.content)? {
+            self.log.picture("train/batch", self.standing.step, &picture)?;
+        }
         let last = self.dataset.len() - batch.next_position < self.params.batch_size;
         self.network = Some(if self.waiting == self.params.accumulate || last {
             self.step(network, &batch.indices)?
