@@ -33,7 +33,7 @@ class MovenetLearner(NativeLearner):
     threshold: float
     keypoint_threshold: float
     size: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., scale: float = ..., *, threshold: float = ..., keypoint_threshold: float = ..., size: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., size: int = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ...) -> PoseList: ...  # type: ignore[overload-overlap]
     @overload
@@ -69,7 +69,7 @@ class PosenetLearner(NativeLearner):
     peak_threshold: float
     nms_radius: float
     max_detections: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., scale: float = ..., *, threshold: float = ..., keypoint_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ...) -> PoseList: ...  # type: ignore[overload-overlap]
     @overload
