@@ -11,7 +11,7 @@ import opendr
 import pytest
 from opendr import Source, _opendr
 from opendr._native_learner import _value, native_class
-from opendr.engine.data import Image, Vector
+from opendr.engine.data import Audio, Image, Timeseries, Vector
 from opendr.engine.learners import BaseLearner, Init, Learner
 from opendr.engine.target import BoundingBoxList, Heatmap
 from opendr.perception.object_detection_2d import (
@@ -41,23 +41,31 @@ def test_class(entry):
             assert f"{field['range'][0]:g} to {field['range'][1]:g}" in " ".join(cls.__doc__.split())
 
 
+def datum(entry, photo):
+    """Something of the type that a learner takes."""
+    noise = np.random.default_rng(0).uniform(-1, 1, 16000)
+    kinds = {"Image": photo, "Audio": Audio(noise, 16000), "Timeseries": Timeseries(noise[:140, None])}
+    return kinds[entry["ports"][0]["type"]]
+
+
 @pytest.mark.parametrize("entry", NATIVE, ids=lambda entry: entry["name"])
 def test_life_cycle(entry, zoo, photo, tmp_path):
     cls = opendr.learners()[entry["name"]]
+    given = datum(entry, photo)
     learner = cls(device="cpu")
     assert not learner.is_ready and learner.classes == []
     with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
-        learner.infer(photo)
+        learner.infer(given)
     folder = learner.download(str(tmp_path / "models"), verbose=False)
     assert learner.load(folder) is True and learner.is_ready
-    answer = learner.infer(photo)
-    assert type(answer).__name__ == entry["outputs"][0]["type"] and len(answer) > 0
+    answer = learner.infer(given)
+    assert type(answer).__name__ == entry["outputs"][0]["type"] and answer.to_json()
     assert learner.save(str(tmp_path / "saved")) is True
     again = cls(device="cpu")
     again.load(tmp_path / "saved")
-    assert again.infer(photo).to_json() == answer.to_json()
+    assert again.infer(given).to_json() == answer.to_json()
     learner.reset()
-    assert learner.stream().infer(photo).to_json() == answer.to_json()
+    assert learner.stream().infer(given).to_json() == answer.to_json()
     with pytest.raises(TypeError, match="ExternalDataset"):
         learner.eval(None)
     refused = (TypeError, "dataset should be") if entry["fit"] else (NotImplementedError, entry["class_name"])
