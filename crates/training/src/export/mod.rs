@@ -31,7 +31,7 @@
 //! # Adding an operation
 //!
 //! Each family of operations has a file. A function there gets the operation as `burn-ir` describes it and writes
-//! nodes through [`Lowering`](lowering::Lowering); it answers `false` for what it does not know, which becomes the
+//! nodes through `Lowering`; it answers `false` for what it does not know, which becomes the
 //! error that the user sees. What ONNX has no operator for, but Burn has (bicubic resizing, adaptive pooling of odd
 //! sizes), is often linear: then Burn computes the matrix.
 
