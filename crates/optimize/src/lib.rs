@@ -1,6 +1,6 @@
 //! Smaller and faster models: weights in 16 bits, or everything in 8.
 //!
-//! [`optimize_learner`] makes a container of a container with a learner and a data set: it runs the learner, records what
+//! [`OptimizeJob`] makes a container of a container with a learner and a data set: it runs the learner, records what
 //! it gives its sessions, and takes the ranges of every tensor from that, so that no learner needs a line for it.
 //! [`optimize`] does the same with recordings of the caller's own.
 
