@@ -1,7 +1,5 @@
 //! What the tests of learners that train have in common: each can learn one batch by heart.
 
-use std::path::Path;
-
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams};
 use burn::tensor::Device;
@@ -9,8 +7,7 @@ use opendr_datasets::augment::{Augment, Others};
 use opendr_datasets::loader::Collate;
 use opendr_engine::Random;
 use opendr_engine::dataset::Sample;
-use opendr_engine::model::ModelWriter;
-use opendr_training::{Container, Objective};
+use opendr_training::Objective;
 
 /// The loss of `samples`, one batch, before training and after 300 steps on it alone.
 pub(crate) fn losses_on_one_batch<O: Objective>(
@@ -38,13 +35,4 @@ pub(crate) fn losses_on_one_batch<O: Objective>(
         network = optimizer.step(lr, network, gradients);
     }
     [losses[0], losses[300]]
-}
-
-/// Writes a container to `folder`.
-pub(crate) fn write_container(folder: &Path, container: Container) {
-    let mut writer = ModelWriter::new(folder, container.manifest).unwrap();
-    for (name, bytes) in &container.files {
-        writer.add(name, bytes).unwrap();
-    }
-    writer.finish().unwrap();
 }

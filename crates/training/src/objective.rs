@@ -1,12 +1,14 @@
 //! What a training is told by its learner.
 
+use std::path::Path;
+
 use burn::module::Module;
 use burn::tensor::{Device, Tensor};
 use opendr_datasets::augment::Pipeline;
 use opendr_datasets::loader::Collate;
 use opendr_engine::Result;
 use opendr_engine::data::Image;
-use opendr_engine::model::Manifest;
+use opendr_engine::model::{Manifest, ModelWriter};
 
 /// What a learner trains and by what it is judged; everything else of a training is the same for all.
 pub trait Objective: Sync {
@@ -79,4 +81,18 @@ pub struct Container {
     pub manifest: Manifest,
     /// Its files by name.
     pub files: Vec<(String, Vec<u8>)>,
+}
+
+impl Container {
+    /// Writes it to `path`, whole or not at all.
+    ///
+    /// # Errors
+    /// As [`ModelWriter`].
+    pub fn write(&self, path: &Path) -> Result<()> {
+        let mut writer = ModelWriter::new(path, self.manifest.clone())?;
+        for (name, bytes) in &self.files {
+            writer.add(name, bytes)?;
+        }
+        writer.finish().map(drop)
+    }
 }

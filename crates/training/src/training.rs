@@ -11,7 +11,6 @@ use burn::tensor::{Device, Tensor};
 use opendr_datasets::loader::{Batch, Collate, Loader, LoaderOptions};
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::FitJob;
-use opendr_engine::model::ModelWriter;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt, Statistics, Unit};
 use opendr_runlog::{Checkpoints, RunLog};
@@ -211,9 +210,7 @@ impl<'a, O: Objective> Training<'a, O> {
 
     fn run(&mut self, mut validate: Option<Validate<'_>>) -> Result<()> {
         let options = Self::options(self.params, self.dataset).0;
-        let loader = Loader::new(self.dataset, options)?
-            .augment(self.objective.pipeline()?)
-            .collate(self.objective.collate()?);
+        let loader = self.loader(options)?;
         check_memory(loader.options().batch_size, || self.try_step())?;
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
         self.job.progress.advance(self.standing.step);
@@ -235,13 +232,16 @@ impl<'a, O: Objective> Training<'a, O> {
         self.finish(validate)
     }
 
+    fn loader(&self, options: LoaderOptions) -> Result<Loader<'a, O::Collate>> {
+        let loader = Loader::new(self.dataset, options)?.augment(self.objective.pipeline()?);
+        Ok(loader.collate(self.objective.collate()?))
+    }
+
     /// A few samples forwards and backwards, without a trace: on a copy of the network.
     fn try_step(&self) -> Result<()> {
         let options =
             LoaderOptions { batch_size: TRIED, threads: 0, ..Self::options(self.params, self.dataset).0 };
-        let loader = Loader::new(self.dataset, options)?
-            .augment(self.objective.pipeline()?)
-            .collate(self.objective.collate()?);
+        let loader = self.loader(options)?;
         let Some(network) = &self.network else {
             return Err(Error::internal("a training without a network"));
         };
@@ -370,7 +370,7 @@ impl<'a, O: Objective> Training<'a, O> {
     /// Measures the network as it stands; the best is what stays.
     fn validate(&mut self, validate: &mut Validate<'_>) -> Result<()> {
         let candidate = self.job.output.join(CANDIDATE);
-        write_container(&candidate, &self.container()?)?;
+        self.container()?.write(&candidate)?;
         let Score { name, value, numbers } = validate(&candidate)?;
         // The evaluation had the bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
@@ -384,7 +384,7 @@ impl<'a, O: Objective> Training<'a, O> {
         if self.standing.best.as_ref().is_none_or(|best| value > best.value) {
             self.standing.best = Some(Best { value, step });
             self.standing.since_best = 0;
-            write_container(&self.job.model(), &self.container()?)?;
+            self.container()?.write(&self.job.model())?;
         } else {
             self.standing.since_best += 1;
         }
@@ -401,7 +401,7 @@ impl<'a, O: Objective> Training<'a, O> {
     fn finish(&mut self, validate: Option<Validate<'_>>) -> Result<()> {
         self.save()?;
         if self.standing.best.is_none() || validate.is_none() {
-            write_container(&self.job.model(), &self.container()?)?;
+            self.container()?.write(&self.job.model())?;
         }
         let candidate = self.job.output.join(CANDIDATE);
         if candidate.exists() {
@@ -469,12 +469,4 @@ impl<'a, O: Objective> Training<'a, O> {
 
 fn scalar(tensor: Tensor<1>) -> f64 {
     f64::from(tensor.into_scalar::<f32>())
-}
-
-fn write_container(path: &Path, container: &Container) -> Result<()> {
-    let mut writer = ModelWriter::new(path, container.manifest.clone())?;
-    for (name, bytes) in &container.files {
-        writer.add(name, bytes)?;
-    }
-    writer.finish().map(drop)
 }

@@ -76,7 +76,7 @@ fn infers_what_the_trainer_computes() {
     let params = GatedRecurrentUnitParams { recurrent_unit: 16, ..Default::default() };
     let container = objective(&params).container(&network).unwrap();
     let folder = std::env::temp_dir().join(format!("opendr-gru-{}", std::process::id()));
-    crate::overfit::write_container(&folder, container);
+    container.write(&folder).unwrap();
     let mut handle = Handle::<GatedRecurrentUnit>::new(Default::default(), Device::Cpu).unwrap();
     handle.load(&folder).unwrap();
     let Some(Value::Timeseries(series)) = Noise.get(1).unwrap().data.into_iter().next() else { panic!() };

@@ -1,32 +1,25 @@
 //! Limbs: which peaks the fields join.
 
+use opendr_engine::target::Skeleton;
+
 use super::maps::{PartMaps, Plane};
 use super::peaks::Peak;
 use super::{JOINTS, PartAffinity};
 
 /// The limbs: the skeleton's bones, and two from shoulder to ear that hold a person together whose neck is hidden.
 /// Fields lie in this order and point from the first joint to the second.
-pub const LIMBS: [[usize; 2]; 19] = [
-    [1, 2],
-    [1, 5],
-    [2, 3],
-    [3, 4],
-    [5, 6],
-    [6, 7],
-    [1, 8],
-    [8, 9],
-    [9, 10],
-    [1, 11],
-    [11, 12],
-    [12, 13],
-    [1, 0],
-    [0, 14],
-    [14, 16],
-    [0, 15],
-    [15, 17],
-    [2, 16],
-    [5, 17],
-];
+pub const LIMBS: [[usize; 2]; 19] = {
+    let bones = Skeleton::Opendr18.bones();
+    let mut limbs = [[0; 2]; 19];
+    let mut limb = 0;
+    while limb < bones.len() {
+        limbs[limb] = bones[limb];
+        limb += 1;
+    }
+    limbs[limb] = [2, 16];
+    limbs[limb + 1] = [5, 17];
+    limbs
+};
 
 /// Two peaks that may be the ends of a limb.
 #[derive(Debug, Clone, Copy, PartialEq)]

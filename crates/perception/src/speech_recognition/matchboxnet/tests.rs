@@ -10,7 +10,7 @@ use opendr_training::Objective;
 use super::network::{MatchboxNetNetwork, NetworkSizes};
 use super::objective::SpeechObjective;
 use super::*;
-use crate::overfit::{losses_on_one_batch, write_container};
+use crate::overfit::losses_on_one_batch;
 
 const SIZES: NetworkSizes = NetworkSizes { blocks: 2, subblocks: 2, channels: 16, classes: 3, dropout: 0.0 };
 
@@ -63,7 +63,7 @@ fn infers_what_the_trainer_computes() {
     let params = MatchboxNetParams::default();
     let objective = SpeechObjective { params: &params, classes: Noise.classes(), augment: false };
     let folder = std::env::temp_dir().join(format!("opendr-matchboxnet-{}", std::process::id()));
-    write_container(&folder, objective.container(&network).unwrap());
+    objective.container(&network).unwrap().write(&folder).unwrap();
     let mut handle = Handle::<MatchboxNet>::new(params.clone(), Device::Cpu).unwrap();
     handle.load(&folder).unwrap();
     let category = handle.infer((&audio(2)).into()).unwrap();
