@@ -3,6 +3,7 @@
 mod command;
 mod dataset_flags;
 mod exit;
+mod inputs;
 mod learner_flags;
 mod loading;
 mod peak_memory;

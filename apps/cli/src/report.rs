@@ -7,10 +7,10 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use opendr::learner::Outputs;
-use opendr::vision::Frame;
 use opendr::{Error, Result, ResultExt, Value};
 use serde::Serialize;
 
+use crate::inputs::Item;
 use crate::progress_bar::Bar;
 use crate::stdout;
 use crate::timings::Timings;
@@ -77,23 +77,23 @@ impl<'a> Report<'a> {
         Self { bar, json, timings, failures: 0 }
     }
 
-    /// Tells what was found in a frame.
+    /// Tells what was found in a frame or file.
     ///
     /// # Errors
     /// `Io` when it cannot be written.
-    pub fn frame(&mut self, frame: &Frame, outputs: &Outputs, timings: Timings) -> Result<()> {
-        let input = frame.path.to_string_lossy();
+    pub fn item(&mut self, item: &Item, outputs: &Outputs, timings: Timings) -> Result<()> {
+        let input = item.path().to_string_lossy();
         let timings_ms = self.timings.then_some(timings);
         if !matches!(self.json, Json::Stdout) {
-            let name = match frame.video {
-                Some(_) => format!("{input} frame {}", frame.number),
-                None => input.to_string(),
+            let name = match item.is_of_video() {
+                true => format!("{input} frame {}", item.number()),
+                false => input.to_string(),
             };
             let text = text(&name, outputs, timings_ms);
             self.bar.suspend(|| stdout::print(text))?;
         }
         let outputs = Some(outputs.iter().collect());
-        self.line(&Line { input: Some(&input), index: Some(frame.number), outputs, error: None, timings_ms })
+        self.line(&Line { input: Some(&input), index: Some(item.number()), outputs, error: None, timings_ms })
     }
 
     /// Tells that something failed; work goes on with the next.

@@ -512,6 +512,9 @@ enum opendr_status opendr_infer(const struct opendr_learner *learner,
 // The name of the learner's input number index, NULL after the last. It lives as long as the learner.
 const char *opendr_input_name(const struct opendr_learner *learner, size_t index);
 
+// The type of the learner's input number index, e.g. "Image"; NULL after the last. It lives as long as the learner.
+const char *opendr_input_type(const struct opendr_learner *learner, size_t index);
+
 // The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 const char *opendr_output_name(const struct opendr_learner *learner, size_t index);
 
@@ -699,6 +702,10 @@ enum opendr_status opendr_value_to_json(const struct opendr_value *value, struct
 
 // A target from its JSON (docs/json.md). type is the name of the type that is wanted, or NULL for any.
 enum opendr_status opendr_value_from_json(const char *type_name, const char *json, struct opendr_value **value);
+
+// Reads a file as a value of the named type: "Image" (JPEG, PNG, BMP, WebP), "Audio" (WAVE), "Timeseries" (a table of
+// numbers as CSV or text, a line a moment; or NPY), "PointCloud" (KITTI's scans), or the JSON of a target.
+enum opendr_status opendr_value_open(const char *type_name, const char *path, struct opendr_value **value);
 
 // The value as people read it: a line for each item.
 enum opendr_status opendr_value_to_text(const struct opendr_value *value, struct opendr_string **string);

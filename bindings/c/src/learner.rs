@@ -260,6 +260,16 @@ pub unsafe extern "C" fn opendr_input_name(learner: *const opendr_learner, index
     })
 }
 
+/// The type of the learner's input number index, e.g. "Image"; NULL after the last. It lives as long as the learner.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_input_type(learner: *const opendr_learner, index: usize) -> *const c_char {
+    guard_value(ptr::null(), || {
+        // SAFETY: the rules at the top of opendr.h.
+        let loaded = unsafe { Loaded::of(learner) }?;
+        Ok(loaded.texts.keep_optional(loaded.entry.ports.get(index).map(|port| port.value_type.name())))
+    })
+}
+
 /// The name of the learner's output number index, NULL after the last. It lives as long as the learner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_output_name(learner: *const opendr_learner, index: usize) -> *const c_char {

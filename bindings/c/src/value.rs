@@ -6,7 +6,7 @@ use std::ptr;
 use opendr::{Datum, Error, Result, Value, ValueType};
 
 use crate::handle::{self, Held, Out};
-use crate::pointer::{optional_text, place, text};
+use crate::pointer::{self, optional_text, place, text};
 use crate::status::{guard, guard_value, opendr_status};
 use crate::string::{Text, opendr_string};
 use crate::texts::Texts;
@@ -81,17 +81,6 @@ pub(crate) unsafe fn typed<'a, D: Datum, P>(value: *const P, name: &str) -> Resu
     unsafe { AnyValue::of(value, name) }?.typed(name)
 }
 
-/// The type called `name`.
-///
-/// # Errors
-/// `NotFound`, with the types that there are.
-pub(crate) fn type_named(name: &str) -> Result<ValueType> {
-    ValueType::ALL.iter().copied().find(|known| known.name() == name).ok_or_else(|| {
-        let names: Vec<_> = ValueType::ALL.iter().map(|known| known.name()).collect();
-        Error::not_found(format!("no type {name:?}; there are {}", names.join(", ")))
-    })
-}
-
 /// The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_value_type(value: *const opendr_value) -> *const c_char {
@@ -136,7 +125,7 @@ pub unsafe extern "C" fn opendr_value_from_json(
         let (out, wanted, json) = unsafe {
             (Out::new(value, "value")?, optional_text(type_name, "type_name")?, text(json, "json")?)
         };
-        let wanted = wanted.map(type_named).transpose()?;
+        let wanted = wanted.map(str::parse::<ValueType>).transpose()?;
         let value: Value = serde_json::from_str(json).map_err(|error| {
             Error::format("no JSON of a target; docs/json.md shows them").with_source(error)
         })?;
@@ -152,6 +141,24 @@ pub unsafe extern "C" fn opendr_value_from_json(
                 Ok(())
             }
         }
+    })
+}
+
+/// Reads a file as a value of the named type: "Image" (JPEG, PNG, BMP, WebP), "Audio" (WAVE), "Timeseries" (a table of
+/// numbers as CSV or text, a line a moment; or NPY), "PointCloud" (KITTI's scans), or the JSON of a target.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_value_open(
+    type_name: *const c_char,
+    path: *const c_char,
+    value: *mut *mut opendr_value,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (out, kind, path) = unsafe {
+            (Out::new(value, "value")?, text(type_name, "type_name")?, pointer::path(path, "path")?)
+        };
+        out.set(AnyValue::from(opendr::datasets::open_value(kind.parse()?, path)?));
+        Ok(())
     })
 }
 

@@ -1,6 +1,6 @@
 /*
  * What a learner answers, for the tests that compare surfaces; the twin of crates/opendr/examples/infer_json.rs:
- * runner LEARNER[=CONTAINER] PARAMS_JSON PORT=PICTURE PORT=@TARGET.json ... , PORT=PICTURE ...
+ * runner LEARNER[=CONTAINER] PARAMS_JSON PORT=FILE PORT=FILE ... , PORT=FILE ...
  *
  * Commas stand between the calls of one stream. Each gives a line with the JSON of the outputs by name.
  *
@@ -19,20 +19,6 @@ static void check(opendr_status status) {
     exit(status);
 }
 
-static char *read_file(const char *path) {
-    FILE *file = fopen(path, "rb");
-    size_t size = 0, read = 0;
-    char *text = NULL;
-    if (file == NULL) return perror(path), exit(1), NULL;
-    do {
-        size += read;
-        text = (char *)realloc(text, size + 65537);
-    } while ((read = fread(text + size, 1, 65536, file)) > 0);
-    text[size] = '\0';
-    fclose(file);
-    return text;
-}
-
 static int by_name(const void *left, const void *right) {
     return strcmp(((const opendr_output *)left)->name, ((const opendr_output *)right)->name);
 }
@@ -49,22 +35,16 @@ static void print(opendr_output *outputs, size_t count) {
     printf("}\n");
 }
 
-/* The input that `PORT=PICTURE` or `PORT=@TARGET.json` is. */
-static opendr_input input(char *word) {
+/* The input that `PORT=FILE` is. */
+static opendr_input input(const opendr_learner *learner, char *word) {
     opendr_input input;
-    opendr_image *image = NULL;
     opendr_value *value = NULL;
+    size_t port = 0;
     char *file = strchr(word, '=');
     if (file == NULL) return fprintf(stderr, "%s is no PORT=FILE\n", word), exit(2), input;
     *file++ = '\0';
-    if (*file == '@') {
-        char *json = read_file(file + 1);
-        check(opendr_value_from_json(NULL, json, &value));
-        free(json);
-    } else {
-        check(opendr_image_open(file, &image));
-        value = (opendr_value *)image;
-    }
+    while (opendr_input_name(learner, port) != NULL && strcmp(opendr_input_name(learner, port), word) != 0) port++;
+    check(opendr_value_open(opendr_input_type(learner, port), file, &value));
     input.name = word;
     input.value = value;
     return input;
@@ -108,7 +88,7 @@ int main(int argc, char **argv) {
         opendr_input inputs[MOST];
         size_t input_count = 0;
         for (; word < argc && strcmp(argv[word], ",") != 0 && input_count < MOST; word++)
-            inputs[input_count++] = input(argv[word]);
+            inputs[input_count++] = input(learner, argv[word]);
         check(opendr_infer(learner, inputs, input_count, outputs, output_count));
         print(outputs, output_count);
         while (input_count > 0) {

@@ -1,5 +1,7 @@
 //! Data on their way from Python: objects that own NumPy arrays.
 
+use std::path::PathBuf;
+
 use opendr::data::{
     Audio, Calibration, ImageWithDetections, Observation, PointCloud, PointCloudWithCalibration,
     SkeletonSequence, Timeseries, Vector, Video,
@@ -57,6 +59,14 @@ pub fn value_from_python(object: &Bound<'_, PyAny>, wanted: ValueType) -> PyResu
     };
     *value.header_mut() = header_from_python(object)?;
     Ok(value)
+}
+
+/// The value of the type called `kind` that a file holds.
+#[pyfunction]
+pub fn open_value<'py>(py: Python<'py>, kind: &str, path: PathBuf) -> PyResult<Bound<'py, PyAny>> {
+    let kind: ValueType = kind.parse().to_python(py)?;
+    let value = py.detach(|| opendr::datasets::open_value(kind, path)).to_python(py)?;
+    python_from_value(py, value.as_value_ref())
 }
 
 /// The Python object of a value.

@@ -56,7 +56,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(convert::from_coco, module)?,
         wrap_pyfunction!(convert::from_mot, module)?,
         wrap_pyfunction!(convert::from_kitti, module)?,
-        wrap_pyfunction!(pixels::open_image, module)?,
+        wrap_pyfunction!(datum::open_value, module)?,
         wrap_pyfunction!(pixels::save_image, module)?,
         wrap_pyfunction!(pixels::draw, module)?,
         wrap_pyfunction!(zoo::download, module)?,

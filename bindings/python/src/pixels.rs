@@ -126,13 +126,6 @@ pub fn python_from_image(py: Python<'_>, image: Image) -> PyResult<Bound<'_, PyA
     py.import("opendr._schema")?.call_method1("image_from_pixels", (pixels,))
 }
 
-/// A picture file as a Python `Image`.
-#[pyfunction]
-pub fn open_image(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAny>> {
-    let image = py.detach(|| vision::open(path)).to_python(py)?;
-    python_from_image(py, image)
-}
-
 /// Writes a Python `Image` to a file; the extension says in which format.
 #[pyfunction]
 pub fn save_image(py: Python<'_>, image: &Bound<'_, PyAny>, path: PathBuf) -> PyResult<()> {

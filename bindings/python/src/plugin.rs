@@ -92,11 +92,8 @@ impl<'py> Tables<'_, 'py> {
     }
 
     fn value_type(&self) -> PyResult<ValueType> {
-        let name = self.text("type")?;
-        ValueType::ALL.iter().copied().find(|value_type| value_type.name() == name).ok_or_else(|| {
-            let names: Vec<_> = ValueType::ALL.iter().map(|value_type| value_type.name()).collect();
-            PyValueError::new_err(format!("no type {name:?}; there are {}", names.join(", ")))
-        })
+        let parsed = self.text("type")?.parse();
+        parsed.map_err(|error: Error| PyValueError::new_err(error.to_string()))
     }
 }
 

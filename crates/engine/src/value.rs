@@ -1,6 +1,7 @@
 //! The one list of data and target types: what surfaces convert, and all they know.
 
 use std::fmt;
+use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -12,7 +13,7 @@ use crate::target::{
     BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, SpeechCommand,
     TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
 };
-use crate::{Header, Result};
+use crate::{Error, Header, Result};
 
 /// A data or target type.
 pub trait Datum: Clone + Send + Sync + 'static {
@@ -56,6 +57,20 @@ macro_rules! values {
             /// Whether learners answer it (it then has a JSON form).
             pub const fn is_target(self) -> bool {
                 match self { $(Self::$data => false,)* $(Self::$target => true,)* }
+            }
+        }
+
+        /// The type of a name.
+        impl FromStr for ValueType {
+            type Err = Error;
+
+            /// # Errors
+            /// `NotFound`, with the types that there are.
+            fn from_str(name: &str) -> Result<Self> {
+                Self::ALL.iter().copied().find(|known| known.name() == name).ok_or_else(|| {
+                    let names: Vec<_> = Self::ALL.iter().map(|known| known.name()).collect();
+                    Error::not_found(format!("no type {name:?}; there are {}", names.join(", ")))
+                })
             }
         }
 

@@ -2,17 +2,18 @@
 //!
 //! ```console
 //! $ cargo run --release --example infer_json -- nanodet '{"threshold": 0.5}' image=street.jpg
-//! $ cargo run --release --example infer_json -- tracker=models/mine '{}' image=1.png detections=@1.json , image=2.png detections=@2.json
+//! $ cargo run --release --example infer_json -- tracker=models/mine '{}' image=1.png detections=1.json , image=2.png detections=2.json
 //! ```
 //!
 //! The learner is a name of the registry, with `/VARIANT` or `=CONTAINER`; then its parameters as JSON; then the inputs:
-//! `PORT=PICTURE` or `PORT=@TARGET.json`, with a comma between the calls of one stream.
+//! `PORT=FILE` with a picture, sound, series, scan, or the JSON of a target, as the port takes it, with a comma between the
+//! calls of one stream.
 
 use std::collections::BTreeMap;
+use std::env;
 use std::error::Error;
-use std::{env, fs};
 
-use opendr::learner::{AnyLearner, Outputs, Ports};
+use opendr::learner::{AnyLearner, Outputs, Port, Ports};
 use opendr::params::ParamMap;
 use opendr::{Device, Silent, Value};
 
@@ -24,18 +25,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         return Ok(opendr::learner::counter::write_model(folder.as_ref(), 5, &ParamMap::new())?);
     }
-    let [learner, params, inputs @ ..] = &arguments[..] else {
+    let [name, params, inputs @ ..] = &arguments[..] else {
         return Err("give a learner, parameters as JSON, and inputs as PORT=FILE".into());
     };
-    let mut learner = load(learner, &serde_json::from_str(params)?)?;
+    let mut learner = load(name, &serde_json::from_str(params)?)?;
+    let ports = opendr::registry().find(learner_name(name))?.ports;
     for call in inputs.split(|word| word == ",") {
-        let values = call.iter().map(|word| read(word)).collect::<Result<Vec<_>, _>>()?;
+        let values = call.iter().map(|word| read(word, ports)).collect::<Result<Vec<_>, _>>()?;
         let ports = values
             .iter()
             .fold(Ports::default(), |ports, (name, value)| ports.with(name, value.as_value_ref()));
         println!("{}", json(&learner.infer(&ports)?)?);
     }
     Ok(())
+}
+
+/// The name without `/VARIANT` and `=CONTAINER`.
+fn learner_name(name: &str) -> &str {
+    name.split(['/', '=']).next().unwrap_or(name)
 }
 
 fn load(name: &str, params: &ParamMap) -> opendr::Result<Box<dyn AnyLearner>> {
@@ -48,13 +55,10 @@ fn load(name: &str, params: &ParamMap) -> opendr::Result<Box<dyn AnyLearner>> {
 }
 
 /// The name of a port and what goes into it.
-fn read(word: &str) -> Result<(&str, Value), Box<dyn Error>> {
-    let (port, file) = word.split_once('=').ok_or("inputs are PORT=FILE")?;
-    let value = match file.strip_prefix('@') {
-        Some(file) => serde_json::from_slice(&fs::read(file)?)?,
-        None => Value::Image(opendr::vision::open(file)?),
-    };
-    Ok((port, value))
+fn read<'a>(word: &'a str, ports: &[Port]) -> Result<(&'a str, Value), Box<dyn Error>> {
+    let (name, file) = word.split_once('=').ok_or("inputs are PORT=FILE")?;
+    let port = ports.iter().find(|port| port.name == name).ok_or_else(|| format!("no input {name:?}"))?;
+    Ok((name, opendr::datasets::open_value(port.value_type, file)?))
 }
 
 fn json(outputs: &Outputs) -> serde_json::Result<String> {

@@ -1,15 +1,14 @@
-//! `opendr infer`: a learner over pictures, folders, videos, cameras.
+//! `opendr infer`: a learner over pictures, folders, videos, cameras, and files of what else learners take.
 
-use std::iter;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
-use opendr::vision::{Frame, Source, SourceOptions};
 use opendr::{Error, Progress, Result, Unit, ValueType, map_in_order};
 
 use crate::exit::Outcome;
+use crate::inputs::{Inputs, Item};
 use crate::port_file::PortFile;
 use crate::progress_bar::{Bar, interrupted};
 use crate::report::{Json, Report};
@@ -25,6 +24,7 @@ Examples:
   opendr infer LEARNER 'photos/**/*.jpg' --threshold 0.8
   opendr infer LEARNER/VARIANT dance.mp4 --out dance-seen.mp4
   opendr infer LEARNER camera:0 --limit 100
+  opendr infer matchboxnet yes.wav no.wav                sounds, series (.csv), point clouds
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
@@ -32,7 +32,7 @@ pub fn grammar() -> Command {
     let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
     Command::new("infer")
-        .about("Run a learner on pictures, folders, patterns, videos or a camera")
+        .about("Run a learner on pictures, videos, a camera, or files of what else it takes")
         .arg(loading::learner())
         .arg(
             Arg::new("input")
@@ -40,7 +40,7 @@ pub fn grammar() -> Command {
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("INPUT")
-                .help("Pictures, folders, quoted patterns, video files, camera:N"),
+                .help("Pictures, folders, quoted patterns, video files, camera:N; or files of the type that the learner takes"),
         )
         .args([
             path("out")
@@ -73,27 +73,34 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let mut report = Report::new(&bar, json, matches.get_flag("show-timings"));
     let inputs: Vec<&PathBuf> = matches.get_many("input").into_iter().flatten().collect();
-    let source = open(&inputs, &mut report)?;
+    let port = entry.ports.first().ok_or_else(|| Error::internal("the learner takes nothing"))?;
+    let out = matches.get_one::<PathBuf>("out");
+    if out.is_some() && port.value_type != ValueType::Image {
+        let (class, given) = (entry.spec.class, port.value_type.name());
+        return Err(Error::invalid_param(format!(
+            "--out draws on pictures, and {class} takes {given}; leave it away, or write answers by --json=FILE"
+        )));
+    }
+    let items = Inputs::open(port.value_type, &inputs, &mut report)?;
     let limit = matches.get_one("limit").copied().unwrap_or(u64::MAX);
-    let frames =
-        source.len_hint().map_or((limit < u64::MAX).then_some(limit), |count| Some(count.min(limit)));
-    let writer = matches.get_one::<PathBuf>("out").map(|out| Writer::new(out, frames)).transpose()?;
+    let frames = items.len_hint().map_or((limit < u64::MAX).then_some(limit), |count| Some(count.min(limit)));
+    let writer = out.map(|out| Writer::new(out, frames)).transpose()?;
     let params = learner_flags::params(entry, matches)?;
     let load = || loading::load(spec, &params, matches, &bar);
     let job = Job {
         entry,
-        port: picture_port(entry)?,
+        port: port.name,
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
     };
-    let alone = job.sequence || !source.is_pictures();
+    let alone = job.sequence || !items.are_separate();
     let count = if alone { 1 } else { loading::how_many(matches, frames)? };
     let learners = loading::side_by_side(count, load)?;
     let mut workers: Vec<_> = learners.into_iter().map(|learner| Worker { learner, stream: None }).collect();
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let told = job.run(&mut workers, source, limit, &mut report, writer.as_ref(), &bar);
+    let told = job.run(&mut workers, items, limit, &mut report, writer.as_ref(), &bar);
     bar.end();
     // Even when the report cannot go on, what was handed over is finished.
     for (input, error) in writer.map(Writer::finish).unwrap_or_default() {
@@ -103,34 +110,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }
 
-/// The port that pictures go into: the first.
-fn picture_port(entry: &Entry) -> Result<&'static str> {
-    let first = entry.ports.first().filter(|port| port.value_type == ValueType::Image);
-    first.map(|port| port.name).ok_or_else(|| {
-        let class = entry.spec.class;
-        Error::unsupported(format!(
-            "{class} takes no pictures; the command line has only those, use Rust or Python"
-        ))
-    })
-}
-
-/// One source over all inputs; those that cannot be opened are reported, and left out.
-fn open(inputs: &[&PathBuf], report: &mut Report<'_>) -> Result<Source> {
-    let all = Source::open_all(inputs, SourceOptions::default());
-    if all.is_ok() || inputs.len() == 1 {
-        return all;
-    }
-    let mut good = Vec::new();
-    for input in inputs {
-        match Source::open(input) {
-            Ok(_) => good.push(*input),
-            Err(error) => report.failure(Some(input), &error)?,
-        }
-    }
-    Source::open_all(good, SourceOptions::default())
-}
-
-/// What is to be done with each frame.
+/// What is to be done with each item.
 struct Job {
     entry: &'static Entry,
     port: &'static str,
@@ -145,31 +125,30 @@ struct Worker {
     stream: Option<Arc<Path>>,
 }
 
-/// A frame with what was found in it, or what failed and for which input.
-type Answer = std::result::Result<(Frame, Outputs, Timings), (Option<PathBuf>, Error)>;
+/// An item with what was found in it, or what failed and for which input.
+type Answer = std::result::Result<(Item, Outputs, Timings), (Option<PathBuf>, Error)>;
 
 impl Job {
     fn run(
         &self,
         workers: &mut [Worker],
-        mut source: Source,
+        mut inputs: Inputs,
         limit: u64,
         report: &mut Report<'_>,
         writer: Option<&Writer>,
         bar: &Bar,
     ) -> Result<()> {
         let mut left = limit;
-        let frames = iter::from_fn(|| {
+        let items = std::iter::from_fn(|| {
             left = left.checked_sub(1).filter(|_| !interrupted())?;
-            let frame = source.next()?;
-            Some(frame.map_err(|error| (source.last_path().map(Path::to_owned), error)))
+            inputs.next()
         });
-        let answer = |worker: &mut Worker, frame: std::result::Result<Frame, _>| self.answer(worker, frame?);
-        map_in_order(workers, frames, answer, |answer| {
+        let answer = |worker: &mut Worker, item: std::result::Result<Item, _>| self.answer(worker, item?);
+        map_in_order(workers, items, answer, |answer| {
             match answer {
-                Ok((frame, outputs, timings)) => {
-                    report.frame(&frame, &outputs, timings)?;
-                    if let Some(writer) = writer {
+                Ok((item, outputs, timings)) => {
+                    report.item(&item, &outputs, timings)?;
+                    if let (Some(writer), Item::Frame(frame)) = (writer, item) {
                         writer.put(frame, outputs)?;
                     }
                 }
@@ -180,34 +159,34 @@ impl Job {
         })
     }
 
-    fn answer(&self, worker: &mut Worker, frame: Frame) -> Answer {
-        let begins = self.follow(worker, &frame);
-        match self.infer(worker, &frame, begins) {
-            Ok((outputs, timings)) => Ok((frame, outputs, timings)),
+    fn answer(&self, worker: &mut Worker, item: Item) -> Answer {
+        let begins = self.follow(worker, &item);
+        match self.infer(worker, &item, begins) {
+            Ok((outputs, timings)) => Ok((item, outputs, timings)),
             Err(error) => {
-                let error = error.context(frame.path.display().to_string());
-                Err((Some(frame.path.to_path_buf()), error))
+                let path = item.path();
+                Err((Some(path.to_path_buf()), error.context(path.display().to_string())))
             }
         }
     }
 
-    fn infer(&self, worker: &mut Worker, frame: &Frame, begins: bool) -> Result<(Outputs, Timings)> {
-        let mut ports = Ports::default().with(self.port, &frame.image);
+    fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Outputs, Timings)> {
+        let mut ports = Ports::default().with(self.port, item.value());
         for file in &self.further {
             let is_init = self.entry.ports.iter().any(|port| port.name == file.name() && port.init);
             if begins || !is_init {
-                ports = ports.with(file.name(), file.value(frame.index)?);
+                ports = ports.with(file.name(), file.value(item.index())?);
             }
         }
         Timings::of(|| worker.learner.infer(&ports))
     }
 
-    /// Every video is a stream of its own, and so is every picture unless they are a sequence. Whether one begins.
-    fn follow(&self, worker: &mut Worker, frame: &Frame) -> bool {
-        let stream = match (&frame.video, self.sequence) {
-            (Some(_), _) => Some(frame.path.clone()),
-            (None, true) => frame.path.parent().map(Arc::from),
-            (None, false) => None,
+    /// Every video is a stream of its own, and so is every other file unless they are a sequence. Whether one begins.
+    fn follow(&self, worker: &mut Worker, item: &Item) -> bool {
+        let stream = match (item.is_of_video(), self.sequence) {
+            (true, _) => Some(item.path().clone()),
+            (false, true) => item.path().parent().map(Arc::from),
+            (false, false) => None,
         };
         let begins = stream.is_none() || stream != worker.stream;
         if begins {

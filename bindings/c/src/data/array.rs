@@ -8,7 +8,7 @@ use opendr::{Error, Result, Value, ValueType};
 use crate::handle::Out;
 use crate::pointer::{place, slice, text};
 use crate::status::{guard, opendr_status};
-use crate::value::{AnyValue, opendr_value, type_named};
+use crate::value::{AnyValue, opendr_value};
 
 /// The types that are numbers along axes, and what the axes are.
 pub const ARRAYS: [(ValueType, &[&str]); 5] = [
@@ -32,11 +32,7 @@ pub unsafe extern "C" fn opendr_array_create(
     guard(|| {
         // SAFETY: the rules at the top of opendr.h.
         let (out, kind, shape) = unsafe {
-            (
-                Out::new(value, "value")?,
-                type_named(text(type_name, "type_name")?)?,
-                slice(shape, axes, "shape")?,
-            )
+            (Out::new(value, "value")?, text(type_name, "type_name")?.parse()?, slice(shape, axes, "shape")?)
         };
         let wanted = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
         if wanted != Some(length) {

@@ -16,6 +16,8 @@ from opendr.engine.learners import BaseLearner, Learner
 
 PathLike = Union[str, "os.PathLike[str]"]
 Table = dict[str, Any]
+#: What a path of a file may stand for: pictures, WAVE, tables of numbers (CSV, text, NPY), scans as KITTI has them.
+IN_FILES = ("Image", "Audio", "Timeseries", "PointCloud")
 #: Data that no array alone can stand for.
 OF_SEVERAL_PARTS = ("Audio", "Calibration", "ImageWithDetections", "PointCloudWithCalibration")
 
@@ -49,8 +51,9 @@ class NativeLearner(Learner):
 
         Args:
             inputs: The inputs, in the order of the learner's ports; also by name. A picture may be an ``Image``, an
-                array (layout guessed by the rule of ``Image``), or the path of a file. A list of inputs gives the list
-                of their answers, an iterator such as a ``Source`` an iterator of them.
+                array (layout guessed by the rule of ``Image``), or the path of a file; so may a sound (WAVE), a series
+                (CSV, NPY) and a scan (KITTI's). A list of inputs gives the list of their answers, an iterator such as
+                a ``Source`` an iterator of them.
             arguments: Inputs by name, and live parameters for this call only.
 
         Returns:
@@ -461,8 +464,8 @@ def _value(value: Any, name: str, kind: str) -> Any:
     wanted: Any = getattr(target if is_target else data, kind)
     if isinstance(value, wanted):
         return value
-    if kind == "Image" and isinstance(value, (str, os.PathLike)):
-        return _opendr.open_image(os.fspath(value))
+    if kind in IN_FILES and isinstance(value, (str, os.PathLike)):
+        return _opendr.open_value(kind, os.fspath(value))
     if kind == "Audio" and isinstance(value, data.Timeseries):
         return value  # Speech learners take it at the rate they are made for, as OpenDR's did.
     article = "an" if kind[0] in "AEIOU" else "a"

@@ -76,7 +76,8 @@ class Image(ArrayData):
         path = os.fspath(filename)
         if not os.path.exists(path):
             raise FileNotFoundError("The image file does not exist.")
-        return _opendr.open_image(path)
+        picture: Image = _opendr.open_value("Image", path)
+        return picture
 
     @classmethod
     def from_pil(cls, picture: PIL.Image.Image) -> Image:

@@ -1,0 +1,149 @@
+//! One value in one file of its own: what surfaces hand to a learner.
+
+use std::path::{Path, PathBuf};
+
+use opendr_engine::data::Timeseries;
+use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
+
+use crate::folder::{has_extension, names_in, read_bytes};
+use crate::{array_from_npy, open_velodyne, open_wav};
+
+/// Tables and targets are short; data sets are read otherwise.
+const MAX_BYTES: u64 = 256 << 20;
+
+/// What the extension of a file of the type is; none for a type that is in no file of its own.
+const fn extensions(kind: ValueType) -> &'static [&'static str] {
+    match kind {
+        ValueType::Image => &["jpg", "jpeg", "png", "bmp", "webp"],
+        ValueType::Audio => &["wav"],
+        ValueType::Timeseries => &["csv", "tsv", "txt", "npy"],
+        ValueType::PointCloud => &["bin"],
+        kind if kind.is_target() => &["json"],
+        _ => &[],
+    }
+}
+
+/// Reads the file at `path` as a value of the type `kind`:
+///
+/// * `Image`: JPEG, PNG, BMP, WebP;
+/// * `Audio`: WAVE;
+/// * `Timeseries`: a table of numbers, a line a moment and a column a feature, with commas, semicolons, tabs or blanks
+///   between them and perhaps a line of names above, or a `.npy` of one or two axes;
+/// * `PointCloud`: scans as KITTI has them;
+/// * targets: their JSON.
+///
+/// # Errors
+/// `Unsupported` for a type that has no file of its own, `NotFound` or `Io` when the file cannot be read, `Format` when
+/// it holds something else; all name the path.
+pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
+    let path = path.as_ref();
+    let opening = || format!("opening {}", path.display());
+    match kind {
+        ValueType::Image => opendr_vision::open(path).map(Value::Image),
+        ValueType::Audio => open_wav(path).map(Value::Audio),
+        ValueType::PointCloud => open_velodyne(path).map(Value::PointCloud),
+        ValueType::Timeseries => {
+            timeseries_from_table(&read_bytes(path, MAX_BYTES)?).map(Value::Timeseries).context(opening)
+        }
+        kind if kind.is_target() => {
+            let value: Value = serde_json::from_slice(&read_bytes(path, MAX_BYTES)?)
+                .map_err(|error| Error::format(format!("no JSON of a target: {error}")).context(opening()))?;
+            match value.as_value_ref().value_type() {
+                given if given == kind => Ok(value),
+                given => {
+                    let (given, wanted) = (given.name(), kind.name());
+                    Err(Error::format(format!("a {given} where a {wanted} is wanted")).context(opening()))
+                }
+            }
+        }
+        kind => Err(Error::unsupported(format!(
+            "a {} is in no file of its own; make it of its parts in Rust, Python or C",
+            kind.name()
+        ))),
+    }
+}
+
+/// The files of the type `kind` that `path` names: itself, or those in the folder that it is, in order.
+///
+/// # Errors
+/// `NotFound` when there is nothing of the name or nothing of the type in the folder, `Io` when it cannot be read.
+pub fn value_files(kind: ValueType, path: &Path) -> Result<Vec<PathBuf>> {
+    if !path.is_dir() {
+        let found = path.try_exists().context(|| format!("opening {}", path.display()))?;
+        return if found {
+            Ok(vec![path.to_owned()])
+        } else {
+            Err(Error::not_found(format!("no file {}", path.display())))
+        };
+    }
+    let mut names = names_in(path)?;
+    names.retain(|name| has_extension(name, extensions(kind)));
+    if names.is_empty() {
+        let endings = extensions(kind).join(", .");
+        return Err(Error::not_found(format!("no file .{endings} in the folder {}", path.display())));
+    }
+    Ok(names.iter().map(|name| path.join(name)).collect())
+}
+
+/// The series that a text table or the bytes of an `.npy` file hold: `[time, features]`.
+///
+/// # Errors
+/// `Format` with the line where a text is no table of finite numbers, or an array has more than two axes.
+pub fn timeseries_from_table(bytes: &[u8]) -> Result<Timeseries> {
+    if bytes.starts_with(b"\x93NUMPY") {
+        let (shape, numbers) = array_from_npy(bytes)?;
+        let shape = match shape[..] {
+            [time] => [time, 1],
+            [time, features] => [time, features],
+            _ => return Err(Error::format(format!("{} axes; a series has time and features", shape.len()))),
+        };
+        return Timeseries::new(numbers.into_iter().map(|number| number as f32).collect::<Vec<_>>(), shape);
+    }
+    let text =
+        std::str::from_utf8(bytes).map_err(|_| Error::format("no text; a series is a table of numbers"))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut numbers: Vec<f32> = Vec::new();
+    let mut columns = 0;
+    let lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    for (at, (line, text)) in lines.enumerate() {
+        let cells = cells(text);
+        let row: Vec<f32> = match cells.iter().map(|cell| cell.parse()).collect() {
+            Ok(row) => row,
+            // Names of the columns.
+            Err(_) if at == 0 && cells.iter().all(|cell| cell.parse::<f32>().is_err()) => {
+                columns = cells.len();
+                continue;
+            }
+            Err(error) => {
+                return Err(Error::format(format!("line {line} has no number in each column: {error}")));
+            }
+        };
+        if columns == 0 {
+            columns = row.len();
+        }
+        if row.len() != columns {
+            let given = row.len();
+            return Err(Error::format(format!("line {line} has {given} numbers and the first {columns}")));
+        }
+        if let Some(number) = row.iter().find(|number| !number.is_finite()) {
+            return Err(Error::format(format!("line {line} has {number}; give finite numbers")));
+        }
+        numbers.extend(row);
+    }
+    let time = numbers.len().checked_div(columns).unwrap_or(0);
+    if time == 0 {
+        return Err(Error::format("no numbers; a series is a line a moment and a column a feature"));
+    }
+    Timeseries::new(numbers, [time, columns])
+}
+
+/// What stands between commas, semicolons or tabs, or else between blanks.
+fn cells(line: &str) -> Vec<&str> {
+    match line.find([',', ';', '\t']).and_then(|at| line[at..].chars().next()) {
+        Some(separator) => line.split(separator).map(str::trim).collect(),
+        None => line.split_whitespace().collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

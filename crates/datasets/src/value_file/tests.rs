@@ -1,0 +1,65 @@
+use opendr_engine::data::Audio;
+use opendr_engine::target::Category;
+
+use super::*;
+use crate::folder::TemporaryFolder;
+use crate::{WavEncoding, npy_from_f32, wav_from_audio};
+
+#[test]
+fn tables_of_every_kind_are_series() {
+    let wanted = Timeseries::new(vec![1.0, -2.5, 3.0, 4e2], [2, 2]).unwrap();
+    let tables = [
+        "1,-2.5\n3,4e2\n",
+        "1; -2.5\r\n3 ;400",
+        "1\t-2.5\n\n3\t400\n",
+        "  1 -2.5\n3   400",
+        "volt,ampere\n1,-2.5\n3,400\n",
+    ];
+    for table in tables {
+        assert_eq!(timeseries_from_table(table.as_bytes()).unwrap(), wanted, "{table:?}");
+    }
+    let npy = npy_from_f32(wanted.as_slice(), &[2, 2]).unwrap();
+    assert_eq!(timeseries_from_table(&npy).unwrap(), wanted);
+    assert_eq!(timeseries_from_table(&npy_from_f32(&[5.0], &[1]).unwrap()).unwrap().shape(), [1, 1]);
+}
+
+#[test]
+fn what_is_no_table_is_refused() {
+    let bad = [
+        ("", "no numbers"),
+        ("volt\n", "no numbers"),
+        ("1,2\n3\n", "line 2 has 1 numbers"),
+        ("1\n\n2,3\n", "line 3 has 2 numbers"),
+        ("1\nx\n", "line 2 has no number"),
+        ("1,x\n", "line 1 has no number"),
+        ("1\nNaN\n", "line 2 has NaN"),
+        ("1\ninf\n", "line 2 has inf"),
+    ];
+    for (table, wanted) in bad {
+        let error = timeseries_from_table(table.as_bytes()).unwrap_err().to_string();
+        assert!(error.contains(wanted), "{table:?}: {error}");
+    }
+    assert!(timeseries_from_table(&[0xff, 0xfe]).is_err());
+    assert!(timeseries_from_table(&npy_from_f32(&[0.0; 8], &[2, 2, 2]).unwrap()).is_err());
+}
+
+#[test]
+fn files_are_read_as_what_is_wanted() {
+    let audio = Audio::new(vec![0.5, -0.5], 1, 8000).unwrap();
+    let category = Value::Category(Category::new(1, Some(0.5)));
+    let folder = TemporaryFolder::new()
+        .with("yes.wav", wav_from_audio(&audio, WavEncoding::Pcm16).unwrap())
+        .with("beat.csv", "1\n2\n")
+        .with("class.json", serde_json::to_string(&category).unwrap());
+    assert_eq!(open_value(ValueType::Audio, folder.path().join("yes.wav")).unwrap(), Value::Audio(audio));
+    assert_eq!(open_value(ValueType::Category, folder.path().join("class.json")).unwrap(), category);
+    let error = open_value(ValueType::PoseList, folder.path().join("class.json")).unwrap_err().to_string();
+    assert!(error.contains("Category where a PoseList"), "{error}");
+    let error = open_value(ValueType::Timeseries, folder.path().join("none.csv")).unwrap_err().to_string();
+    assert!(error.contains("none.csv"), "{error}");
+    assert!(open_value(ValueType::Observation, folder.path().join("beat.csv")).is_err());
+    assert_eq!(value_files(ValueType::Audio, folder.path()).unwrap(), [folder.path().join("yes.wav")]);
+    assert_eq!(value_files(ValueType::Audio, &folder.path().join("beat.csv")).unwrap().len(), 1);
+    assert!(value_files(ValueType::PointCloud, folder.path()).is_err());
+    assert!(value_files(ValueType::Audio, &folder.path().join("none.wav")).is_err());
+}
