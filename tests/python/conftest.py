@@ -54,6 +54,12 @@ class Opendr:
         assert done.returncode == 0, done.stderr
         return [json.loads(line) for line in done.stdout.splitlines()]
 
+    def eval(self, learner, dataset, *arguments):
+        """The report of `opendr eval`."""
+        done = self.run("eval", learner, dataset, *arguments, "--json", "--quiet")
+        assert done.returncode == 0, done.stderr
+        return json.loads(done.stdout)
+
 
 @pytest.fixture(scope="session")
 def opendr(cache):

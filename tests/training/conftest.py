@@ -44,3 +44,15 @@ def exported(tmp_path_factory):
     command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-training", "--example", "export_all", "--"]
     subprocess.run([*command, str(folder)], cwd=ROOT, check=True)
     return folder
+
+
+@pytest.fixture(scope="session")
+def own_module():
+    """Trains the module of crates/training/examples/own_module.rs on the pictures in a folder."""
+    program = os.environ.get("OPENDR_TRAINING_OWN_MODULE")
+    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-training", "--example", "own_module", "--"]
+
+    def run(pictures, output):
+        subprocess.run([*command, str(pictures), str(output)], cwd=ROOT, check=True)
+
+    return run

@@ -73,7 +73,8 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_MFCC", examples.join("mfcc"))
         .env("OPENDR_RUNLOG_LOG", examples.join("log"))
         .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"))
-        .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"));
+        .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"))
+        .env("OPENDR_TRAINING_OWN_MODULE", examples.join("own_module"));
     environment.apply(&mut pytest);
     step("tests beside the reference tools", &mut pytest)
 }

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use crate::shell::{Result, command, is_installed, root, step, target};
 
 /// Debian packages by the program that they bring.
-const DEBIAN: [(&str, &str); 5] = [
+const DEBIAN: [(&str, &str); 6] = [
     ("ffmpeg", "ffmpeg"),
     ("g++", "g++"),
     ("pkg-config", "pkg-config"),
     ("cmake", "cmake"),
     ("valgrind", "valgrind"),
+    ("/usr/share/datasets/fashion-mnist", "dataset-fashion-mnist"),
 ];
 
 /// A Python environment with the packages of a file of requirements.
@@ -89,7 +90,8 @@ impl Python {
 
 /// Installs the Debian packages that are missing.
 pub fn install_debian() -> Result<()> {
-    let missing: Vec<_> = DEBIAN.iter().filter(|(program, _)| !is_installed(program)).collect();
+    let missing: Vec<_> =
+        DEBIAN.iter().filter(|(what, _)| !is_installed(what) && !Path::new(what).is_dir()).collect();
     if missing.is_empty() {
         return Ok(());
     }

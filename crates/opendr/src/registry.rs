@@ -6,8 +6,9 @@ use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
-use opendr_perception::object_detection_2d::{CenterNet, Nanodet};
-use opendr_perception::pose_estimation::{Movenet, Posenet};
+use opendr_perception::image_classification::ImageClassifier;
+use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
+use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
 use opendr_perception::speech_recognition::MatchboxNet;
 
 /// Every learner: those compiled in, and those that the program adds.
@@ -18,10 +19,13 @@ pub fn registry() -> &'static Registry {
         learners![
             CenterNet,
             Nanodet,
+            SingleShotDetector,
             UltraLightFace,
             Yunet,
             Movenet,
             Posenet,
+            LightweightOpenPose,
+            ImageClassifier,
             GatedRecurrentUnit,
             MatchboxNet,
             #[cfg(feature = "test-learner")] opendr_engine::learner::counter::Counter,

@@ -1,10 +1,11 @@
 //! Trains `ssd_default_person`: pictures with boxes, pictures that a teacher labels, PoseNet's backbone.
 //!
 //! `cargo run --release -p opendr-perception --features training --example train_ssd_person -- DATA POSENET CENTERNET
-//! OUTPUT [PARAMETER=VALUE ...]`
+//! OUTPUT [FOLDER ...] [PARAMETER=VALUE ...]`
 //!
-//! POSENET and CENTERNET are containers as `opendr download` gets them. DATA holds `coco128` (its train split has boxes) and folders of photos without; what is measured, coco128's val split,
-//! `bus.jpg` and `zidane.jpg`, is never trained on. Called again with the same OUTPUT, it goes on where it was left.
+//! POSENET and CENTERNET are containers as `opendr download` gets them. DATA holds `coco128` (its train split has boxes)
+//! and folders of photos without, and so may FOLDERs; what is measured, coco128's val split, `bus.jpg` and `zidane.jpg`, is
+//! never trained on. Called again with the same OUTPUT, it goes on where it was left.
 
 use std::path::{Path, PathBuf};
 
@@ -76,15 +77,15 @@ fn annotated(data: &Path, split: &str) -> Result<Box<dyn DatasetIterator>> {
 }
 
 /// What CenterNet finds in the photos; what it is not sure of stays in the list, for training to leave out.
-fn labelled(data: &Path, teacher_model: &Path) -> Result<Vec<(PathBuf, BoundingBoxList)>> {
+fn labelled(photos_at: &[PathBuf], teacher_model: &Path) -> Result<Vec<(PathBuf, BoundingBoxList)>> {
     let params = CenterNetParams { threshold: 0.25, ..CenterNetParams::default() };
     let mut teacher = Handle::<CenterNet>::new(params, Device::Cpu)?;
     teacher.load(teacher_model)?;
     let mut photos = Vec::new();
-    for path in PHOTOS.map(|name| data.join(name)) {
+    for path in photos_at {
         let mut paths = match path.is_dir() {
             true => std::fs::read_dir(path)?.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>>>()?,
-            false => vec![path],
+            false => vec![path.clone()],
         };
         paths.retain(|path| path.extension().is_some_and(|end| end == "jpg" || end == "png"));
         paths.sort();
@@ -118,12 +119,15 @@ fn main() -> Result<()> {
         SingleShotDetectorFitParams { backbone_weights: Some(posenet.clone()), ..Default::default() };
     params.aspect_ratios = vec![0.33, 0.6, 1.1];
     params.training.ema = 0.998;
+    let mut photos_at: Vec<_> = PHOTOS.map(|name| data.join(name)).into();
     for setting in settings {
-        let (name, value) = setting.split_once('=').ok_or_else(|| Error::invalid_param("give NAME=VALUE"))?;
-        params.set_text(name, value)?;
+        match setting.split_once('=') {
+            Some((name, value)) => params.set_text(name, value)?,
+            None => photos_at.push(setting.into()),
+        }
     }
-    let dataset =
-        Persons { annotated: annotated(data, "train")?, labelled: labelled(data, Path::new(centernet))? };
+    let labelled = labelled(&photos_at, Path::new(centernet))?;
+    let dataset = Persons { annotated: annotated(data, "train")?, labelled };
     let val_dataset = Persons { annotated: annotated(data, "val")?, labelled: Vec::new() };
     let objects = dataset.labelled.iter().map(|(_, list)| list.boxes.len()).sum::<usize>();
     println!(

@@ -11,6 +11,8 @@ pub mod suppression;
 
 mod category_scores;
 #[cfg(feature = "training")]
+mod frozen_layers;
+#[cfg(feature = "training")]
 mod labelled;
 #[cfg(test)]
 #[cfg(feature = "training")]

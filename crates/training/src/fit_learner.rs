@@ -2,13 +2,15 @@
 
 use std::path::Path;
 
-use opendr_datasets::{OpenOptions, Problems};
+use opendr_datasets::{OpenOptions, Problems, picture_with_target};
+use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
-use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Probe, Targets};
+use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Ports, Probe, Targets};
 use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Result, Statistics};
 use opendr_evaluation::{Evaluation, Subject, metric_of, open_for};
 use opendr_metrics::{MetricEntry, find};
+use opendr_vision::draw;
 
 use crate::training::Score;
 use crate::{Objective, TrainingParams, fit_network};
@@ -73,6 +75,7 @@ fn score(
     job: &FitJob<'_>,
 ) -> Result<Score> {
     learner.load(container)?;
+    let picture = answers(&mut *learner, entry, dataset);
     let subject = Subject { learner: entry.spec.name.to_owned(), model: None, params: learner.params() };
     let evaluation = Evaluation { progress: job.progress, ..Evaluation::new(subject, metric, problems) };
     let outcome = evaluation.run(std::slice::from_mut(&mut learner), entry, dataset)?;
@@ -84,5 +87,28 @@ fn score(
             metric.name
         ))
     })?;
-    Ok(Score { name: name.to_owned(), value, numbers })
+    Ok(Score { name: name.to_owned(), value, numbers, picture })
+}
+
+/// How many answers the log shows.
+const SHOWN: usize = 6;
+/// Side of a picture in the log, pixels.
+const SIDE: usize = 300;
+
+/// The first samples with what the learner answers, where they can be looked at. A sample that fails is the evaluation's
+/// to tell.
+fn answers(learner: &mut dyn AnyLearner, entry: &Entry, dataset: &dyn DatasetIterator) -> Option<Image> {
+    let mut pictures = Vec::new();
+    for index in 0..dataset.len().min(SHOWN) {
+        learner.reset();
+        let Ok(mut sample) = dataset.get(index) else { continue };
+        let ports = entry.ports.iter().zip(&sample.data);
+        let ports =
+            ports.fold(Ports::default(), |ports, (port, datum)| ports.with(port.name, datum.as_value_ref()));
+        let Ok(outputs) = learner.infer(&ports) else { continue };
+        sample.target = outputs.iter().next().map(|(_, value)| value.clone());
+        pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(index))));
+    }
+    learner.reset();
+    (!pictures.is_empty()).then(|| draw::contact_sheet(&pictures, pictures.len().min(3), SIDE).ok())?
 }

@@ -7,7 +7,6 @@ use burn::tensor::{Device, Tensor};
 use opendr_datasets::augment::Pipeline;
 use opendr_datasets::loader::Collate;
 use opendr_engine::Result;
-use opendr_engine::data::Image;
 use opendr_engine::model::{Manifest, ModelWriter};
 
 /// What a learner trains and by what it is judged; everything else of a training is the same for all.
@@ -47,18 +46,6 @@ pub trait Objective: Sync {
     /// # Errors
     /// When the network cannot be written as ONNX.
     fn container(&self, network: &Self::Network) -> Result<Container>;
-
-    /// A picture of the batch and what the network makes of it, for the log; none by default.
-    ///
-    /// # Errors
-    /// When it cannot be drawn.
-    fn picture(
-        &self,
-        _network: &Self::Network,
-        _batch: &<Self::Collate as Collate>::Batch,
-    ) -> Result<Option<Image>> {
-        Ok(None)
-    }
 }
 
 /// The loss of a batch.

@@ -9,6 +9,7 @@ use burn::module::Module;
 use burn::optim::{GradientsAccumulator, GradientsParams, ModuleOptimizer};
 use burn::tensor::{Device, Tensor};
 use opendr_datasets::loader::{Batch, Collate, Loader, LoaderOptions};
+use opendr_engine::data::Image;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::FitJob;
 use opendr_engine::params::Params;
@@ -32,6 +33,8 @@ pub struct Score {
     pub value: f64,
     /// All numbers, for the log.
     pub numbers: BTreeMap<String, f64>,
+    /// A few samples with what was answered, for the log.
+    pub picture: Option<Image>,
 }
 
 /// Measures a container on validation data.
@@ -278,11 +281,7 @@ impl<'a, O: Objective> Training<'a, O> {
         self.images += batch.indices.len() as u64;
         self.standing.loss_sum += value;
         self.standing.batches += 1;
-        let first = self.standing.position == 0;
         self.standing.position = batch.next_position;
-        if first && let Some(picture) = self.objective.picture(&network, &batch.content)? {
-            self.log.picture("train/batch", self.standing.step, &picture)?;
-        }
         let last = self.dataset.len() - batch.next_position < self.params.batch_size;
         self.network = Some(if self.waiting == self.params.accumulate || last {
             self.step(network, &batch.indices)?
@@ -371,7 +370,7 @@ impl<'a, O: Objective> Training<'a, O> {
     fn validate(&mut self, validate: &mut Validate<'_>) -> Result<()> {
         let candidate = self.job.output.join(CANDIDATE);
         self.container()?.write(&candidate)?;
-        let Score { name, value, numbers } = validate(&candidate)?;
+        let Score { name, value, numbers, picture } = validate(&candidate)?;
         // The evaluation had the bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
         self.job.progress.advance(self.standing.step);
@@ -379,6 +378,9 @@ impl<'a, O: Objective> Training<'a, O> {
         for (name, value) in &numbers {
             self.standing.statistics.push(format!("val_{name}"), *value);
             self.log.scalar(&format!("val/{name}"), step, *value)?;
+        }
+        if let Some(picture) = picture {
+            self.log.picture("val/answers", step, &picture)?;
         }
         self.log.flush()?;
         if self.standing.best.as_ref().is_none_or(|best| value > best.value) {

@@ -199,7 +199,8 @@ fn the_best_by_metric_is_kept_and_early_stopping_stops() {
     let mut validate = |candidate: &Path| -> Result<Score> {
         seen.push(Model::open(candidate)?.file("weights.bin")?);
         let value = values[seen.len() - 1];
-        Ok(Score { name: "score".to_owned(), value, numbers: [("score".to_owned(), value)].into() })
+        let numbers = [("score".to_owned(), value)].into();
+        Ok(Score { name: "score".to_owned(), value, numbers, picture: None })
     };
     let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let job = job(&output);

@@ -56,6 +56,10 @@ pub struct Variant {
     /// What distinguishes it, in one line.
     #[serde(default)]
     pub description: String,
+    /// The folder that a download to a folder of the user's makes, where OpenDR's programs count on its name;
+    /// `<learner>/<variant>` without.
+    #[serde(default)]
+    pub folder: Option<String>,
     /// Name of the list in `models/classes` that names its classes.
     #[serde(default)]
     pub classes: Option<String>,

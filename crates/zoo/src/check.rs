@@ -26,6 +26,7 @@ pub(crate) fn check_card(card: &Card) -> Result<()> {
 
 fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
     check_name("variant", &variant.name)?;
+    variant.folder.iter().try_for_each(|folder| check_name("folder", folder))?;
     let mut names = HashSet::new();
     for file in &variant.files {
         member_path(&file.name)?;

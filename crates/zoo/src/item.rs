@@ -27,6 +27,11 @@ impl fmt::Display for Item<'_> {
 }
 
 impl Item<'_> {
+    /// Where it lies in a folder of models.
+    pub(crate) fn place(&self) -> String {
+        self.variant.folder.clone().unwrap_or_else(|| self.to_string())
+    }
+
     /// The first source that needs no repository of the user's.
     pub fn public_source(&self) -> Option<&Source> {
         self.variant.sources.iter().find(|source| !matches!(source, Source::Repository { .. }))

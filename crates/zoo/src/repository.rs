@@ -29,14 +29,14 @@ impl Repository {
         }
     }
 
-    /// The container `<learner>/<variant>` of a folder, where it lies.
+    /// The container of the item in a folder, where it lies.
     pub(crate) fn container(&self, item: &Item<'_>) -> Option<PathBuf> {
         let Self::Folder(folder) = self else { return None };
-        let path = folder.join(&item.card.learner).join(&item.variant.name);
+        let path = folder.join(item.place());
         path.join(MANIFEST_NAME).is_file().then_some(path)
     }
 
-    /// The manifest of the container `<learner>/<variant>` at an address, with its files taken into the cache.
+    /// The manifest of the item's container at an address, with its files taken into the cache.
     pub(crate) fn fetch_container(
         &self,
         item: &Item<'_>,
@@ -45,7 +45,7 @@ impl Repository {
         progress: &dyn Progress,
     ) -> Result<Option<Manifest>> {
         let Self::Address(base) = self else { return Ok(None) };
-        let base = address_below(base, &format!("{}/{}", item.card.learner, item.variant.name));
+        let base = address_below(base, &item.place());
         let address = address_below(&base, MANIFEST_NAME);
         let Some(json) = http.small(&address, MAX_MANIFEST_BYTES, progress)? else { return Ok(None) };
         let manifest = Manifest::from_json(&json).context(|| address.clone())?;

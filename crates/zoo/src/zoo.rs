@@ -100,8 +100,8 @@ impl Zoo {
     }
 
     /// Sees to it that the item is there, every byte of it checked; gets it (again) where it is not. With `to`, a copy
-    /// is put into that folder as `<learner>/<variant>`, which makes the folder a repository of models. The answer is
-    /// the container's folder, or a sample's file.
+    /// is put into that folder as `<learner>/<variant>`, or under the name that the card has for it, which makes the
+    /// folder a repository of models. The answer is the container's folder, or a sample's file.
     ///
     /// # Errors
     /// `NotFound` when there is no such item, else one that tells what was tried and why each source failed: `Integrity`
@@ -236,7 +236,7 @@ fn check_whole(item: &Item<'_>, path: &Path) -> Result<()> {
 }
 
 fn copy_out(item: &Item<'_>, path: &Path, folder: &Path) -> Result<PathBuf> {
-    let target = folder.join(&item.card.learner).join(&item.variant.name);
+    let target = folder.join(item.place());
     if item.card.kind == ItemKind::Model {
         return copy_container(&Model::open(path)?, &target);
     }

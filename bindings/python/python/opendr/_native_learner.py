@@ -128,7 +128,8 @@ class NativeLearner(Learner):
             variant: Which of the pretrained models; the default one when left out.
 
         Returns:
-            What ``load`` takes: the model's folder (``path/<learner>/<variant>``); for images the picture's file.
+            What ``load`` takes: the model's folder (``path/<learner>/<variant>``, or what OpenDR called it, such as
+            ``path/ssd_default_person``); for images the picture's file.
 
         Raises:
             ValueError: There is no such mode, or a file is not the one of the card.

@@ -14,9 +14,10 @@ use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for
 use super::anchors::Anchors;
 use super::layout::{Fitting, ImageLayout, Layout};
 use super::matching::Matching;
-use super::network::{Network, NetworkConfig};
+use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
 use super::objective::DetectionObjective;
 use super::{SingleShotDetector, SingleShotDetectorParams};
+use crate::frozen_layers::{FrozenLayers, is_on_processor};
 
 opendr_engine::choices! {
     /// MobileNetV1 and how many times the paper's channels it has.
@@ -110,8 +111,18 @@ impl Fit for SingleShotDetector {
     ) -> Result<Statistics> {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, training)?;
-        let objective = fit_params.objective(base, &*dataset)?;
+        let mut objective = fit_params.objective(base, &*dataset)?;
         let network = fit_params.network(base, &objective, job)?;
+        if fit_params.freeze >= BACKBONE_LAYERS && is_on_processor(job)? {
+            let names = ["fine", "coarse"];
+            let backbone = FrozenLayers::new(
+                &network,
+                objective.layout.image.size(),
+                &names[2 - network.taps()..],
+                Network::trunk,
+            )?;
+            objective.frozen = Some(backbone);
+        }
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
     }
 }
@@ -140,6 +151,7 @@ impl SingleShotDetectorFitParams {
             matching: Matching::default(),
             least_score: self.least_score,
             augment: self.augment,
+            frozen: None,
         })
     }
 

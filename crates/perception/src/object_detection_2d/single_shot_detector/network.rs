@@ -126,6 +126,8 @@ fn without_bias(config: Conv2dConfig, weights: Initializer, device: &Device) -> 
 
 /// Blocks of MobileNetV1 that are taken as they are; the last two of the paper's thirteen halve the size.
 const BLOCKS: usize = 11;
+/// Layers of the backbone: a convolution, those blocks, and two more.
+pub const BACKBONE_LAYERS: usize = 1 + BLOCKS + 2;
 
 impl NetworkConfig {
     /// A network with random weights.
@@ -161,11 +163,15 @@ impl NetworkConfig {
 impl Network {
     /// The outputs of every level, finest first, for pictures `[batch, 3, height, width]`.
     pub fn forward(&self, images: Tensor<4>) -> Vec<LevelOutput> {
-        self.features(images).into_iter().map(|features| self.head.forward(features)).collect()
+        self.forward_from(self.trunk(images))
     }
 
-    fn features(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
-        let mut trunk = self.trunk(images);
+    /// The same for what [`Network::trunk`] answered.
+    pub fn forward_from(&self, trunk: Vec<Tensor<4>>) -> Vec<LevelOutput> {
+        self.features(trunk).into_iter().map(|features| self.head.forward(features)).collect()
+    }
+
+    fn features(&self, mut trunk: Vec<Tensor<4>>) -> Vec<Tensor<4>> {
         let coarse = trunk.pop().map(|coarse| relu6(self.lateral.forward(coarse)));
         let mut levels = Vec::with_capacity(2 + self.coarser.len());
         if let (Some(finer), Some(fine), Some(coarse)) = (&self.finer, trunk.pop(), &coarse) {
@@ -179,7 +185,7 @@ impl Network {
     }
 
     /// What the backbone answers: stride 8 where there is a level of it, and stride 16.
-    fn trunk(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
+    pub fn trunk(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
         let mut taps = self.backbone.features(images);
         let coarse = taps.pop();
         taps.extend(coarse.map(|coarse| self.deep.iter().fold(coarse, |x, block| block.forward(x))));
@@ -222,6 +228,11 @@ impl Network {
         self
     }
 
+    /// How many feature maps the backbone answers.
+    pub fn taps(&self) -> usize {
+        1 + usize::from(self.finer.is_some())
+    }
+
     /// The network whose first `layers` layers of the backbone stay as they are: its first convolution, then its
     /// thirteen blocks.
     pub fn freeze(mut self, layers: usize) -> Self {
@@ -262,6 +273,8 @@ mod tests {
     use opendr_engine::Device as Place;
     use opendr_inference::{Session, TensorView};
 
+    use crate::frozen_layers::FrozenLayers;
+
     use super::*;
 
     #[test]
@@ -271,6 +284,25 @@ mod tests {
         let shapes: Vec<_> = levels.iter().map(|level| (level.scores.dims(), level.offsets.dims())).collect();
         let shape = |rows, columns| ([1, 6, rows, columns], [1, 12, rows, columns]);
         assert_eq!(shapes, [shape(12, 20), shape(6, 10), shape(3, 5), shape(2, 3)]);
+    }
+
+    #[test]
+    fn frozen_layers_answer_as_the_network() {
+        let device = Device::flex();
+        let config = NetworkConfig { width: 0.25, strides: vec![8, 16], kinds: 1, classes: 1 };
+        let network = config.init(&device).freeze(BACKBONE_LAYERS);
+        let frozen = FrozenLayers::new(&network, [96, 64], &["fine", "coarse"], Network::trunk).unwrap();
+        let shape = [2, 3, 64, 96];
+        let images: Vec<f32> =
+            (0..shape.iter().product()).map(|at: usize| (at * 37 % 255) as f32 / 127.5 - 1.0).collect();
+        let answers = frozen.run(&images, shape, &device).unwrap();
+        let wanted = network.trunk(Tensor::from_data(TensorData::new(images, shape), &device));
+        assert_eq!(answers.len(), network.taps());
+        for (answer, wanted) in answers.iter().zip(wanted) {
+            assert_eq!(answer.dims(), wanted.dims());
+            let apart = (answer.clone() - wanted).abs().max().into_scalar::<f32>();
+            assert!(apart < 1e-4, "{apart}");
+        }
     }
 
     /// On our backbone with PoseNet's weights, PoseNet's last layer gives PoseNet's heat maps.

@@ -15,9 +15,10 @@ use super::matching::Matching;
 use super::network::Network;
 use super::targets::{DetectionBatch, DetectionBatches};
 use super::{SingleShotDetector, output_names};
+use crate::frozen_layers::FrozenLayers;
 
 /// The training of one detector.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct DetectionObjective {
     /// Input and anchors.
     pub layout: Layout,
@@ -29,6 +30,8 @@ pub struct DetectionObjective {
     pub least_score: f32,
     /// Whether pictures are changed at random.
     pub augment: bool,
+    /// The backbone, when it does not train.
+    pub(super) frozen: Option<FrozenLayers>,
 }
 
 impl Objective for DetectionObjective {
@@ -55,8 +58,12 @@ impl Objective for DetectionObjective {
 
     fn loss(&self, network: &Network, batch: &DetectionBatch, device: &Device) -> Result<Loss> {
         let [width, height] = batch.size;
-        let images = TensorData::new(batch.images.clone(), [batch.pictures, 3, height, width]);
-        let levels = network.forward(Tensor::from_data(images, device));
+        let shape = [batch.pictures, 3, height, width];
+        let trunk = match &self.frozen {
+            Some(backbone) => backbone.run(&batch.images, shape, device)?,
+            None => network.trunk(Tensor::from_data(TensorData::new(batch.images.clone(), shape), device)),
+        };
+        let levels = network.forward_from(trunk);
         let DetectionLoss { scores, offsets } = DetectionLoss::new(levels, batch, self.classes.len(), device);
         // OpenDR's names of the curves.
         let parts = vec![("cross_entropy_loss", scores.clone()), ("smoothl1_loss", offsets.clone())];

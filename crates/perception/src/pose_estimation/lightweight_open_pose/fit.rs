@@ -11,6 +11,8 @@ use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_training::weights::{Rules, WeightTable};
 use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner, open_for_training};
 
+use crate::frozen_layers::{FrozenLayers, is_on_processor};
+
 use super::network::{Network, NetworkConfig};
 use super::objective::{CONFIG, PoseObjective};
 use super::{LightweightOpenPose, LightweightOpenPoseParams, STRIDE};
@@ -75,11 +77,18 @@ impl Fit for LightweightOpenPose {
             None => fit_params.new_network(&device)?,
         };
         let network = if fit_params.freeze { network.freeze_backbone() } else { network };
+        let side = fit_params.crop_size.next_multiple_of(STRIDE);
+        let backbone = || {
+            FrozenLayers::new(&network.backbone, [side; 2], &["features"], |layers, pictures| {
+                layers.forward(pictures)
+            })
+        };
         let objective = PoseObjective {
             config,
-            side: fit_params.crop_size.next_multiple_of(STRIDE),
+            side,
             base_height: params.base_height,
             augment: fit_params.augment,
+            frozen: (fit_params.freeze && is_on_processor(job)?).then(backbone).transpose()?,
         };
         let dataset = open_for_training::<Self>(dataset, &fit_params.training)?;
         fit_learner::<Self, _>(&objective, network, params, &fit_params.training, &*dataset, val_dataset, job)

@@ -116,7 +116,12 @@ impl NetworkConfig {
 impl Network {
     /// `[batch, 3, height, width]` of levels in -1..=1, whose sides are multiples of 8, to the maps of every stage.
     pub fn forward(&self, pictures: Tensor<4>) -> Vec<Maps> {
-        let features = self.features.forward(self.backbone.forward(pictures));
+        self.forward_from(self.backbone.forward(pictures))
+    }
+
+    /// The same for what the backbone answered.
+    pub fn forward_from(&self, backbone: Tensor<4>) -> Vec<Maps> {
+        let features = self.features.forward(backbone);
         let first = self.initial_trunk.iter().fold(features.clone(), |x, conv| conv.forward(x));
         let mut stages = vec![self.initial.forward(first)];
         for refinement in &self.refinement {
@@ -162,7 +167,8 @@ pub struct Backbone {
 }
 
 impl Backbone {
-    fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
+    /// `[batch, 3, height, width]` to features of an eighth of the sides.
+    pub fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
         self.extra.iter().fold(self.mobilenet.forward(pictures), |x, block| block.forward(x))
     }
 }

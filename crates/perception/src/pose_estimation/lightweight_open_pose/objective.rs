@@ -17,6 +17,7 @@ use super::network::{Maps, Network, NetworkConfig};
 use super::open_sides::open_sides;
 use super::person_crop::PersonCrop;
 use super::{LEVEL, LightweightOpenPose, OUTPUTS, STRIDE};
+use crate::frozen_layers::FrozenLayers;
 use crate::pose_estimation::joints::opendr_joints;
 use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, Painter};
 
@@ -28,6 +29,8 @@ pub(super) struct PoseObjective {
     /// The height of pictures that the network is to be used with.
     pub(super) base_height: usize,
     pub(super) augment: bool,
+    /// The backbone, when it does not train.
+    pub(super) frozen: Option<FrozenLayers>,
 }
 
 /// The file of a container that says what network it holds.
@@ -59,7 +62,11 @@ impl Objective for PoseObjective {
         let tensor = |values: &[f32], shape: [usize; 4]| {
             Tensor::<4>::from_data(TensorData::new(values.to_vec(), shape), device)
         };
-        let pictures = tensor(&batch.pictures, [count, 3, side, side]);
+        let shape = [count, 3, side, side];
+        let features = match &self.frozen {
+            Some(backbone) => backbone.run(&batch.pictures, shape, device)?.swap_remove(0),
+            None => network.backbone.forward(tensor(&batch.pictures, shape)),
+        };
         let heat = tensor(&batch.heat, [count, HEAT_MAPS, cells, cells]);
         let fields = tensor(&batch.fields, [count, FIELDS, cells, cells]);
         let mask = tensor(&batch.mask, [count, 1, cells, cells]);
@@ -69,7 +76,7 @@ impl Objective for PoseObjective {
         };
         let zero = || Tensor::<1>::zeros([1], device);
         let (mut heat_loss, mut field_loss) = (zero(), zero());
-        for [stage_heat, stage_fields] in network.forward(pictures) {
+        for [stage_heat, stage_fields] in network.forward_from(features) {
             heat_loss = heat_loss + off(stage_heat, &heat);
             field_loss = field_loss + off(stage_fields, &fields);
         }
