@@ -90,7 +90,7 @@ def debian_sources():
     return "\n\n".join(stanzas) + "\n", "\n".join(lines) + "\n"
 
 
-@functools.lru_cache(maxsize=None)
+@functools.cache
 def apt(work):
     """The start of an apt-get command on lists of our own, under `work`, which the first call brings up to date."""
     home = work / "apt"

@@ -917,6 +917,43 @@ static inline opendr_status opendr_infer_nanodet(const opendr_learner *learner,
 }
 
 /*
+ * SingleShotDetectorLearner: SSD on MobileNetV1, a small detector that trains on classes of your own.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.2): Detections below this score are dropped.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.45): Boxes of one class that overlap more than this (intersection over union) are one object.
+ *   max_candidates (an int 1..=1000, may change while it runs, default 400): So many of the best boxes are looked at before overlapping ones are thinned out.
+ *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a picture.
+ *   suppression (a str, one of hard, soft, fast, cluster, may change while it runs, default hard): How overlapping boxes are thinned out.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_single_shot_detector(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("single_shot_detector", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_single_shot_detector(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * UltraLightFaceLearner: Ultra-Light RFB finds faces in a few milliseconds; boxes only.
  *
  * Parameters:
@@ -1057,6 +1094,39 @@ static inline opendr_status opendr_infer_posenet(const opendr_learner *learner,
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
     if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ImageClassifierLearner: A small network that learns the classes of a user's own pictures in minutes.
+ *
+ * Parameters:
+ *   probabilities (a bool, may change while it runs, default true): Whether the answer has the score of every class.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_image_classifier(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("image_classifier", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_image_classifier(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
 }

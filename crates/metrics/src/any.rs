@@ -75,6 +75,8 @@ pub struct MetricEntry {
     pub about: &'static str,
     /// As [`Metric::NUMBERS`].
     pub numbers: &'static [(&'static str, &'static str)],
+    /// As [`Metric::ERRORS`].
+    pub errors: &'static [&'static str],
     /// Its parameters.
     pub params: &'static [Field],
     /// As [`Metric::RANKS`].
@@ -93,12 +95,18 @@ impl MetricEntry {
             name: M::NAME,
             about: M::ABOUT,
             numbers: M::NUMBERS,
+            errors: M::ERRORS,
             params: M::Params::FIELDS,
             ranks: M::RANKS,
             prediction: M::Prediction::TYPE,
             truth: M::Truth::TYPE,
             make: |params| Ok(Box::new(Typed(M::new(&M::Params::from_map(params)?)?))),
         }
+    }
+
+    /// Whether less is better of its number called `name`.
+    pub fn is_error(&self, name: &str) -> bool {
+        self.errors.contains(&name)
     }
 
     /// An accumulator that has counted nothing, with `params` over the defaults.

@@ -178,6 +178,7 @@ impl Metric for Classification {
         ("maximum_calibration_error", "The largest of these distances."),
         ("samples", "How many were counted."),
     ];
+    const ERRORS: &'static [&'static str] = &["expected_calibration_error", "maximum_calibration_error"];
     type Params = ClassificationParams;
     type Prediction = Category;
     type Truth = Category;

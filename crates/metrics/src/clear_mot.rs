@@ -268,6 +268,17 @@ impl Metric for ClearMot {
         ("partially_tracked", "Objects matched in 20 to 80 %."),
         ("mostly_lost", "Objects matched in less than 20 %."),
     ];
+    const ERRORS: &'static [&'static str] = &[
+        "motp",
+        "switches",
+        "transfers",
+        "ascends",
+        "migrates",
+        "false_positives",
+        "misses",
+        "fragmentations",
+        "mostly_lost",
+    ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
     type Truth = TrackingAnnotationList;

@@ -193,6 +193,18 @@ impl Metric for Depth {
         ("d1", "Share of pixels more than 3 pixels and 5 % off (KITTI)."),
         ("pictures", "How many were counted."),
     ];
+    const ERRORS: &'static [&'static str] = &[
+        "abs_rel",
+        "sq_rel",
+        "rmse",
+        "rmse_log",
+        "silog",
+        "end_point_error",
+        "bad_1",
+        "bad_2",
+        "bad_3",
+        "d1",
+    ];
     type Params = DepthParams;
     type Prediction = Heatmap;
     type Truth = Heatmap;

@@ -205,6 +205,7 @@ impl Metric for Keypoints {
         ("poses", "Poses that were counted."),
         ("poses_without_size", "Poses that have no size to measure by."),
     ];
+    const ERRORS: &'static [&'static str] = &["nme", "epe"];
     type Params = KeypointsParams;
     type Prediction = PoseList;
     type Truth = PoseList;

@@ -25,6 +25,9 @@ pub trait Metric: Send + Sized + 'static {
     /// What it should answer.
     type Truth: Datum;
 
+    /// Those of its numbers of which less is better.
+    const ERRORS: &'static [&'static str] = &[];
+
     /// Whether answers are ranked by their scores, so that a learner's threshold would cut the ranking off.
     const RANKS: bool = false;
 

@@ -130,6 +130,7 @@ impl Metric for Regression {
         ("rmse", "Root mean square error."),
         ("samples", "How many were counted."),
     ];
+    const ERRORS: &'static [&'static str] = &["mae", "rmse"];
     type Params = NoParams;
     type Prediction = Vector;
     type Truth = Vector;

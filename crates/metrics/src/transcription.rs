@@ -164,6 +164,7 @@ impl Metric for Transcription {
         ("word_<count>", "Hits, substitutions, deletions, insertions of words."),
         ("character_<count>", "The same of characters."),
     ];
+    const ERRORS: &'static [&'static str] = &["wer", "cer", "mer", "wil", "utterance_error_rate"];
     type Params = TranscriptionParams;
     type Prediction = BaseTranscription;
     type Truth = BaseTranscription;

@@ -155,6 +155,7 @@ impl Metric for Verification {
         ("same", "Pairs of the same."),
         ("different", "Pairs of different ones."),
     ];
+    const ERRORS: &'static [&'static str] = &["accuracy_standard_error", "equal_error_rate"];
     type Params = VerificationParams;
     type Prediction = Category;
     type Truth = Category;

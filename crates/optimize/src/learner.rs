@@ -11,7 +11,7 @@ use opendr_engine::{Device, Error, Progress, Result, ResultExt, Unit};
 use opendr_evaluation::{Evaluation, Subject, metric_of};
 use opendr_inference::recording::{self, Recording};
 
-use crate::optimize::optimize;
+use crate::optimize::{Measured, optimize};
 use crate::options::{OptimizeOptions, Precision};
 use crate::report::Report;
 
@@ -93,7 +93,7 @@ impl OptimizeJob<'_> {
     }
 
     /// The number of the task's metric that counts.
-    fn measure(&self, model: &Model) -> Result<(String, f64)> {
+    fn measure(&self, model: &Model) -> Result<Measured> {
         let dataset = self.validation.ok_or_else(|| Error::internal("nothing to measure on"))?;
         let metric = opendr_metrics::find(metric_of(self.entry.spec.task)?)?;
         let problems = Problems::strict();
@@ -115,6 +115,6 @@ impl OptimizeJob<'_> {
                 names.join(", ")
             ))
         })?;
-        Ok((name, value))
+        Ok(Measured { is_error: metric.is_error(&name), name, value })
     }
 }

@@ -16,8 +16,19 @@ use crate::options::{OptimizeOptions, Precision};
 use crate::quantise::{Quantiser, check_version};
 use crate::report::{Accuracy, Report};
 
-/// The metric's main number of a model, and its name. More is better.
-pub type Judge<'a> = dyn FnMut(&Model) -> Result<(String, f64)> + 'a;
+/// A metric's number of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// Its key, e.g. `"map50"`.
+    pub name: String,
+    /// The number.
+    pub value: f64,
+    /// Whether less of it is better.
+    pub is_error: bool,
+}
+
+/// What measures a model.
+pub type Judge<'a> = dyn FnMut(&Model) -> Result<Measured> + 'a;
 
 /// Of the layers that are left, which part goes back to floats at a time.
 const BACK_AT_A_TIME: usize = 8;
@@ -48,12 +59,15 @@ pub fn optimize(
     loop {
         let written = write(model, &networks, options, output)?;
         let after = judge.as_mut().map(|judge| judge(&written)).transpose()?;
-        let accuracy = before.as_ref().zip(after).map(|((metric, before), (_, after))| Accuracy {
-            metric: metric.clone(),
-            before: *before,
-            after,
+        let measured = before.as_ref().zip(after);
+        let drop = measured.as_ref().map_or(0.0, |(before, after)| {
+            if before.is_error { after.value - before.value } else { before.value - after.value }
         });
-        let drop = accuracy.as_ref().map_or(0.0, |accuracy| accuracy.before - accuracy.after);
+        let accuracy = measured.map(|(before, after)| Accuracy {
+            metric: before.name.clone(),
+            before: before.value,
+            after: after.value,
+        });
         if drop > options.max_drop.unwrap_or(f64::INFINITY) {
             progress.note(&format!("{drop:.4} worse than before: more layers stay in floats"));
             let kept = networks.iter_mut().map(Network::keep_worst).filter(|kept| *kept).count();

@@ -12,7 +12,7 @@ use opendr_inference::{Session, TensorView, runtimes};
 use opendr_onnx::{
     Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, model_from_bytes, model_from_graph,
 };
-use opendr_optimize::{Calibration, OptimizeOptions, Precision, optimize};
+use opendr_optimize::{Calibration, Measured, OptimizeOptions, Precision, optimize};
 
 const INPUT: [usize; 4] = [1, 3, 16, 16];
 
@@ -215,7 +215,8 @@ fn layers_go_back_to_floats_until_the_drop_is_small_enough() {
         let network = model_from_bytes(&judged.onnx()?)?.graph.unwrap_or_default();
         let rounded = network.node.iter().filter(|node| node.name.ends_with("weights/rounded")).count();
         sizes.push(rounded);
-        Ok(("points".to_owned(), 1.0 - rounded as f64 / 4.0))
+        let value = 1.0 - rounded as f64 / 4.0;
+        Ok(Measured { name: "points".to_owned(), value, is_error: false })
     };
     let output = folder.0.join("out");
     let report = optimize(&model, &options, &seen, Some(&mut judge), Device::Cpu, &output, &Silent).unwrap();

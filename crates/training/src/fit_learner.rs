@@ -87,7 +87,7 @@ fn score(
             metric.name
         ))
     })?;
-    Ok(Score { name: name.to_owned(), value, numbers, picture })
+    Ok(Score { name: name.to_owned(), value, is_error: metric.is_error(name), numbers, picture })
 }
 
 /// How many answers the log shows.

@@ -11,6 +11,7 @@ pub mod export;
 mod fit_learner;
 pub mod fuzzing;
 mod gradient;
+mod kept_heap;
 pub mod layers;
 mod memory;
 mod objective;

@@ -19,6 +19,7 @@ use opendr_runlog::{Checkpoints, RunLog};
 use crate::average::Average;
 use crate::checkpoint::Saved;
 use crate::gradient::{gradient_norm, scaled};
+use crate::kept_heap::KeptHeap;
 use crate::memory::{TRIED, check_memory};
 use crate::optimizer::optimizer;
 use crate::schedule::Schedule;
@@ -29,8 +30,10 @@ use crate::{Container, Objective, TrainingParams, training_device};
 pub struct Score {
     /// What the number that counts is called.
     pub name: String,
-    /// The number that counts; more is better.
+    /// The number that counts.
     pub value: f64,
+    /// Whether less of it is better.
+    pub is_error: bool,
     /// All numbers, for the log.
     pub numbers: BTreeMap<String, f64>,
     /// A few samples with what was answered, for the log.
@@ -81,6 +84,7 @@ pub fn fit_network<O: Objective>(
     if dataset.is_empty() {
         return Err(Error::invalid_input("the data set to train on is empty"));
     }
+    let _heap = KeptHeap::new();
     let mut training = Training::new(objective, network, params, dataset, job)?;
     let done = training.run(validate);
     job.progress.end();
@@ -370,7 +374,7 @@ impl<'a, O: Objective> Training<'a, O> {
     fn validate(&mut self, validate: &mut Validate<'_>) -> Result<()> {
         let candidate = self.job.output.join(CANDIDATE);
         self.container()?.write(&candidate)?;
-        let Score { name, value, numbers, picture } = validate(&candidate)?;
+        let Score { name, value, is_error, numbers, picture } = validate(&candidate)?;
         // The evaluation had the bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
         self.job.progress.advance(self.standing.step);
@@ -383,7 +387,8 @@ impl<'a, O: Objective> Training<'a, O> {
             self.log.picture("val/answers", step, &picture)?;
         }
         self.log.flush()?;
-        if self.standing.best.as_ref().is_none_or(|best| value > best.value) {
+        let better = |best: &Best| if is_error { value < best.value } else { value > best.value };
+        if self.standing.best.as_ref().is_none_or(better) {
             self.standing.best = Some(Best { value, step });
             self.standing.since_best = 0;
             self.container()?.write(&self.job.model())?;

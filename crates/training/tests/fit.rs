@@ -200,7 +200,7 @@ fn the_best_by_metric_is_kept_and_early_stopping_stops() {
         seen.push(Model::open(candidate)?.file("weights.bin")?);
         let value = values[seen.len() - 1];
         let numbers = [("score".to_owned(), value)].into();
-        Ok(Score { name: "score".to_owned(), value, numbers, picture: None })
+        Ok(Score { name: "score".to_owned(), value, is_error: false, numbers, picture: None })
     };
     let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let job = job(&output);

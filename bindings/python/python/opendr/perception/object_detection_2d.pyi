@@ -142,3 +142,100 @@ class NanodetLearner(NativeLearner):
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., conf_threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., nms_max_num: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., model_to_use: Any = ..., hf: Any = ..., dynamic: Any = ..., ch_l: Any = ..., lr_schedule_T_max: Any = ...) -> Iterator[BoundingBoxList]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., freeze: Literal['none', 'backbone', 'features'] = ..., augment: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., skip_unreadable: bool = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+
+class SingleShotDetectorLearner(NativeLearner):
+    """SSD on MobileNetV1, a small detector that trains on classes of your own.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and gives: BoundingBoxList.
+
+    Args:
+        threshold: Detections below this score are dropped. (default 0.2; 0 to 1; may change while running, also
+            for one call of infer)
+        iou_threshold: Boxes of one class that overlap more than this (intersection over union) are one object.
+            (default 0.45; 0 to 1; may change while running, also for one call of infer; in OpenDR nms_thresh)
+        max_candidates: So many of the best boxes are looked at before overlapping ones are thinned out. (default
+            400; 1 to 1000; may change while running, also for one call of infer; in OpenDR nms_topk)
+        max_detections: At most this many boxes a picture. (default 100; 1 to 1000; may change while running, also
+            for one call of infer; in OpenDR post_nms)
+        suppression: How overlapping boxes are thinned out. (default 'hard'; one of 'hard', 'soft', 'fast',
+            'cluster'; may change while running, also for one call of infer; in OpenDR custom_nms)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        backbone: The network that the detector stands on. (default 'mobilenet0.75'; one of 'mobilenet0.75',
+            'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25')
+        img_size: Side of the network's input, a multiple of 32; OpenDR's default of 512 costs two and a half
+            times the time. (default 320; 96 to 1024 px)
+        fitting: How a picture is brought to that size. (default 'stretch'; one of 'stretch', 'letterbox')
+        classes: The classes to find, by their names in the data set; all of it when empty. (default [])
+        stride: Pixels of the input from one cell of the finest level to the next, 8 or 16; the coarser ones are
+            for larger objects and faster networks. (default 8; 8 to 16 px)
+        aspect_ratios: Aspect ratios (width over height) of the anchors. (default [0.4, 1.0, 2.0]; 0.05 to 20)
+        anchor_scales: Sides of the anchors of each level, in its strides. (default [3.0, 4.25]; 0.5 to 32)
+        backbone_weights: A container or a file (ONNX, safetensors, PyTorch) whose first layers become the
+            backbone, e.g. PoseNet's. (default None)
+        freeze: So many of the backbone's 14 layers, from the input, stay as they are. (default 0; 0 to 14)
+        least_score: Boxes with a lower score, which a teacher was not sure of, are neither object nor background.
+            (default 0.5; 0 to 1)
+        augment: Whether pictures are changed at random: mosaic, crop, expansion, flip, colour. (default True)
+        epochs: How often the data set is gone through. (default 120; 1 to 1e+06; in OpenDR iters)
+        max_steps: Optimiser steps after which training ends, whatever the number of epochs; 0 for no limit.
+            (default 0; 0 to 1e+09)
+        batch_size: Samples a batch. (default 8; 1 to 65536)
+        accumulate: Batches whose gradients are added up for one step of the optimiser. (default 1; 1 to 4096; in
+            OpenDR batches_per_iter)
+        lr: Learning rate at its highest. (default 0.001; 0 to 100)
+        optimizer: What turns gradients into steps. (default 'adamw'; one of 'adamw', 'adam', 'sgd', 'rmsprop')
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0005; 0 to 10)
+        lr_schedule: How the learning rate goes on after the warm-up. (default 'cosine'; one of 'constant',
+            'step', 'cosine', 'linear')
+        warmup_steps: Steps over which the learning rate rises from `warmup_ratio` of itself. (default 100; 0 to
+            1e+08)
+        warmup_ratio: What share of the learning rate the warm-up begins with. (default 0.1; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 0.0; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default [])
+        lr_gamma: What `step` multiplies the learning rate with. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Gradients whose norm over all weights is above this are scaled down to it; 0 for no limit.
+            (default 10.0; 0 to 1e+09)
+        ema: Share of itself that the moving average of the weights keeps each step, e.g. 0.999; it is what is
+            validated and saved. 0 for no average. (default 0.0; 0 to 0.999999)
+        early_stop: Validations without a better metric after which training ends; 0 for never. (default 0; 0 to
+            100000)
+        val_after: Epochs between validations. (default 5; 1 to 1e+06)
+        checkpoint_after_iter: Steps between checkpoints; 0 for none but those by the clock. (default 0; 0 to
+            1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for none by the clock. (default 10.0; 0 to 10000 min)
+        checkpoints_kept: Checkpoints that are kept beside the best. (default 2; 1 to 1000)
+        log_after: Steps between lines of the log. (default 100; 1 to 1e+06)
+        num_workers: Threads that read and augment samples. (default 8; 0 to 1024)
+        skip_unreadable: Whether samples that cannot be read are left out and listed, instead of ending the
+            training. (default False)
+        seed: What first weights, order, augmentation and dropout follow from. (default 0)
+
+    Arguments of OpenDR that are taken and have no effect:
+        keep_size: no effect: the network's input has one size.
+        extract_maps: no effect: the feature maps stay inside the network.
+        temp_path: no effect: what fit writes lies in its output folder.
+        checkpoint_load_iter: no effect: fit goes on from the last checkpoint of its output folder.
+    """
+
+    threshold: float
+    iou_threshold: float
+    max_candidates: int
+    max_detections: int
+    suppression: Literal['hard', 'soft', 'fast', 'cluster']
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, img_size: int = ..., fitting: Literal['stretch', 'letterbox'] = ..., classes: list[Any] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., backbone_weights: Optional[str] = ..., freeze: int = ..., least_score: float = ..., augment: bool = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., skip_unreadable: bool = ..., seed: int = ..., iou_threshold: float = ..., nms_thresh: float = ..., max_candidates: int = ..., nms_topk: int = ..., max_detections: int = ..., post_nms: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., custom_nms: Literal['hard', 'soft', 'fast', 'cluster'] = ..., keep_size: Any = ..., extract_maps: Any = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., nms_thresh: float = ..., max_candidates: int = ..., nms_topk: int = ..., max_detections: int = ..., post_nms: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., custom_nms: Literal['hard', 'soft', 'fast', 'cluster'] = ..., keep_size: Any = ..., extract_maps: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., nms_thresh: float = ..., max_candidates: int = ..., nms_topk: int = ..., max_detections: int = ..., post_nms: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., custom_nms: Literal['hard', 'soft', 'fast', 'cluster'] = ..., keep_size: Any = ..., extract_maps: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., nms_thresh: float = ..., max_candidates: int = ..., nms_topk: int = ..., max_detections: int = ..., post_nms: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., custom_nms: Literal['hard', 'soft', 'fast', 'cluster'] = ..., keep_size: Any = ..., extract_maps: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> Iterator[BoundingBoxList]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., img_size: int = ..., fitting: Literal['stretch', 'letterbox'] = ..., classes: list[Any] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., backbone_weights: Optional[str] = ..., freeze: int = ..., least_score: float = ..., augment: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., skip_unreadable: bool = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
