@@ -327,10 +327,19 @@ def test_several_inputs_and_outputs(pair):
         pair.stream().flush()
 
 
-@pytest.mark.parametrize("given", [np.zeros((3, 2)), None, "sound.wav", [1, 2]])
+@pytest.mark.parametrize("given", [np.zeros((3, 2)), None, b"sound.wav", [1, 2]])
 def test_data_of_several_parts_are_not_guessed(given):
     with pytest.raises(TypeError, match="sound should be an Audio, not"):
         _value(given, "sound", "Audio")
+
+
+def test_paths_are_files_of_the_type(tmp_path):
+    (tmp_path / "beat.csv").write_text("volt,ampere\n1,2\n3,4\n5,6\n")
+    assert _value(tmp_path / "beat.csv", "series", "Timeseries").data.tolist() == [[1, 2], [3, 4], [5, 6]]
+    with pytest.raises(FileNotFoundError, match="none.wav"):
+        _value("none.wav", "sound", "Audio")
+    with pytest.raises(ValueError, match="beat.csv"):
+        _value(tmp_path / "beat.csv", "sound", "Audio")
 
 
 def test_lists_that_hold_themselves():
