@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+ROOT = Path(__file__).resolve().parents[3]
 IMPORT = """
 import json, os, sys, time
 def resident():
@@ -82,7 +83,10 @@ def environment(wheel, tmp_path_factory):
 
 def test_the_wheel_is_small(wheel):
     assert wheel.name.startswith("opendr_rs-") and "-cp39-abi3-" in wheel.name
-    assert wheel.stat().st_size <= 15e6
+    # Weights of our own come on top: they are there for `download` without a network, and hardly compress.
+    weights = sum(file.stat().st_size for file in (ROOT / "models/weights").glob("*/*") if file.is_file())
+    assert 0 < weights <= 10e6
+    assert wheel.stat().st_size - weights <= 15e6
 
 
 def test_nothing_comes_with_it_but_numpy(environment):
