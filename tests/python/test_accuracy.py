@@ -95,7 +95,7 @@ def test_single_shot_detector_on_coco128(opendr, shared):
     assert score >= 0.33
 
 
-def test_image_classifier_on_fashion_mnist(opendr, tmp_path):
+def test_image_classifier_on_fashion_mnist(opendr):
     if not FASHION_MNIST.is_dir():
         pytest.skip("no Debian package dataset-fashion-mnist")
     report = opendr.eval("image_classifier", FASHION_MNIST, "--split", "test", "--limit", "2000")
