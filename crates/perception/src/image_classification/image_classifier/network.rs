@@ -1,5 +1,5 @@
-//! The network: blocks of convolution, batch normalisation and ReLU, halved in size by strides, then the mean over the
-//! picture.
+//! The network: blocks of convolution, batch normalisation and ReLU, halved in size by strides, then mean and maximum over
+//! the picture.
 
 use burn::module::Module;
 use burn::nn::conv::{Conv2d, Conv2dConfig};
@@ -37,7 +37,7 @@ impl Network {
             block
         });
         let blocks = blocks.collect();
-        let head = LinearConfig::new(inputs, classes).init(device);
+        let head = LinearConfig::new(2 * inputs, classes).init(device);
         Self { blocks, dropout: DropoutConfig::new(dropout).init(), head }
     }
 
@@ -45,8 +45,10 @@ impl Network {
     pub fn forward(&self, images: Tensor<4>) -> Tensor<2> {
         let features = self.blocks.iter().fold(images, |features, block| block.forward(features));
         let [batch, channels, height, width] = features.dims();
-        let means = features.reshape([batch, channels, height * width]).mean_dim(2).squeeze_dim(2);
-        self.head.forward(self.dropout.forward(means))
+        let features = features.reshape([batch, channels, height * width]);
+        let means = features.clone().mean_dim(2).squeeze_dim(2);
+        let most = features.max_dim(2).squeeze_dim(2);
+        self.head.forward(self.dropout.forward(Tensor::cat(vec![means, most], 1)))
     }
 }
 
