@@ -10,6 +10,8 @@ from coco128 import Coco128
 
 PERSON = [0]
 #: Where the Debian package dataset-fashion-mnist puts it.
+#: Mean OKS over the annotated persons, and the share of MoveNet's persons found at OKS 0.5.
+OPEN_POSE_FLOOR, AGREEMENT_FLOOR = 0.5, 0.65
 FASHION_MNIST = Path("/usr/share/datasets/fashion-mnist")
 # COCO's 17 joints among OpenDR's 18.
 COCO_JOINTS = [0, 15, 14, 17, 16, 5, 2, 6, 3, 7, 4, 11, 8, 12, 9, 13, 10]
@@ -101,3 +103,57 @@ def test_image_classifier_on_fashion_mnist(opendr):
     report = opendr.eval("image_classifier", FASHION_MNIST, "--split", "test", "--limit", "2000")
     print(f"image_classifier: accuracy {report['scalars']['accuracy']:.3f} on 2000 test pictures")
     assert report["scalars"]["accuracy"] >= 0.88
+
+
+def similarities(truths, poses):
+    """OKS of each true person (joints `[17, 3]`, area) with the pose that fits it best; 0 where there is none."""
+    found = [np.array([[joint["x"], joint["y"]] for joint in pose["keypoints"]])[COCO_JOINTS] for pose in poses]
+    best = []
+    for joints, area in truths:
+        visible = joints[:, 2] > 0
+        distances = [((points - joints[:, :2]) ** 2).sum(axis=1) for points in found]
+        scores = [np.exp(-distance / (2 * SIGMAS) ** 2 / area / 2)[visible].mean() for distance in distances]
+        best.append(max(scores, default=0.0))
+    return best
+
+
+def interval(values):
+    """A 95 % interval of the mean by the bootstrap."""
+    means = np.random.default_rng(0).choice(values, (10_000, len(values))).mean(axis=1)
+    return np.percentile(means, [2.5, 97.5])
+
+
+def test_light_open_pose_on_annotated_persons(opendr, shared):
+    folder = shared / "data/mmpose_samples/coco"
+    truth = json.loads((folder / "test_coco.json").read_text())
+    learners = {"lightweight_open_pose": OPEN_POSE_FLOOR, "posenet": 0.6, "movenet/multipose": 0.6}
+    for learner, floor in learners.items():
+        values = []
+        for image in truth["images"]:
+            [line] = opendr.infer(learner, "--threshold", "0.05", folder / image["file_name"])
+            persons = [person for person in truth["annotations"] if person["image_id"] == image["id"]]
+            persons = [
+                (np.array(person["keypoints"], float).reshape(17, 3), person["area"])
+                for person in persons
+                if person["num_keypoints"]
+            ]
+            values += similarities(persons, line["outputs"]["poses"]["poses"])
+        low, high = interval(values)
+        print(f"{learner}: mean OKS {np.mean(values):.3f} ({low:.2f} to {high:.2f}) over {len(values)} persons")
+        assert np.mean(values) >= floor
+
+
+def test_light_open_pose_agrees_with_its_teacher(opendr, shared):
+    pictures = sorted((shared / "data/coco128/images/val2017").glob("*.jpg"))
+    values = []
+    ours = opendr.infer("lightweight_open_pose", "--threshold", "0.05", *pictures)
+    for line, teacher in zip(ours, opendr.infer("movenet/multipose", "--threshold", "0.3", *pictures)):
+        persons = []
+        for pose in teacher["outputs"]["poses"]["poses"]:
+            joints = np.array([[joint["x"], joint["y"], joint["confidence"] > 0.2] for joint in pose["keypoints"]])[COCO_JOINTS]
+            width, height = np.ptp(joints[joints[:, 2] > 0, :2], axis=0)
+            persons.append((joints, width * height))
+        values += similarities(persons, line["outputs"]["poses"]["poses"])
+    share = np.mean(np.array(values) >= 0.5)
+    print(f"of {len(values)} persons that MoveNet finds, {share:.2f} at OKS 0.5; mean OKS {np.mean(values):.3f}")
+    assert share >= AGREEMENT_FLOOR

@@ -59,7 +59,9 @@ def test_eval_gives_pycocotools_numbers(coco128, evaluated):
     assert outcome["scalars"]["map50"] > 0.5
     assert json.loads((folder / "report.json").read_text())["scalars"] == outcome["scalars"]
     assert (folder / "precision_recall.svg").read_text().startswith("<svg")
-    assert cv2.imread(str(folder / "worst.png")) is not None
+    # 24 samples, each as it should be and as it was answered, six pictures in a row.
+    worst, answers = (cv2.imread(str(folder / name)) for name in ["worst.png", "answers.png"])
+    assert worst.shape == answers.shape and (worst != answers).any()
 
 
 def test_broken_off_evaluation_goes_on(opendr, coco128, evaluated, tmp_path):

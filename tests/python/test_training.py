@@ -36,3 +36,14 @@ def test_a_person_detector_begins_to_learn(opendr, shared, backbone, tmp_path):
     assert len(curve) == 24 and sum(curve[-5:]) < 0.85 * sum(curve[:5])
     [line] = opendr.infer("single_shot_detector", "--model", tmp_path / "run/model", shared / "data/photos/bus.jpg")
     assert line["outputs"]["boxes"]["classes"] == ["person"]
+
+
+def test_a_pose_estimator_learns_from_a_teacher(opendr, shared, backbone, tmp_path):
+    arguments = ["lightweight_open_pose", shared / "data/coco128/images/train2017", "--output", tmp_path / "run"]
+    arguments += ["--teacher", "movenet/multipose", "--teacher-threshold", "0.2", "--backbone", backbone, "--freeze", "true"]
+    arguments += ["--width", "0.75", "--extra-blocks", "2", "--channels", "32", "--separable", "true", "--crop-size", "128"]
+    arguments += ["--num-refinement-stages", "1", "--batch-size", "8", "--epochs", "6", "--lr", "0.002", "--log-after", "1"]
+    report = fit(opendr, *arguments, "--grad-clip", "100", "--weight-decay", "0")
+    assert report["complete"]
+    curve = losses(tmp_path / "run")
+    assert sum(curve[-4:]) < 0.5 * sum(curve[:4])

@@ -255,6 +255,10 @@ impl AnyLearner for PythonLearner {
         self.values.clone()
     }
 
+    fn default_of(&self, name: &str) -> Option<ParamValue> {
+        self.params.iter().find(|field| field.name == name).map(|field| field.default.value())
+    }
+
     fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
         let field = self.params.iter().find(|field| field.name == name);
         let field = field

@@ -108,7 +108,7 @@ def test_eval_of_a_python_data_set_resumes(detector, picture, tmp_path):
     # "person" is the data set's "human"; classes that it does not have do not count.
     assert outcome["map50"] == report["scalars"]["map50"] > 0.2
     assert report["worst"][0]["index"] == 1
-    assert {"predictions.jsonl", "report.json", "worst.png"} <= {path.name for path in tmp_path.iterdir()}
+    assert {"predictions.jsonl", "report.json", "worst.png", "answers.png"} <= {path.name for path in tmp_path.iterdir()}
     assert any(path.suffix == ".svg" for path in tmp_path.iterdir())
     lines = (tmp_path / "predictions.jsonl").read_text().splitlines(keepends=True)
     assert len(lines) == 4

@@ -64,6 +64,7 @@ pub fn score_coco_results(
         seconds: begun.elapsed().as_secs_f64(),
         report: found.report(),
         worst: Vec::new(),
+        evenly: Vec::new(),
         problems: Vec::new(),
         written: Vec::new(),
     })

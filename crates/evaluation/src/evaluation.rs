@@ -14,11 +14,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::answering::answer_samples;
 use crate::journal::{Answer, Heading, Journal, Line};
-use crate::worst::Worst;
+use crate::shown::{AnsweredSample, Shown};
 use crate::{Answers, ClassMap, Outcome};
 
-/// The worst samples that are listed.
-const WORST: usize = 24;
+/// The worst samples that are listed, and as many evenly over the data set.
+const SHOWN: usize = 24;
 /// The parameter below which learners drop answers, and what it is made where answers are ranked.
 const THRESHOLD: &str = "threshold";
 const LOW_THRESHOLD: f64 = 0.01;
@@ -86,33 +86,25 @@ impl<'a> Evaluation<'a> {
     ) -> Result<Outcome> {
         let begun = Instant::now();
         let mut tally = self.begin(dataset)?;
-        let lowered = self.lower_threshold(learners, entry)?;
+        let lowered = self.lower_threshold(learners)?;
         let done = self
             .resume(&mut tally)
             .and_then(|journal| self.answer(learners, entry.ports, &mut tally, journal));
         self.progress.end();
-        if let Some(threshold) = lowered {
+        if let Some(threshold) = &lowered {
             learners.iter_mut().try_for_each(|learner| learner.set(THRESHOLD, threshold.clone()))?;
         }
         done?;
-        self.finish(tally, begun)
+        let least = lowered.and_then(|threshold| threshold.as_float()).unwrap_or(0.0);
+        self.finish(tally, begun, least as f32)
     }
 
     /// Where answers are ranked, those of a low score belong into the ranking, too: a threshold that the user left as it
     /// is made low for the evaluation. What it was.
-    fn lower_threshold(
-        &self,
-        learners: &mut [Box<dyn AnyLearner>],
-        entry: &Entry,
-    ) -> Result<Option<ParamValue>> {
-        let Some(field) = entry.params.iter().find(|field| field.name == THRESHOLD && self.metric.ranks)
-        else {
-            return Ok(None);
-        };
-        let Some(was) = learners.first().and_then(|learner| learner.params().remove(THRESHOLD)) else {
-            return Ok(None);
-        };
-        if was != field.default.value() || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD) {
+    fn lower_threshold(&self, learners: &mut [Box<dyn AnyLearner>]) -> Result<Option<ParamValue>> {
+        let Some(first) = learners.first().filter(|_| self.metric.ranks) else { return Ok(None) };
+        let Some(was) = first.params().remove(THRESHOLD) else { return Ok(None) };
+        if first.default_of(THRESHOLD).as_ref() != Some(&was) || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD) {
             return Ok(None);
         }
         let low = ParamValue::Float(LOW_THRESHOLD);
@@ -141,7 +133,7 @@ impl<'a> Evaluation<'a> {
         if let Some(folder) = self.folder {
             fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
         }
-        self.finish(tally, begun)
+        self.finish(tally, begun, 0.0)
     }
 
     fn begin<'d>(&self, dataset: &'d dyn DatasetIterator) -> Result<Tally<'d>>
@@ -152,7 +144,7 @@ impl<'a> Evaluation<'a> {
         Ok(Tally {
             metric: self.metric.make(&self.metric_params)?,
             classes: ClassMap::to(dataset.classes()),
-            worst: Worst::new(WORST),
+            shown: Shown::new(SHOWN, dataset.len()),
             next: 0,
             counted: 0,
             dataset,
@@ -160,7 +152,9 @@ impl<'a> Evaluation<'a> {
         })
     }
 
-    fn finish(&self, tally: Tally<'_>, begun: Instant) -> Result<Outcome> {
+    /// `least`: the confidence that an answer has in use.
+    fn finish(&self, tally: Tally<'_>, begun: Instant, least: f32) -> Result<Outcome> {
+        let (worst, evenly) = tally.shown.into_samples();
         let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
@@ -171,12 +165,13 @@ impl<'a> Evaluation<'a> {
             complete: tally.next == tally.dataset.len(),
             seconds: begun.elapsed().as_secs_f64(),
             report: tally.metric.finish(),
-            worst: tally.worst.into_samples(),
+            worst,
+            evenly,
             problems: self.problems.list(),
             written: Vec::new(),
         };
         if let Some(folder) = self.folder {
-            outcome.write(tally.dataset, folder)?;
+            outcome.write(tally.dataset, folder, least)?;
         }
         Ok(outcome)
     }
@@ -220,7 +215,7 @@ impl<'a> Evaluation<'a> {
 struct Tally<'a> {
     metric: Box<dyn AnyMetric>,
     classes: ClassMap,
-    worst: Worst,
+    shown: Shown,
     /// The sample that comes next.
     next: usize,
     counted: usize,
@@ -235,7 +230,7 @@ impl Tally<'_> {
         match self.score(line) {
             Ok((score, prediction)) => {
                 self.counted += 1;
-                self.worst.add(at, score, || dataset.name(at), prediction);
+                self.shown.add(&AnsweredSample { index: at, name: dataset.name(at), score, prediction });
             }
             Err(problem) => self.problems.report(problem)?,
         }

@@ -11,7 +11,7 @@ use opendr_metrics::{Report, Table};
 use opendr_runlog::svg_from_figure;
 use serde::Serialize;
 
-use crate::worst::{WorstSample, worst_sheet};
+use crate::shown::{AnsweredSample, sheet};
 
 /// Rows of a table that are printed; all of them are in the JSON.
 const ROWS: usize = 40;
@@ -39,7 +39,10 @@ pub struct Outcome {
     #[serde(flatten)]
     pub report: Report,
     /// The samples that were answered worst, worst first.
-    pub worst: Vec<WorstSample>,
+    pub worst: Vec<AnsweredSample>,
+    /// Samples evenly over the data set.
+    #[serde(skip)]
+    pub evenly: Vec<AnsweredSample>,
     /// What was left out.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,
@@ -49,13 +52,16 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Writes `report.json`, an SVG file for each figure, and a sheet of the worst samples into a folder.
-    pub(crate) fn write(&mut self, dataset: &dyn DatasetIterator, folder: &Path) -> Result<()> {
+    /// Writes `report.json`, an SVG file for each figure, and two sheets of samples into a folder. On them, answers of a
+    /// confidence below `least` are left out.
+    pub(crate) fn write(&mut self, dataset: &dyn DatasetIterator, folder: &Path, least: f32) -> Result<()> {
         self.write_report(folder)?;
-        if let Some(sheet) = worst_sheet(&self.worst, dataset)? {
-            let path = folder.join("worst.png");
-            opendr_vision::save(&sheet, &path)?;
-            self.written.push(path);
+        for (name, samples) in [("worst.png", &self.worst), ("answers.png", &self.evenly)] {
+            if let Some(sheet) = sheet(samples, dataset, least)? {
+                let path = folder.join(name);
+                opendr_vision::save(&sheet, &path)?;
+                self.written.push(path);
+            }
         }
         Ok(())
     }

@@ -68,6 +68,10 @@ impl AnyLearner for Counter {
         ParamMap::new()
     }
 
+    fn default_of(&self, _: &str) -> Option<ParamValue> {
+        None
+    }
+
     fn set(&mut self, _: &str, _: ParamValue) -> Result<()> {
         Ok(())
     }

@@ -8,7 +8,7 @@ use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
-use opendr_perception::pose_estimation::{Movenet, Posenet};
+use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
 use opendr_perception::speech_recognition::MatchboxNet;
 
 /// Every learner: those compiled in, and those that the program adds.
@@ -24,6 +24,7 @@ pub fn registry() -> &'static Registry {
             Yunet,
             Movenet,
             Posenet,
+            LightweightOpenPose,
             ImageClassifier,
             GatedRecurrentUnit,
             MatchboxNet,

@@ -8,8 +8,8 @@ use opendr_inference::{Session, TensorView};
 use opendr_training::export::{self, Input, Outputs};
 use opendr_training::training_device;
 
-/// Layers that keep their weights, run as they will be after the training: by the inference runtime, which is several
-/// times as fast as what records for a gradient.
+/// Layers that keep their weights, run as they will be after the training: by the inference runtime, which folds what can be
+/// folded and keeps nothing for a gradient.
 #[derive(Debug)]
 pub(crate) struct FrozenLayers(Session);
 

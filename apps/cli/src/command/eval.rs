@@ -16,7 +16,7 @@ use crate::{dataset_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr eval LEARNER coco/ --split val2017 --out evaluated/   numbers, curves, the worst pictures
+  opendr eval LEARNER coco/ --split val2017 --out evaluated/   numbers, curves, sheets of pictures
   opendr eval LEARNER VOC2012/ --limit 500 --json              one object of JSON
   opendr eval LEARNER/VARIANT labelled/ --format yolo --skip-broken
   opendr eval LEARNER coco/ --metric-param use_classes=false
@@ -59,7 +59,7 @@ pub fn metric_flags() -> [Arg; 4] {
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
-            .help("Write answers, report.json, figures and the worst samples into this folder"),
+            .help("Write answers, report.json, figures and sheets of samples into this folder"),
         Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
     ]
 }

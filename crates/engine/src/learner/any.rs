@@ -62,6 +62,9 @@ pub trait AnyLearner: Send {
     /// The parameters.
     fn params(&self) -> ParamMap;
 
+    /// What a parameter is where nobody sets it.
+    fn default_of(&self, name: &str) -> Option<ParamValue>;
+
     /// Sets a parameter.
     ///
     /// # Errors
@@ -158,6 +161,10 @@ impl<L: Learner> AnyLearner for Typed<L> {
 
     fn params(&self) -> ParamMap {
         self.handle.params().to_map()
+    }
+
+    fn default_of(&self, name: &str) -> Option<ParamValue> {
+        self.handle.default_of(name)
     }
 
     fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {

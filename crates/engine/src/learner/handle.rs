@@ -130,6 +130,13 @@ impl<L: Learner> Handle<L> {
         &self.params
     }
 
+    /// What a parameter is where nobody sets it: what the loaded model states, otherwise the learner's own default.
+    pub fn default_of(&self, name: &str) -> Option<ParamValue> {
+        let field = L::Params::FIELDS.iter().find(|field| field.name == name)?;
+        let stated = self.model().and_then(|model| model.params().get(name));
+        Some(stated.cloned().unwrap_or_else(|| field.default.value()))
+    }
+
     /// The device asked for.
     pub fn device(&self) -> Device {
         self.device

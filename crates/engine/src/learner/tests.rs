@@ -72,11 +72,15 @@ fn every_promise_is_kept() {
 fn container_params_fill_defaults_only() {
     let mut handle = ready("params");
     assert_eq!(handle.params().factor, 3);
+    assert_eq!(handle.default_of("factor"), Some(ParamValue::Int(3)));
+    let own = handle.default_of("threshold");
+    assert_eq!(own, handle.params().to_map().remove("threshold"));
     let (image, found) = (picture(1), boxes(&[0.9, 0.6]));
     let input = || CounterInputs { image: &image, detections: &found, first: None };
     assert_eq!(count(&handle.infer(input()).unwrap()), 7.0);
     handle.set("threshold", ParamValue::Float(0.7)).unwrap();
     assert_eq!(count(&handle.infer(input()).unwrap()), 10.0);
+    assert_eq!(handle.default_of("threshold"), own);
     let error = handle.set("factor", ParamValue::Int(1)).unwrap_err();
     assert!(error.to_string().contains("cannot change while"), "{error}");
     handle.reset();
