@@ -49,12 +49,7 @@ pub trait Environment: Send {
     ///
     /// # Errors
     /// `InvalidInput` when `observation` has not the space's length, `InvalidParam` for options that do not fit.
-    fn reset(
-        &mut self,
-        seed: Option<u64>,
-        options: &ResetOptions,
-        observation: &mut [f32],
-    ) -> Result<Info>;
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info>;
 
     /// Takes one step and writes the next observation.
     ///
@@ -116,12 +111,7 @@ impl<E: Environment + ?Sized> Environment for Box<E> {
         (**self).spec()
     }
 
-    fn reset(
-        &mut self,
-        seed: Option<u64>,
-        options: &ResetOptions,
-        observation: &mut [f32],
-    ) -> Result<Info> {
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
         (**self).reset(seed, options, observation)
     }
 

@@ -34,7 +34,9 @@ impl Space {
         self.check_flat(flat.len())?;
         if element.len() != self.len() {
             let (wanted, count) = (self.len(), element.len());
-            return Err(Error::invalid_input(format!("an element of {self} has {wanted} numbers, not {count}")));
+            return Err(Error::invalid_input(format!(
+                "an element of {self} has {wanted} numbers, not {count}"
+            )));
         }
         self.unflatten_checked(flat, element);
         Ok(())

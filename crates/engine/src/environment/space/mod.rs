@@ -74,7 +74,9 @@ impl Space {
     pub fn uniform(low: f32, high: f32, shape: &[usize]) -> Result<Self> {
         let count = shape.iter().try_fold(1usize, |count, side| count.checked_mul(*side));
         let count = count.filter(|count| *count <= 1 << 28).ok_or_else(|| {
-            Error::invalid_input(format!("a box of shape {shape:?} is too large; an element has at most 2^28"))
+            Error::invalid_input(format!(
+                "a box of shape {shape:?} is too large; an element has at most 2^28"
+            ))
         })?;
         Self::bounded(vec![low; count], vec![high; count], shape.to_vec())
     }
