@@ -68,7 +68,7 @@ mod tests {
     #[test]
     fn as_exact_as_the_standard_librarys() {
         let mut worst = 0.0_f64;
-        for step in -400_000..400_000 {
+        for step in -400_000_i32..400_000 {
             let angle = f64::from(step) * 1.000_37e-4 * (1.0 + f64::from(step.abs() % 7) * 300.0);
             let (sine, cosine) = sine_cosine(angle);
             worst = worst.max((sine - angle.sin()).abs()).max((cosine - angle.cos()).abs());
