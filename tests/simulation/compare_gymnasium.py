@@ -25,8 +25,9 @@ def asked(program, requests):
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
-def flat(action):
-    return np.atleast_1d(action).astype(float).tolist()
+def bits(numbers):
+    """Doubles as whole numbers: the other side's parser of JSON may lose their last bit."""
+    return np.atleast_1d(numbers).astype(np.float64).view(np.uint64).tolist()
 
 
 def state_of(env_id, env):
@@ -44,7 +45,7 @@ def single_steps(env_id, program):
         # Held actions reach the far states; a tenth of them is drawn anew.
         if held is None or env.np_random.random() < 0.1:
             held = env.action_space.sample()
-        requests.append({"id": env_id, "state": state_of(env_id, env), "action": flat(held)})
+        requests.append({"id": env_id, "state": bits(state_of(env_id, env)), "action": bits(held)})
         observation, reward, terminated, truncated, _ = env.step(held)
         wanted.append((state_of(env_id, env), observation, float(reward), terminated, False))
         if terminated or truncated:
@@ -70,7 +71,7 @@ def episodes(env_id, program):
         actions, steps = [], []
         while not steps or not (steps[-1][1] or steps[-1][2]):
             action = env.action_space.sample()
-            actions.append(flat(action))
+            actions.append(bits(action))
             _, reward, terminated, truncated, _ = env.step(action)
             steps.append((float(reward), terminated, truncated))
         requests.append({"id": env_id, "seed": seed, "actions": actions})

@@ -1,7 +1,8 @@
 //! Steps environments as lines of JSON ask for it: the other half of `tests/simulation/compare_gymnasium.py`.
 //!
 //! `{"id": "Pendulum-v1", "state": [...], "action": [...]}` takes one step from a state;
-//! `{"id": "Pendulum-v1", "seed": 1, "actions": [[...], ...]}` plays an episode.
+//! `{"id": "Pendulum-v1", "seed": 1, "actions": [[...], ...]}` plays an episode. Numbers that come in are the bits of
+//! doubles, since parsers of JSON may lose the last one.
 
 use std::io::{BufRead, BufWriter, Write};
 
@@ -69,7 +70,7 @@ fn episode(id: &str, seed: Option<u64>, actions: &[Value]) -> Result<Value> {
 }
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value.as_array().into_iter().flatten().filter_map(Value::as_f64).collect()
+    value.as_array().into_iter().flatten().filter_map(Value::as_u64).map(f64::from_bits).collect()
 }
 
 fn singles(value: &Value) -> Vec<f32> {
