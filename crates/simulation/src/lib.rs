@@ -16,7 +16,8 @@ mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
+pub mod vector;
 pub mod wrappers;
 
 pub use numpy_random::NumpyRandom;
-pub use registry::{Registered, Registration, Registry, make};
+pub use registry::{Registered, Registration, Registry, make, make_vec};

@@ -141,7 +141,9 @@ mod tests {
         assert_eq!([(); 3].map(|()| random.bits()), wanted);
 
         let mut random = NumpyRandom::new(0);
-        (0..3).for_each(|_| drop(random.bits()));
+        for _ in 0..3 {
+            random.bits();
+        }
         let wanted = [-0.04834723644714709, 0.031327023920027244, 0.04127555772777218, 0.010663577576717986];
         assert_eq!([(); 4].map(|()| random.uniform(-0.05, 0.05)), wanted);
     }

@@ -6,7 +6,10 @@ use opendr_engine::environment::Environment;
 use opendr_engine::params::{Field, ParamMap, Params};
 use opendr_engine::{Error, Result};
 
-use crate::classic_control::{Acrobot, CartPole, MountainCar, MountainCarContinuous, Pendulum};
+use crate::classic_control::{
+    Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
+};
+use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
 use crate::wrappers::{Checked, TimeLimit};
 
 /// An environment that the registry can make.
@@ -187,6 +190,21 @@ fn edits(a: &str, b: &str) -> usize {
 /// `NotFound` for an unknown name.
 pub fn make(id: &str) -> Result<Box<dyn Environment>> {
     Registry::builtin().get(id)?.make(&ParamMap::new())
+}
+
+/// Makes `options.count` environments that are stepped together, with their defaults.
+///
+/// # Errors
+/// `NotFound` for an unknown name, `InvalidParam` for no environment or too many.
+pub fn make_vec(id: &str, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
+    let registration = Registry::builtin().get(id)?;
+    if registration.id == <CartPole as Registered>::ID {
+        let params = CartPoleParams::default();
+        return Ok(Box::new(CartPoleVector::new(&params, options.count, options.autoreset)?));
+    }
+    let environments = (0..options.checked_count()?).map(|_| registration.make(&ParamMap::new()));
+    let environments = environments.collect::<Result<Vec<_>>>()?;
+    Ok(Box::new(EnvironmentVector::new(environments, options.autoreset, options.threads)?))
 }
 
 #[cfg(test)]

@@ -25,11 +25,15 @@ pub(crate) fn sine_cosine(angle: f64) -> (f64, f64) {
     let z = x * x;
     let sine = sine_near_zero(x, z);
     let cosine = cosine_near_zero(z);
-    let odd = quadrant & 1 == 1;
-    let (sine, cosine) = if odd { (cosine, sine) } else { (sine, cosine) };
+    // A mask instead of a choice: baseline x86-64 has no comparison of 64-bit integers.
+    let odd = (quadrant & 1).wrapping_neg();
+    let swapped = (sine.to_bits() ^ cosine.to_bits()) & odd;
     let sine_sign = (quadrant & 2) << 62;
     let cosine_sign = (quadrant.wrapping_add(1) & 2) << 62;
-    (f64::from_bits(sine.to_bits() ^ sine_sign), f64::from_bits(cosine.to_bits() ^ cosine_sign))
+    (
+        f64::from_bits(sine.to_bits() ^ swapped ^ sine_sign),
+        f64::from_bits(cosine.to_bits() ^ swapped ^ cosine_sign),
+    )
 }
 
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! Gymnasium's classic control: the same states, rewards and endings as its version 1.4.
 
 mod acrobot;
-mod cart_pole;
+pub(crate) mod cart_pole;
 mod dynamics;
 mod mountain_car;
 mod mountain_car_continuous;
