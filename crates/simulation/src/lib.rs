@@ -16,6 +16,7 @@ mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
+pub mod raycast;
 pub mod vector;
 pub mod wrappers;
 

@@ -4,16 +4,17 @@
 //! multiples of pi/2 in three parts (Cody and Waite, 1980), without a branch. The standard library's differ from system
 //! to system in the last bit, and an episode with them.
 
+use std::f64::consts::FRAC_2_PI;
+
 /// Adding it rounds to a whole number, which then lies in the lowest bits.
 const ROUND: f64 = 6_755_399_441_055_744.0;
-const TWO_BY_PI: f64 = 0.636_619_772_367_581_4;
 /// pi/2 in parts; the first two have 33 bits, so that multiples up to 2^20 are exact.
 const HALF_PI: [f64; 3] = [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
 /// Sine and cosine of an angle in radians, to about one unit in the last place below 1e6.
 #[inline(always)]
 pub(crate) fn sine_cosine(angle: f64) -> (f64, f64) {
-    let shifted = angle * TWO_BY_PI + ROUND;
+    let shifted = angle * FRAC_2_PI + ROUND;
     let turns = shifted - ROUND;
     let quadrant = shifted.to_bits();
 

@@ -21,6 +21,7 @@ pub struct CartPoleVector {
     elapsed: Vec<u32>,
     over: Vec<bool>,
     randoms: Vec<Option<NumpyRandom>>,
+    never_reset: usize,
 }
 
 /// One array for each number of the state.
@@ -52,6 +53,7 @@ impl CartPoleVector {
             elapsed: vec![0; count],
             over: vec![false; count],
             randoms: vec![None; count],
+            never_reset: count,
         })
     }
 
@@ -62,6 +64,7 @@ impl CartPoleVector {
         options: &ResetOptions,
         seen: &mut [f32],
     ) -> Result<()> {
+        self.never_reset -= usize::from(self.randoms[index].is_none());
         if let Some(seed) = seed {
             self.randoms[index] = Some(NumpyRandom::new(seed));
         }
@@ -89,7 +92,7 @@ impl CartPoleVector {
         {
             return Err(episode_is_over()).context(|| format!("environment {index}"));
         }
-        if self.randoms.iter().any(Option::is_none) {
+        if self.never_reset > 0 {
             return Err(not_begun(&self.spec));
         }
         Ok(())
@@ -181,9 +184,39 @@ impl VecEnvironment for CartPoleVector {
     }
 }
 
-/// Moves every cart. The slices are arguments, so that the compiler knows that they are apart.
-#[inline(never)]
+/// Moves every cart. Wider vectors change no bit: no operation is fused.
 fn move_all(
+    actions: &[f32],
+    x: &mut [f64],
+    speed: &mut [f64],
+    angle: &mut [f64],
+    turning: &mut [f64],
+    semi_implicit: bool,
+) {
+    #[cfg(target_arch = "x86_64")]
+    if std::is_x86_feature_detected!("avx2") {
+        // SAFETY: the processor has what the function is compiled for.
+        return unsafe { move_all_avx2(actions, x, speed, angle, turning, semi_implicit) };
+    }
+    move_each(actions, x, speed, angle, turning, semi_implicit);
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn move_all_avx2(
+    actions: &[f32],
+    x: &mut [f64],
+    speed: &mut [f64],
+    angle: &mut [f64],
+    turning: &mut [f64],
+    semi_implicit: bool,
+) {
+    move_each(actions, x, speed, angle, turning, semi_implicit);
+}
+
+/// The slices are arguments, so that the compiler knows that they are apart.
+#[inline(always)]
+fn move_each(
     actions: &[f32],
     x: &mut [f64],
     speed: &mut [f64],

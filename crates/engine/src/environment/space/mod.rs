@@ -57,8 +57,8 @@ impl Space {
                 high.len()
             )));
         }
-        // Negated, since NaN compares false with everything.
-        if let Some(at) = low.iter().zip(&high).position(|(low, high)| !(low <= high)) {
+        let is_wrong = |(low, high): (&f32, &f32)| low.is_nan() || high.is_nan() || low > high;
+        if let Some(at) = low.iter().zip(&high).position(is_wrong) {
             return Err(Error::invalid_input(format!(
                 "element {at} of a box is bounded by {} and {}; give a low that is not above its high",
                 low[at], high[at]
