@@ -1,0 +1,82 @@
+//! Panels: the parts of a factor in the order in which the inner loop reads them.
+
+/// Where a factor lies: its first number and the distances along the panels' long side and across.
+#[derive(Clone, Copy)]
+pub(super) struct Source {
+    pub(super) data: *const f32,
+    /// From one step of the depth to the next.
+    pub(super) along: usize,
+    /// From one row of A, or one column of B, to the next.
+    pub(super) across: usize,
+}
+
+/// Packs `count` rows of A (or columns of B) into panels of `width`, each `depth` steps of `width` numbers; the last
+/// panel is filled up with zeros.
+///
+/// # Safety
+/// `source` is readable for `count` by `depth` numbers.
+pub(super) unsafe fn pack(source: Source, count: usize, depth: usize, width: usize, panels: &mut [f32]) {
+    for (index, panel) in panels.chunks_exact_mut(depth * width).enumerate() {
+        let first = index * width;
+        let used = width.min(count - first);
+        // SAFETY: `first + used` is at most `count`.
+        let source = unsafe { Source { data: source.data.add(first * source.across), ..source } };
+        if used < width {
+            panel.fill(0.0);
+        }
+        // SAFETY: the panel has `depth` steps of `width` numbers, of which `used` are written.
+        unsafe {
+            if source.across == 1 {
+                copy_runs(source, used, depth, width, panel.as_mut_ptr());
+            } else {
+                transpose(source, used, depth, width, panel.as_mut_ptr());
+            }
+        }
+    }
+}
+
+#[inline]
+unsafe fn copy_runs(source: Source, used: usize, depth: usize, width: usize, panel: *mut f32) {
+    for step in 0..depth {
+        // SAFETY: by the contract of `pack`.
+        unsafe {
+            let from = source.data.add(step * source.along);
+            let to = panel.add(step * width);
+            match used {
+                // Sizes known to the compiler become two or four moves.
+                8 => to.copy_from_nonoverlapping(from, 8),
+                16 => to.copy_from_nonoverlapping(from, 16),
+                32 => to.copy_from_nonoverlapping(from, 32),
+                _ => to.copy_from_nonoverlapping(from, used),
+            }
+        }
+    }
+}
+
+/// Squares of four by four, which the compiler keeps in registers; then what is left over.
+#[inline]
+unsafe fn transpose(source: Source, used: usize, depth: usize, width: usize, panel: *mut f32) {
+    let Source { data, along, across } = source;
+    let (squares_across, squares_along) = (used / 4 * 4, if along == 1 { depth / 4 * 4 } else { 0 });
+    // SAFETY: by the contract of `pack`.
+    unsafe {
+        for i in (0..squares_across).step_by(4) {
+            for step in (0..squares_along).step_by(4) {
+                let mut square = [[0.0; 4]; 4];
+                for (k, row) in square.iter_mut().enumerate() {
+                    *row = data.add((i + k) * across + step).cast::<[f32; 4]>().read_unaligned();
+                }
+                for k in 0..4 {
+                    let column = [square[0][k], square[1][k], square[2][k], square[3][k]];
+                    panel.add((step + k) * width + i).cast::<[f32; 4]>().write_unaligned(column);
+                }
+            }
+        }
+        for step in 0..depth {
+            let first = if step < squares_along { squares_across } else { 0 };
+            for i in first..used {
+                *panel.add(step * width + i) = *data.add(i * across + step * along);
+            }
+        }
+    }
+}
