@@ -1,6 +1,6 @@
 use crate::elementary::{sigmoid, tanh};
 use crate::isa::{Isa, for_every_isa};
-use crate::lanes::{Lanes, MAX_WIDTH};
+use crate::lanes::Lanes;
 
 /// What is done to every output of a layer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -48,7 +48,7 @@ impl Activation {
 
     /// The gradient before, from the output and the gradient after.
     #[inline(always)]
-    unsafe fn gradient<V: Lanes>(self, y: V, dy: V) -> V {
+    pub(crate) unsafe fn gradient<V: Lanes>(self, y: V, dy: V) -> V {
         // SAFETY: the contract of `Lanes`, passed on.
         unsafe {
             match self {
@@ -73,17 +73,15 @@ pub(crate) unsafe fn apply_all<V: Lanes>(activation: Activation, values: *mut f3
     if activation == Activation::Identity {
         return;
     }
-    // SAFETY: whole registers lie within `length`; the rest goes through a buffer as long as any register.
+    // SAFETY: whole registers lie within `length`; the rest is counted.
     unsafe {
         let whole = length / V::WIDTH * V::WIDTH;
         for i in (0..whole).step_by(V::WIDTH) {
             activation.of(V::load(values.add(i))).store(values.add(i));
         }
-        if whole < length {
-            let mut rest = [0.0; MAX_WIDTH];
-            rest.as_mut_ptr().copy_from_nonoverlapping(values.add(whole), length - whole);
-            activation.of(V::load(rest.as_ptr())).store(rest.as_mut_ptr());
-            values.add(whole).copy_from_nonoverlapping(rest.as_ptr(), length - whole);
+        let rest = length - whole;
+        if rest > 0 {
+            activation.of(V::load_some(values.add(whole), rest)).store_some(values.add(whole), rest);
         }
     }
 }
@@ -95,19 +93,16 @@ unsafe fn backward_all<V: Lanes>(activation: Activation, y: *const f32, dy: *mut
     if activation == Activation::Identity {
         return;
     }
-    // SAFETY: whole registers lie within `length`; the rest goes through buffers as long as any register.
+    // SAFETY: whole registers lie within `length`; the rest is counted.
     unsafe {
         let whole = length / V::WIDTH * V::WIDTH;
         for i in (0..whole).step_by(V::WIDTH) {
             activation.gradient(V::load(y.add(i)), V::load(dy.add(i))).store(dy.add(i));
         }
-        if whole < length {
-            let (mut outputs, mut gradients) = ([0.0; MAX_WIDTH], [0.0; MAX_WIDTH]);
-            outputs.as_mut_ptr().copy_from_nonoverlapping(y.add(whole), length - whole);
-            gradients.as_mut_ptr().copy_from_nonoverlapping(dy.add(whole), length - whole);
-            let before = activation.gradient(V::load(outputs.as_ptr()), V::load(gradients.as_ptr()));
-            before.store(gradients.as_mut_ptr());
-            dy.add(whole).copy_from_nonoverlapping(gradients.as_ptr(), length - whole);
+        let rest = length - whole;
+        if rest > 0 {
+            let (y, dy) = (y.add(whole), dy.add(whole));
+            activation.gradient(V::load_some(y, rest), V::load_some(dy, rest)).store_some(dy, rest);
         }
     }
 }

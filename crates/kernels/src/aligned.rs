@@ -1,6 +1,7 @@
 use std::cell::RefCell;
+use std::thread::LocalKey;
 
-/// Memory for packed panels: grows, never shrinks, starts on a cache line.
+/// Memory for panels: grows, never shrinks, starts on a cache line.
 #[derive(Default)]
 pub(crate) struct AlignedBuffer {
     lines: Vec<CacheLine>,
@@ -10,9 +11,19 @@ pub(crate) struct AlignedBuffer {
 #[repr(align(64))]
 struct CacheLine(#[expect(dead_code, reason = "read through a pointer to all lines")] [f32; 16]);
 
+/// A buffer of each thread.
+pub(crate) type ThreadBuffer = LocalKey<RefCell<AlignedBuffer>>;
+
+thread_local! {
+    pub(crate) static LEFT_PANELS: RefCell<AlignedBuffer> = RefCell::default();
+    pub(crate) static RIGHT_PANELS: RefCell<AlignedBuffer> = RefCell::default();
+    pub(crate) static PATCHES: RefCell<AlignedBuffer> = RefCell::default();
+    pub(crate) static PATCH_GRADIENTS: RefCell<AlignedBuffer> = RefCell::default();
+}
+
 impl AlignedBuffer {
     /// `length` numbers with whatever the last user left in them.
-    pub(crate) fn take(&mut self, length: usize) -> &mut [f32] {
+    fn take(&mut self, length: usize) -> &mut [f32] {
         let lines = length.div_ceil(16);
         if self.lines.len() < lines {
             self.lines.resize(lines, CacheLine([0.0; 16]));
@@ -23,22 +34,13 @@ impl AlignedBuffer {
     }
 }
 
-thread_local! {
-    static LEFT: RefCell<AlignedBuffer> = RefCell::default();
-    static RIGHT: RefCell<AlignedBuffer> = RefCell::default();
-}
-
-/// This thread's buffer for panels of the left factor; another one where it is in use.
-pub(crate) fn with_left_panels<R>(length: usize, work: impl FnOnce(&mut [f32]) -> R) -> R {
-    LEFT.with(|buffer| match buffer.try_borrow_mut() {
-        Ok(mut buffer) => work(buffer.take(length)),
-        Err(_) => work(AlignedBuffer::default().take(length)),
-    })
-}
-
-/// This thread's buffer for panels of the right factor; another one where it is in use.
-pub(crate) fn with_right_panels<R>(length: usize, work: impl FnOnce(&mut [f32]) -> R) -> R {
-    RIGHT.with(|buffer| match buffer.try_borrow_mut() {
+/// Works with `length` numbers of this thread's buffer; of a new one where it is in use.
+pub(crate) fn with_buffer<R>(
+    buffer: &'static ThreadBuffer,
+    length: usize,
+    work: impl FnOnce(&mut [f32]) -> R,
+) -> R {
+    buffer.with(|buffer| match buffer.try_borrow_mut() {
         Ok(mut buffer) => work(buffer.take(length)),
         Err(_) => work(AlignedBuffer::default().take(length)),
     })

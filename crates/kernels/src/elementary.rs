@@ -3,7 +3,7 @@
 //! All three rest on `exp(r) - 1` for |r| <= ln(2) / 2 by its series, so that they agree with each other and need no table.
 
 use crate::isa::{Isa, for_every_isa};
-use crate::lanes::{Lanes, MAX_WIDTH};
+use crate::lanes::Lanes;
 
 /// ln 2 in two parts; products of the first with whole numbers below 2^15 are exact.
 const LN_2: [f32; 2] = [0.693_359_375, -2.121_944_4e-4];
@@ -73,17 +73,15 @@ macro_rules! in_place {
 
         #[inline(always)]
         unsafe fn $body<V: Lanes>(values: *mut f32, length: usize) {
-            // SAFETY: whole registers lie within `length`; the rest goes through a buffer as long as any register.
+            // SAFETY: whole registers lie within `length`; the rest is counted.
             unsafe {
                 let whole = length / V::WIDTH * V::WIDTH;
                 for i in (0..whole).step_by(V::WIDTH) {
                     $function(V::load(values.add(i))).store(values.add(i));
                 }
-                if whole < length {
-                    let mut rest = [0.0; MAX_WIDTH];
-                    rest.as_mut_ptr().copy_from_nonoverlapping(values.add(whole), length - whole);
-                    $function(V::load(rest.as_ptr())).store(rest.as_mut_ptr());
-                    values.add(whole).copy_from_nonoverlapping(rest.as_ptr(), length - whole);
+                let rest = length - whole;
+                if rest > 0 {
+                    $function(V::load_some(values.add(whole), rest)).store_some(values.add(whole), rest);
                 }
             }
         }

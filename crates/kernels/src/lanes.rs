@@ -53,6 +53,28 @@ pub(crate) trait Lanes: Copy {
     unsafe fn power_of_two(self) -> Self;
     /// `self` where `gate` is positive, else zero.
     unsafe fn where_positive(self, gate: Self) -> Self;
+
+    /// The first `count` numbers, at most a register, then zeros.
+    #[inline(always)]
+    unsafe fn load_some(from: *const f32, count: usize) -> Self {
+        let mut numbers = [0.0; MAX_WIDTH];
+        // SAFETY: the trait's contract, for `count` numbers only.
+        unsafe {
+            numbers.as_mut_ptr().copy_from_nonoverlapping(from, count);
+            Self::load(numbers.as_ptr())
+        }
+    }
+
+    /// Stores the first `count` numbers, at most a register.
+    #[inline(always)]
+    unsafe fn store_some(self, to: *mut f32, count: usize) {
+        let mut numbers = [0.0; MAX_WIDTH];
+        // SAFETY: the trait's contract, for `count` numbers only.
+        unsafe {
+            self.store(numbers.as_mut_ptr());
+            to.copy_from_nonoverlapping(numbers.as_ptr(), count);
+        }
+    }
 }
 
 /// Implements [`Lanes`] by one expression for each function.

@@ -2,6 +2,7 @@ use std::any::Any;
 use std::cell::Cell;
 use std::fmt;
 use std::hint::spin_loop;
+use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -129,22 +130,41 @@ impl WorkerPool {
         piece: impl Fn(usize, &mut [T]) + Sync,
     ) {
         assert!(length > 0, "pieces of no length");
-        let (start, total) = (SendPointer(data.as_mut_ptr()), data.len());
-        self.run(total.div_ceil(length), |index| {
-            let from = index * length;
-            let start = &start;
-            // SAFETY: pieces lie within the slice and apart from each other, and each number comes once.
-            let part = unsafe { std::slice::from_raw_parts_mut(start.0.add(from), length.min(total - from)) };
-            piece(index, part);
-        });
+        let pieces = data.len().div_ceil(length);
+        let data = Pieces::new(data, length);
+        // SAFETY: each number comes once.
+        self.run(pieces, |index| piece(index, unsafe { data.get(index) }));
     }
 }
 
-/// A pointer that pieces on other threads write through, each its own part.
-pub(crate) struct SendPointer<T>(pub(crate) *mut T);
+/// A slice that threads write in pieces.
+pub(crate) struct Pieces<'a, T> {
+    start: *mut T,
+    total: usize,
+    length: usize,
+    slice: PhantomData<&'a mut [T]>,
+}
 
-// SAFETY: whoever makes one sees to it that threads do not meet behind it.
-unsafe impl<T: Send> Sync for SendPointer<T> {}
+// SAFETY: `get` is unsafe, and whoever calls it sees to it that threads do not meet.
+unsafe impl<T: Send> Sync for Pieces<'_, T> {}
+
+impl<'a, T> Pieces<'a, T> {
+    /// Pieces of `length`, the last one shorter.
+    pub(crate) fn new(slice: &'a mut [T], length: usize) -> Self {
+        Self { start: slice.as_mut_ptr(), total: slice.len(), length, slice: PhantomData }
+    }
+
+    /// Piece number `index`; empty beyond the end.
+    ///
+    /// # Safety
+    /// No piece is taken twice at the same time.
+    #[expect(clippy::mut_from_ref, reason = "pieces lie apart")]
+    pub(crate) unsafe fn get(&self, index: usize) -> &'a mut [T] {
+        let from = (index * self.length).min(self.total);
+        // SAFETY: pieces lie within the slice and apart from each other.
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(from), self.length.min(self.total - from)) }
+    }
+}
 
 impl Shared {
     fn open(&self, work: Work) {

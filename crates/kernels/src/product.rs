@@ -1,4 +1,4 @@
-use crate::aligned::{with_left_panels, with_right_panels};
+use crate::aligned::{LEFT_PANELS, RIGHT_PANELS, with_buffer};
 use crate::compute::Compute;
 use crate::isa::{Isa, Set};
 use crate::lanes::Lanes;
@@ -173,11 +173,13 @@ struct Job {
 unsafe impl Sync for Job {}
 
 impl Job {
-    /// Registers lie along the columns: where those are too few to fill one, the rows may serve better.
+    /// Registers lie along the columns. Where those are few, the rows serve better, if A need not be turned for
+    /// it; so they do where they are few, and B would have to be turned.
     fn is_better_transposed(&self, tile: Tile) -> bool {
         let side_by_side = self.c_strides[1] == 1;
         (!side_by_side && self.c_strides[0] == 1)
-            || (self.columns <= tile.columns / 4 && self.rows >= tile.columns)
+            || (self.columns <= tile.columns / 4 && self.rows >= tile.columns && self.a.across == 1)
+            || (self.rows <= 2 && self.columns > tile.rows && self.b.across != 1)
     }
 
     /// The same product as `C' = B' A'`.
@@ -255,7 +257,7 @@ impl Job {
         let first_packed = if in_place { whole } else { 0 };
         let packed = self.columns - first_packed;
         let panels = packed.div_ceil(tile.columns) * tile.columns * self.depth;
-        with_right_panels(panels, |panels| {
+        with_buffer(&RIGHT_PANELS, panels, |panels| {
             if first_packed > 0 {
                 let direct = self.part([0, first_packed], [0, self.depth]);
                 direct.run_rows(compute, tile, self.b.data, [self.b.along, tile.columns]);
@@ -314,7 +316,7 @@ impl Job {
             // SAFETY: the block lies within the matrices, and B is readable in whole tiles.
             return unsafe { compute_block(isa, &block) };
         }
-        with_left_panels(rows.div_ceil(tile.rows) * tile.rows * self.depth, |panels| {
+        with_buffer(&LEFT_PANELS, rows.div_ceil(tile.rows) * tile.rows * self.depth, |panels| {
             // SAFETY: A has these rows and `depth` columns; the block then reads the panels instead.
             unsafe {
                 pack(a, rows, self.depth, tile.rows, panels);

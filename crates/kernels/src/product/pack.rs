@@ -43,7 +43,9 @@ unsafe fn copy_runs(source: Source, used: usize, depth: usize, width: usize, pan
             let from = source.data.add(step * source.along);
             let to = panel.add(step * width);
             match used {
-                // Sizes known to the compiler become two or four moves.
+                // Sizes known to the compiler become some moves.
+                4 => to.copy_from_nonoverlapping(from, 4),
+                6 => to.copy_from_nonoverlapping(from, 6),
                 8 => to.copy_from_nonoverlapping(from, 8),
                 16 => to.copy_from_nonoverlapping(from, 16),
                 32 => to.copy_from_nonoverlapping(from, 32),
