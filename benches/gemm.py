@@ -44,22 +44,29 @@ def numpy_micros(rows, columns, depth, kind):
     return best * 1e6
 
 
+def is_product(name):
+    return name[0].isdigit()
+
+
 def main():
     rounds = []
     for _ in range(ROUNDS):
-        mine = {name: micros for name, micros in ours(sys.argv[1]).items() if "x" in name}
+        mine = ours(sys.argv[1])
         theirs = {}
-        for name in mine:
+        for name in filter(is_product, mine):
             size, kind = name.split("-")
             theirs[name] = numpy_micros(*map(int, size.split("x")), kind)
         rounds.append((mine, theirs))
-    print(f"{'product':>20} {'ours us':>10} {'NumPy us':>10} {'GFLOP/s':>8} {'ratio':>6}")
+    print(f"{'product':>26} {'ours us':>10} {'NumPy us':>10} {'GFLOP/s':>8} {'ratio':>6}")
     for name in rounds[0][0]:
+        if not is_product(name):
+            print(f"{name:>26} {statistics.median(r[0][name] for r in rounds):10.2f}")
+            continue
         rows, columns, depth = map(int, name.split("-")[0].split("x"))
         mine, theirs = (statistics.median(r[i][name] for r in rounds) for i in (0, 1))
         ratio = statistics.median(r[1][name] / r[0][name] for r in rounds)
         speed = 2e-3 * rows * columns * depth / mine
-        print(f"{name:>20} {mine:10.2f} {theirs:10.2f} {speed:8.1f} {ratio:6.2f}")
+        print(f"{name:>26} {mine:10.2f} {theirs:10.2f} {speed:8.1f} {ratio:6.2f}")
 
 
 if __name__ == "__main__":

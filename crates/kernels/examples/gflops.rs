@@ -5,7 +5,7 @@
 use std::time::Instant;
 
 use opendr_engine::Random;
-use opendr_kernels::{Compute, Matrix, MatrixMut, Product};
+use opendr_kernels::{Activation, Compute, Matrix, MatrixMut, Network, Product, Tape};
 
 fn main() {
     let compute = Compute::single();
@@ -35,6 +35,28 @@ fn main() {
             report(&format!("{rows}x{columns}x{depth}-{name}"), seconds, operations);
         }
     }
+    for batch in [1, 64, 256] {
+        network(&compute, batch);
+    }
+}
+
+/// A policy of two hidden layers of 64: forward, and forward and backward.
+fn network(compute: &Compute, batch: usize) {
+    let Ok(network) = Network::dense(&[4, 64, 64, 2], Activation::Tanh) else { return };
+    let (parameters, mut gradients) = (random(network.parameters(), 1), vec![0.0; network.parameters()]);
+    let (x, dy) = (random(batch * network.inputs(), 2), random(batch * network.outputs(), 3));
+    let mut tape = Tape::default();
+    let operations = 2.0 * (batch * network.parameters()) as f64;
+    let seconds = fastest(operations, || {
+        network.forward(compute, &parameters, &x, &mut tape);
+    });
+    report(&format!("policy-forward-{batch}"), seconds, operations);
+    let seconds = fastest(3.0 * operations, || {
+        gradients.fill(0.0);
+        network.forward(compute, &parameters, &x, &mut tape);
+        network.backward(compute, &parameters, &dy, &mut tape, Some(&mut gradients), false);
+    });
+    report(&format!("policy-forward-backward-{batch}"), seconds, 3.0 * operations);
 }
 
 fn random(length: usize, seed: u64) -> Vec<f32> {

@@ -6,7 +6,7 @@ use crate::isa::{Isa, for_every_isa};
 use crate::lanes::Lanes;
 
 /// ln 2 in two parts; products of the first with whole numbers below 2^15 are exact.
-const LN_2: [f32; 2] = [0.693_359_375, -2.121_944_4e-4];
+const LN_2: [f32; 2] = [355.0 / 512.0, -2.121_944_4e-4];
 
 /// Splits `x` into n ln 2 + r and gives n and exp(r) - 1.
 #[inline(always)]

@@ -158,7 +158,6 @@ impl<'a, T> Pieces<'a, T> {
     ///
     /// # Safety
     /// No piece is taken twice at the same time.
-    #[expect(clippy::mut_from_ref, reason = "pieces lie apart")]
     pub(crate) unsafe fn get(&self, index: usize) -> &'a mut [T] {
         let from = (index * self.length).min(self.total);
         // SAFETY: pieces lie within the slice and apart from each other.

@@ -104,3 +104,79 @@ fn check<const N: usize>(columns: usize, lengths: [usize; N]) {
     assert_eq!(lengths, [lengths[0]; N], "lengths differ");
     assert!(columns > 0 && lengths[0].is_multiple_of(columns), "no rows of {columns}: {lengths:?}");
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn exact_logs(scores: &[f64]) -> Vec<f64> {
+        let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let sum: f64 = scores.iter().map(|score| (score - largest).exp()).sum();
+        scores.iter().map(|score| score - largest - sum.ln()).collect()
+    }
+
+    /// Compares a gradient at `at` with central differences of `loss`.
+    fn assert_gradient(at: &[f32], gradient: &[f32], loss: impl Fn(&[f64]) -> f64) {
+        let at: Vec<f64> = at.iter().map(|&at| f64::from(at)).collect();
+        for (index, &gradient) in gradient.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut at = at.clone();
+                at[index] += by;
+                loss(&at)
+            };
+            let difference = (moved(1e-5) - moved(-1e-5)) / 2e-5;
+            assert!((f64::from(gradient) - difference).abs() < 1e-6, "{index}: {gradient}, not {difference}");
+        }
+    }
+
+    const SCORES: [f32; 6] = [0.3, -1.2, 2.0, 5.0, 5.0, -40.0];
+
+    #[test]
+    fn large_and_small_scores_stay_finite() {
+        for isa in Isa::available() {
+            let (mut logs, mut probabilities) = ([0.0; 6], [0.0; 6]);
+            log_softmax(isa, &[1e30, 0.0, -1e30, -3e38, 3e38, 0.0], 3, &mut logs, &mut probabilities);
+            assert_eq!(probabilities, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
+            assert_eq!([logs[0], logs[4]], [0.0, 0.0]);
+            assert!((entropy(&logs[..3], &probabilities[..3])).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn cross_entropy_and_its_gradient() {
+        let targets = [2, 0];
+        let exact = |scores: &[f64]| {
+            let rows = scores.chunks(3).zip(targets);
+            rows.map(|(scores, target)| -exact_logs(scores)[target]).sum::<f64>() / 2.0
+        };
+        for isa in Isa::available() {
+            let (mut logs, mut dscores) = ([0.0; 6], [0.0; 6]);
+            let loss = cross_entropy(isa, &SCORES, 3, &targets, &mut logs, &mut dscores);
+            assert!((f64::from(loss) - exact(&SCORES.map(f64::from))).abs() < 1e-6, "{loss}");
+            assert_gradient(&SCORES, &dscores, exact);
+        }
+    }
+
+    #[test]
+    fn gradients_of_the_logs() {
+        let (mut logs, mut probabilities, mut dscores) = ([0.0; 6], [0.0; 6], [0.0; 6]);
+        log_softmax(Isa::best(), &SCORES, 6, &mut logs, &mut probabilities);
+        let weights = [0.5, -1.0, 2.0, 0.0, 0.25, 0.75];
+        log_softmax_backward(&probabilities, 6, &weights, &mut dscores);
+        assert_gradient(&SCORES, &dscores, |scores| {
+            exact_logs(scores).iter().zip(weights).map(|(log, weight)| log * f64::from(weight)).sum()
+        });
+    }
+
+    #[test]
+    fn gradients_of_a_policy() {
+        let (mut logs, mut probabilities, mut dscores) = ([0.0; 6], [0.0; 6], [0.0; 6]);
+        log_softmax(Isa::best(), &SCORES, 6, &mut logs, &mut probabilities);
+        categorical_backward(&logs, &probabilities, 4, [1.5, -0.5], &mut dscores);
+        assert_gradient(&SCORES, &dscores, |scores| {
+            let logs = exact_logs(scores);
+            let entropy = -logs.iter().map(|log| log.exp() * log).sum::<f64>();
+            1.5 * logs[4] - 0.5 * entropy
+        });
+    }
+}

@@ -69,7 +69,7 @@ unsafe fn transpose(source: Source, used: usize, depth: usize, width: usize, pan
                     *row = data.add((i + k) * across + step).cast::<[f32; 4]>().read_unaligned();
                 }
                 for k in 0..4 {
-                    let column = [square[0][k], square[1][k], square[2][k], square[3][k]];
+                    let column = square.map(|row| row[k]);
                     panel.add((step + k) * width + i).cast::<[f32; 4]>().write_unaligned(column);
                 }
             }
