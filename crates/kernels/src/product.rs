@@ -275,7 +275,8 @@ impl Job {
 
     /// All rows in pieces, each on the thread that comes first.
     fn run_rows(&self, compute: &Compute, tile: Tile, b: *const f32, b_strides: [usize; 2]) {
-        let piece = 8 * tile.rows;
+        // Every piece reads all of B once: many rows pay for that, few spread better.
+        let piece = tile.rows * if self.rows > 384 { 24 } else { 8 };
         let right = Right { data: b, strides: b_strides };
         let work = |index: usize| {
             let first = index * piece;

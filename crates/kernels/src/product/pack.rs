@@ -16,41 +16,64 @@ pub(super) struct Source {
 /// # Safety
 /// `source` is readable for `count` by `depth` numbers.
 pub(super) unsafe fn pack(source: Source, count: usize, depth: usize, width: usize, panels: &mut [f32]) {
+    if source.across == 1 {
+        // SAFETY: the caller's promise.
+        return unsafe { copy_runs(source, count, depth, width, panels) };
+    }
     for (index, panel) in panels.chunks_exact_mut(depth * width).enumerate() {
         let first = index * width;
         let used = width.min(count - first);
-        // SAFETY: `first + used` is at most `count`.
-        let source = unsafe { Source { data: source.data.add(first * source.across), ..source } };
         if used < width {
             panel.fill(0.0);
         }
-        // SAFETY: the panel has `depth` steps of `width` numbers, of which `used` are written.
+        // SAFETY: `first + used` is at most `count`; the panel has `depth` steps of `width` numbers.
         unsafe {
-            if source.across == 1 {
-                copy_runs(source, used, depth, width, panel.as_mut_ptr());
-            } else {
-                transpose(source, used, depth, width, panel.as_mut_ptr());
+            let source = Source { data: source.data.add(first * source.across), ..source };
+            transpose(source, used, depth, width, panel.as_mut_ptr());
+        }
+    }
+}
+
+/// Panels that are filled at the same time: a cache line of the source is then read once or twice, not once for each.
+const TOGETHER: usize = 4;
+
+unsafe fn copy_runs(source: Source, count: usize, depth: usize, width: usize, panels: &mut [f32]) {
+    let size = depth * width;
+    for (index, group) in panels.chunks_mut(TOGETHER * size).enumerate() {
+        let first = index * TOGETHER * width;
+        let whole = (count - first).min(TOGETHER * width) / width;
+        let rest = (count - first).min(TOGETHER * width) - whole * width;
+        if rest > 0 {
+            group[whole * size..].fill(0.0);
+        }
+        let to = group.as_mut_ptr();
+        for step in 0..depth {
+            // SAFETY: by the contract of `pack`; the group has `whole` panels, and one more where there is a rest.
+            unsafe {
+                let from = source.data.add(first + step * source.along);
+                for panel in 0..whole {
+                    copy_run(from.add(panel * width), to.add(panel * size + step * width), width);
+                }
+                for i in 0..rest {
+                    *to.add(whole * size + step * width + i) = *from.add(whole * width + i);
+                }
             }
         }
     }
 }
 
-#[inline]
-unsafe fn copy_runs(source: Source, used: usize, depth: usize, width: usize, panel: *mut f32) {
-    for step in 0..depth {
-        // SAFETY: by the contract of `pack`.
-        unsafe {
-            let from = source.data.add(step * source.along);
-            let to = panel.add(step * width);
-            match used {
-                // Sizes known to the compiler become some moves.
-                4 => to.copy_from_nonoverlapping(from, 4),
-                6 => to.copy_from_nonoverlapping(from, 6),
-                8 => to.copy_from_nonoverlapping(from, 8),
-                16 => to.copy_from_nonoverlapping(from, 16),
-                32 => to.copy_from_nonoverlapping(from, 32),
-                _ => to.copy_from_nonoverlapping(from, used),
-            }
+/// Sizes known to the compiler become some moves.
+#[inline(always)]
+unsafe fn copy_run(from: *const f32, to: *mut f32, count: usize) {
+    // SAFETY: by the contract of `pack`.
+    unsafe {
+        match count {
+            4 => to.copy_from_nonoverlapping(from, 4),
+            6 => to.copy_from_nonoverlapping(from, 6),
+            8 => to.copy_from_nonoverlapping(from, 8),
+            16 => to.copy_from_nonoverlapping(from, 16),
+            32 => to.copy_from_nonoverlapping(from, 32),
+            _ => to.copy_from_nonoverlapping(from, count),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The inner loops: a block of the product, tile by tile, each tile in registers.
 
+use std::mem::MaybeUninit;
+
 use crate::activation::{Activation, apply_all};
 use crate::isa::for_every_isa;
 use crate::lanes::{Lanes, MAX_WIDTH};
@@ -190,10 +192,12 @@ unsafe fn finish_aside<V: Lanes, const R: usize, const N: usize>(
     [rows, columns]: [usize; 2],
     finish: &Finish,
 ) {
-    let mut tile = [0.0; MAX_ROWS * MAX_COLUMNS];
+    let mut tile = MaybeUninit::<[f32; MAX_ROWS * MAX_COLUMNS]>::uninit();
+    let tile = tile.as_mut_ptr().cast::<f32>();
     let mut column_bias = [0.0; MAX_COLUMNS];
     let width = N * V::WIDTH;
-    // SAFETY: only the first `rows` and `columns` of `c` and of the bias are touched; the buffers are large enough.
+    // SAFETY: only the first `rows` and `columns` of `c` and of the bias are touched; the buffers are large enough,
+    // and the tile is written before it is read.
     unsafe {
         let mut bias = finish.bias;
         if let BiasAt::Columns(from) = bias {
@@ -201,16 +205,17 @@ unsafe fn finish_aside<V: Lanes, const R: usize, const N: usize>(
             bias = BiasAt::Columns(column_bias.as_ptr());
         }
         if finish.beta != 0.0 {
+            tile.write_bytes(0, R * width);
             for i in 0..rows {
                 for j in 0..columns {
-                    *tile.as_mut_ptr().add(i * width + j) = *c.add(i * row_stride + j * column_stride);
+                    *tile.add(i * width + j) = *c.add(i * row_stride + j * column_stride);
                 }
             }
         }
-        finish_tile::<V, R, N>(sums, tile.as_mut_ptr(), width, &Finish { bias, ..*finish });
+        finish_tile::<V, R, N>(sums, tile, width, &Finish { bias, ..*finish });
         for i in 0..rows {
             for j in 0..columns {
-                *c.add(i * row_stride + j * column_stride) = *tile.as_ptr().add(i * width + j);
+                *c.add(i * row_stride + j * column_stride) = *tile.add(i * width + j);
             }
         }
     }
