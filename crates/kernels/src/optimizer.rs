@@ -1,0 +1,9 @@
+//! Optimisers on flat parameters: one slice holds all numbers of a network, another their gradients.
+
+mod adam;
+mod gradient_norm;
+mod momentum;
+
+pub use adam::{Adam, AdamOptions, WeightDecay};
+pub use gradient_norm::{clip_gradient_norm, gradient_norm};
+pub use momentum::Momentum;

@@ -1,0 +1,338 @@
+use crate::aligned::{LEFT_PANELS, RIGHT_PANELS, with_buffer};
+use crate::compute::Compute;
+use crate::isa::{Isa, Set};
+use crate::lanes::Lanes;
+use crate::matrix::{Matrix, MatrixMut};
+use crate::{Activation, lanes};
+
+mod pack;
+#[cfg(test)]
+mod tests;
+mod tile;
+
+use pack::{Source, pack};
+use tile::{BiasAt, Block, Finish, VECTORS, compute_block};
+
+/// A matrix product and what is done to it in the same pass: `C = activation(alpha A B + beta C + bias)`.
+///
+/// Each element is summed from the first to the last of its products, in blocks of 256, whatever the shapes and the
+/// number of threads. Where `beta` is 0, C is not read, so that it may hold anything; where `alpha` is 0, A and B are not.
+///
+/// ```
+/// use opendr_kernels::{Activation, Bias, Compute, Matrix, MatrixMut, Product};
+///
+/// let (x, weights, bias) = ([1.0, -1.0], [2.0, 0.0, 0.0, 3.0], [0.5, 0.5]);
+/// let mut y = [0.0; 2];
+/// Product::new().bias(Bias::Columns(&bias)).activation(Activation::Relu).run(
+///     &Compute::single(),
+///     Matrix::new(&x, 1, 2),
+///     Matrix::new(&weights, 2, 2),
+///     MatrixMut::new(&mut y, 1, 2),
+/// );
+/// assert_eq!(y, [2.5, 0.0]);
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Product<'a> {
+    alpha: f32,
+    beta: f32,
+    bias: Bias<'a>,
+    activation: Activation,
+}
+
+/// What is added to a product.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Bias<'a> {
+    /// Nothing.
+    None,
+    /// One number for each row.
+    Rows(&'a [f32]),
+    /// One number for each column.
+    Columns(&'a [f32]),
+}
+
+/// Steps of the depth that are summed in registers: a panel of B then stays in the first cache.
+const DEPTH_BLOCK: usize = 256;
+/// Columns of B that are packed at a time: they stay in the outer caches.
+const COLUMN_BLOCK: usize = 1024;
+/// Multiplications from which on threads are worth waking.
+const PARALLEL_FROM: usize = 1 << 19;
+
+impl Default for Product<'_> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<'a> Product<'a> {
+    /// `C = A B`.
+    pub const fn new() -> Self {
+        Self { alpha: 1.0, beta: 0.0, bias: Bias::None, activation: Activation::Identity }
+    }
+
+    /// The factor of the product.
+    #[must_use]
+    pub const fn alpha(self, alpha: f32) -> Self {
+        Self { alpha, ..self }
+    }
+
+    /// The factor of what C held before.
+    #[must_use]
+    pub const fn beta(self, beta: f32) -> Self {
+        Self { beta, ..self }
+    }
+
+    /// What is added.
+    #[must_use]
+    pub const fn bias(self, bias: Bias<'a>) -> Self {
+        Self { bias, ..self }
+    }
+
+    /// What is done to the result.
+    #[must_use]
+    pub const fn activation(self, activation: Activation) -> Self {
+        Self { activation, ..self }
+    }
+
+    /// Computes the product.
+    ///
+    /// # Panics
+    /// Where the shapes of A, B, C and the bias do not fit each other.
+    pub fn run(&self, compute: &Compute, a: Matrix<'_>, b: Matrix<'_>, c: MatrixMut<'_>) {
+        let (rows, columns, depth) = (c.shape.rows, c.shape.columns, a.shape.columns);
+        assert_eq!((a.shape.rows, b.shape.rows, b.shape.columns), (rows, depth, columns), "shapes differ");
+        let bias = match self.bias {
+            Bias::None => BiasAt::None,
+            Bias::Rows(bias) => {
+                assert_eq!(bias.len(), rows, "a bias of rows has one number for each row");
+                BiasAt::Rows(bias.as_ptr())
+            }
+            Bias::Columns(bias) => {
+                assert_eq!(bias.len(), columns, "a bias of columns has one number for each column");
+                BiasAt::Columns(bias.as_ptr())
+            }
+        };
+        if rows == 0 || columns == 0 {
+            return;
+        }
+        let finish = Finish { alpha: self.alpha, beta: self.beta, bias, activation: self.activation };
+        let depth = if self.alpha == 0.0 { 0 } else { depth };
+        let job = Job {
+            rows,
+            columns,
+            depth,
+            a: Source { data: a.data.as_ptr(), along: a.shape.column_stride, across: a.shape.row_stride },
+            b: Source { data: b.data.as_ptr(), along: b.shape.row_stride, across: b.shape.column_stride },
+            c: c.data.as_mut_ptr(),
+            c_strides: [c.shape.row_stride, c.shape.column_stride],
+            finish,
+        };
+        let tile = Tile::of(compute.isa());
+        let job = if job.is_better_transposed(tile) { job.transposed() } else { job };
+        job.run(compute, tile);
+    }
+}
+
+/// Rows and columns of a tile.
+#[derive(Clone, Copy)]
+struct Tile {
+    rows: usize,
+    columns: usize,
+}
+
+impl Tile {
+    fn of(isa: Isa) -> Self {
+        fn size<V: Lanes>() -> Tile {
+            Tile { rows: V::ROWS, columns: VECTORS * V::WIDTH }
+        }
+        match isa.set() {
+            Set::Portable => size::<lanes::Portable>(),
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx2 => size::<lanes::Avx2>(),
+            #[cfg(target_arch = "x86_64")]
+            Set::Avx512 => size::<lanes::Avx512>(),
+            #[cfg(target_arch = "aarch64")]
+            Set::Neon => size::<lanes::Neon>(),
+        }
+    }
+}
+
+/// A product whose shapes are known to fit.
+#[derive(Clone, Copy)]
+struct Job {
+    rows: usize,
+    columns: usize,
+    depth: usize,
+    a: Source,
+    b: Source,
+    c: *mut f32,
+    c_strides: [usize; 2],
+    finish: Finish,
+}
+
+// SAFETY: threads only read A, B and the bias, and each writes rows of C of its own.
+unsafe impl Sync for Job {}
+
+impl Job {
+    /// Registers lie along the columns. Where those are few, the rows serve better, if A need not be turned for
+    /// it; so they do where they are few, and B would have to be turned.
+    fn is_better_transposed(&self, tile: Tile) -> bool {
+        let side_by_side = self.c_strides[1] == 1;
+        (!side_by_side && self.c_strides[0] == 1)
+            || (self.columns <= tile.columns / 4 && self.rows >= tile.columns && self.a.across == 1)
+            || (self.rows <= 2 && self.columns > tile.rows && self.b.across != 1)
+    }
+
+    /// The same product as `C' = B' A'`.
+    fn transposed(self) -> Self {
+        let bias = match self.finish.bias {
+            BiasAt::None => BiasAt::None,
+            BiasAt::Rows(bias) => BiasAt::Columns(bias),
+            BiasAt::Columns(bias) => BiasAt::Rows(bias),
+        };
+        let [row_stride, column_stride] = self.c_strides;
+        Self {
+            rows: self.columns,
+            columns: self.rows,
+            a: self.b,
+            b: self.a,
+            c_strides: [column_stride, row_stride],
+            finish: Finish { bias, ..self.finish },
+            ..self
+        }
+    }
+
+    fn run(&self, compute: &Compute, tile: Tile) {
+        for first_column in (0..self.columns).step_by(COLUMN_BLOCK) {
+            let columns = COLUMN_BLOCK.min(self.columns - first_column);
+            let mut first_step = 0;
+            loop {
+                let depth = DEPTH_BLOCK.min(self.depth - first_step);
+                let part = self.part([first_column, columns], [first_step, depth]);
+                part.run_packed(compute, tile);
+                first_step += depth;
+                if first_step >= self.depth {
+                    break;
+                }
+            }
+        }
+    }
+
+    /// Some columns, and some steps of the depth. What C held counts in the first part of the depth only, bias and
+    /// activation in the last.
+    fn part(&self, [first_column, columns]: [usize; 2], [first_step, depth]: [usize; 2]) -> Self {
+        let mut finish = self.finish;
+        // SAFETY: the part lies within the matrices.
+        unsafe {
+            if let BiasAt::Columns(bias) = finish.bias {
+                finish.bias = BiasAt::Columns(bias.add(first_column));
+            }
+            if first_step > 0 {
+                finish.beta = 1.0;
+            }
+            if first_step + depth < self.depth {
+                finish = Finish { bias: BiasAt::None, activation: Activation::Identity, ..finish };
+            }
+            // Without depth the factors are not read, and may be empty.
+            let step = |source: Source, across: usize| Source {
+                data: source.data.wrapping_add(first_step * source.along + across * source.across),
+                ..source
+            };
+            Self {
+                rows: self.rows,
+                columns,
+                depth,
+                a: step(self.a, 0),
+                b: step(self.b, first_column),
+                c: self.c.add(first_column * self.c_strides[1]),
+                c_strides: self.c_strides,
+                finish,
+            }
+        }
+    }
+
+    /// Packs B, unless so few rows read it that it is better read where it lies, and computes.
+    fn run_packed(&self, compute: &Compute, tile: Tile) {
+        let whole = self.columns / tile.columns * tile.columns;
+        let in_place = self.b.across == 1 && self.rows <= 4 * tile.rows;
+        let first_packed = if in_place { whole } else { 0 };
+        let packed = self.columns - first_packed;
+        let panels = packed.div_ceil(tile.columns) * tile.columns * self.depth;
+        with_buffer(&RIGHT_PANELS, panels, |panels| {
+            if first_packed > 0 {
+                let direct = self.part([0, first_packed], [0, self.depth]);
+                direct.run_rows(compute, tile, self.b.data, [self.b.along, tile.columns]);
+            }
+            if packed > 0 {
+                let rest = self.part([first_packed, packed], [0, self.depth]);
+                if self.depth > 0 {
+                    // SAFETY: B has `packed` columns from here on, and `depth` rows.
+                    unsafe { pack(rest.b, packed, self.depth, tile.columns, panels) };
+                }
+                rest.run_rows(compute, tile, panels.as_ptr(), [tile.columns, tile.columns * self.depth]);
+            }
+        });
+    }
+
+    /// All rows in pieces, each on the thread that comes first.
+    fn run_rows(&self, compute: &Compute, tile: Tile, b: *const f32, b_strides: [usize; 2]) {
+        // Every piece reads all of B once: many rows pay for that, few spread better.
+        let piece = tile.rows * if self.rows > 384 { 24 } else { 8 };
+        let right = Right { data: b, strides: b_strides };
+        let work = |index: usize| {
+            let first = index * piece;
+            self.run_piece(compute.isa(), tile, [first, piece.min(self.rows - first)], &right);
+        };
+        let pieces = self.rows.div_ceil(piece);
+        if self.rows.saturating_mul(self.columns).saturating_mul(self.depth) < PARALLEL_FROM {
+            (0..pieces).for_each(work);
+        } else {
+            compute.pool().run(pieces, work);
+        }
+    }
+
+    fn run_piece(&self, isa: Isa, tile: Tile, [first, rows]: [usize; 2], b: &Right) {
+        let a = Source { data: self.a.data.wrapping_add(first * self.a.across), ..self.a };
+        let mut finish = self.finish;
+        // SAFETY: the piece lies within C and within the bias.
+        let c = unsafe {
+            if let BiasAt::Rows(bias) = finish.bias {
+                finish.bias = BiasAt::Rows(bias.add(first));
+            }
+            self.c.add(first * self.c_strides[0])
+        };
+        let block = Block {
+            rows,
+            columns: self.columns,
+            depth: self.depth,
+            a: a.data,
+            a_strides: [a.across, a.along, a.across * tile.rows],
+            b: b.data,
+            b_strides: b.strides,
+            c,
+            c_strides: self.c_strides,
+            finish,
+        };
+        let is_read_often = self.columns > 4 * tile.columns;
+        if !is_read_often || self.depth == 0 {
+            // SAFETY: the block lies within the matrices, and B is readable in whole tiles.
+            return unsafe { compute_block(isa, &block) };
+        }
+        with_buffer(&LEFT_PANELS, rows.div_ceil(tile.rows) * tile.rows * self.depth, |panels| {
+            // SAFETY: A has these rows and `depth` columns; the block then reads the panels instead.
+            unsafe {
+                pack(a, rows, self.depth, tile.rows, panels);
+                let a_strides = [1, tile.rows, tile.rows * self.depth];
+                compute_block(isa, &Block { a: panels.as_ptr(), a_strides, ..block });
+            }
+        });
+    }
+}
+
+/// B as the inner loop reads it.
+struct Right {
+    data: *const f32,
+    strides: [usize; 2],
+}
+
+// SAFETY: threads only read it.
+unsafe impl Sync for Right {}

@@ -1,0 +1,18 @@
+//! Gymnasium's classic control: the same states, rewards and endings as its version 1.4.
+
+mod acrobot;
+pub(crate) mod cart_pole;
+mod dynamics;
+mod mountain_car;
+mod mountain_car_continuous;
+mod pendulum;
+#[cfg(test)]
+mod tests;
+
+pub use acrobot::{Acrobot, AcrobotParams};
+pub use cart_pole::{CartPole, CartPoleParams};
+pub use dynamics::{Classic, Dynamics, Outcome};
+pub(crate) use dynamics::{check_length, not_begun};
+pub use mountain_car::{MountainCar, MountainCarParams};
+pub use mountain_car_continuous::MountainCarContinuous;
+pub use pendulum::{Pendulum, PendulumParams};

@@ -1,0 +1,76 @@
+//! A shape somewhere in the world.
+
+use opendr_engine::{Error, Result};
+
+use super::{Shape, Vector, dot, minus};
+
+/// A shape with position, orientation and label.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Body {
+    shape: Shape,
+    position: Vector,
+    /// Rows are the axes of the body's frame, in the world.
+    body_from_world: [Vector; 3],
+    label: u16,
+}
+
+impl Body {
+    /// A body whose frame is turned by the unit quaternion `[w, x, y, z]`, which is normalised first.
+    ///
+    /// # Errors
+    /// `InvalidInput` when a size is not positive, a number not finite, or the quaternion zero.
+    pub fn new(shape: Shape, position: Vector, rotation: [f32; 4], label: u16) -> Result<Self> {
+        let size = rotation.iter().map(|part| part * part).sum::<f32>().sqrt();
+        let is_finite = position.iter().all(|part| part.is_finite());
+        if !shape.is_valid() || !is_finite || !(1e-6..1e6).contains(&size) {
+            return Err(Error::invalid_input(format!(
+                "{shape:?} at {position:?} turned by {rotation:?}; give positive sizes below 1e6, finite numbers and a rotation that is not 0"
+            )));
+        }
+        let [w, x, y, z] = rotation.map(|part| part / size);
+        let body_from_world = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        Ok(Self { shape, position, body_from_world, label })
+    }
+
+    /// A body whose axes are the world's.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn upright(shape: Shape, position: Vector, label: u16) -> Result<Self> {
+        Self::new(shape, position, [1.0, 0.0, 0.0, 0.0], label)
+    }
+
+    /// What it is.
+    pub fn shape(&self) -> Shape {
+        self.shape
+    }
+
+    /// What a picture of labels shows.
+    pub fn label(&self) -> u16 {
+        self.label
+    }
+
+    /// The distance of a point of the world from the surface; negative inside.
+    pub fn distance(&self, point: Vector) -> f32 {
+        self.shape.distance(self.point_in_body(point))
+    }
+
+    pub(super) fn point_in_body(&self, point: Vector) -> Vector {
+        let from_centre = minus(point, self.position);
+        self.body_from_world.map(|axis| dot(axis, from_centre))
+    }
+
+    pub(super) fn body_from_world(&self) -> &[Vector; 3] {
+        &self.body_from_world
+    }
+
+    /// The outward normal at a point of the world on the surface.
+    pub(super) fn normal(&self, point: Vector) -> Vector {
+        let normal = self.shape.normal(self.point_in_body(point));
+        std::array::from_fn(|axis| (0..3).map(|row| normal[row] * self.body_from_world[row][axis]).sum())
+    }
+}

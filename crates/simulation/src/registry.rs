@@ -1,0 +1,253 @@
+//! Environments by name.
+
+use std::sync::{Arc, LazyLock};
+
+use opendr_engine::environment::Environment;
+use opendr_engine::params::{Field, ParamMap, Params};
+use opendr_engine::{Error, Result};
+
+use crate::classic_control::{
+    Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
+};
+use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
+use crate::wrappers::{Checked, TimeLimit};
+
+/// An environment that the registry can make.
+pub trait Registered: Environment + Sized + 'static {
+    /// Name and version, as in `CartPole-v1`.
+    const ID: &'static str;
+    /// What a user may set.
+    type Params: Params;
+
+    /// The environment with these parameters.
+    ///
+    /// # Errors
+    /// `InvalidParam` when one is out of range.
+    fn new(params: &Self::Params) -> Result<Self>;
+}
+
+type Make = dyn Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync;
+
+/// One environment of a [`Registry`].
+#[derive(Clone)]
+pub struct Registration {
+    id: String,
+    fields: &'static [Field],
+    make: Arc<Make>,
+}
+
+impl Registration {
+    /// An environment of the program. It is made with its time limit and with [`Checked`] around it.
+    pub fn of<E: Registered>() -> Self {
+        Self::new(E::ID, E::Params::FIELDS, |params| checked(E::new(&E::Params::from_map(params)?)?))
+    }
+
+    /// An environment that `make` makes.
+    pub fn new(
+        id: &str,
+        fields: &'static [Field],
+        make: impl Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync + 'static,
+    ) -> Self {
+        Self { id: id.to_owned(), fields, make: Arc::new(make) }
+    }
+
+    /// Name and version.
+    pub fn id(&self) -> &str {
+        &self.id
+    }
+
+    /// What a user may set.
+    pub fn fields(&self) -> &'static [Field] {
+        self.fields
+    }
+
+    /// Makes the environment.
+    ///
+    /// # Errors
+    /// `InvalidParam` for parameters that it has not, or that are out of range.
+    pub fn make(&self, params: &ParamMap) -> Result<Box<dyn Environment>> {
+        (self.make)(params).map_err(|error| error.context(format!("making {}", self.id)))
+    }
+}
+
+/// An environment with the time limit of its spec and with checks.
+fn checked(environment: impl Environment + 'static) -> Result<Box<dyn Environment>> {
+    Ok(match environment.spec().max_episode_steps {
+        Some(limit) => Box::new(Checked::new(TimeLimit::new(environment, limit)?)),
+        None => Box::new(Checked::new(environment)),
+    })
+}
+
+/// Environments by name and version.
+#[derive(Clone)]
+pub struct Registry {
+    entries: Vec<Registration>,
+}
+
+static BUILTIN: LazyLock<Registry> = LazyLock::new(|| Registry {
+    entries: vec![
+        Registration::of::<Acrobot>(),
+        Registration::of::<CartPole>(),
+        Registration::of::<MountainCar>(),
+        Registration::of::<MountainCarContinuous>(),
+        Registration::of::<Pendulum>(),
+    ],
+});
+
+impl Registry {
+    /// The environments of this crate. A clone can be added to.
+    pub fn builtin() -> &'static Self {
+        &BUILTIN
+    }
+
+    /// Adds an environment.
+    ///
+    /// # Errors
+    /// `InvalidParam` when the name does not end in a version as `-v1`, or is taken.
+    pub fn add(&mut self, registration: Registration) -> Result<()> {
+        let id = &registration.id;
+        if version_of(id).is_none() {
+            return Err(Error::invalid_param(format!("{id:?} has no version; call it {id}-v0")));
+        }
+        if self.entries.iter().any(|entry| entry.id == *id) {
+            return Err(Error::invalid_param(format!("{id} is registered already; raise its version")));
+        }
+        self.entries.push(registration);
+        Ok(())
+    }
+
+    /// The names of all.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.entries.iter().map(Registration::id)
+    }
+
+    /// The environment called `id`; without a version, the newest.
+    ///
+    /// # Errors
+    /// `NotFound`, with near names, or the newest version where only the version is wrong.
+    pub fn get(&self, id: &str) -> Result<&Registration> {
+        if let Some(entry) = self.entries.iter().find(|entry| entry.id == id) {
+            return Ok(entry);
+        }
+        match version_of(id) {
+            None => self.newest(id).ok_or_else(|| self.unknown(id, id)),
+            Some((name, _)) => Err(match self.newest(name) {
+                Some(newest) => Error::not_found(format!("no version {id:?}; the newest is {:?}", newest.id)),
+                None => self.unknown(id, name),
+            }),
+        }
+    }
+
+    fn newest(&self, name: &str) -> Option<&Registration> {
+        let versions = self.entries.iter().filter_map(|entry| match version_of(&entry.id) {
+            Some((own, version)) if own == name => Some((version, entry)),
+            _ => None,
+        });
+        versions.max_by_key(|(version, _)| *version).map(|(_, entry)| entry)
+    }
+
+    fn unknown(&self, id: &str, name: &str) -> Error {
+        let distance = |entry: &&Registration| {
+            let own = version_of(&entry.id).map_or(entry.id(), |(own, _)| own);
+            edits(&own.to_lowercase(), &name.to_lowercase())
+        };
+        let mut near: Vec<_> = self.entries.iter().filter(|entry| distance(entry) <= 3).collect();
+        near.sort_by_key(distance);
+        let near = if near.is_empty() { self.entries.iter().collect() } else { near };
+        let names: Vec<_> = near.into_iter().map(Registration::id).collect();
+        Error::not_found(format!("no environment {id:?}; there is {}", names.join(", ")))
+    }
+}
+
+/// Name and version of `name-v1`.
+fn version_of(id: &str) -> Option<(&str, u32)> {
+    let (name, version) = id.rsplit_once("-v")?;
+    Some((name, version.parse().ok()?)).filter(|(name, _)| !name.is_empty())
+}
+
+/// How many letters have to be changed, added or left out (Levenshtein). Names longer than 64 letters are near nothing.
+fn edits(a: &str, b: &str) -> usize {
+    if a.len().max(b.len()) > 64 {
+        return usize::MAX;
+    }
+    let b: Vec<_> = b.chars().collect();
+    let mut row: Vec<_> = (0..=b.len()).collect();
+    for (above, letter) in a.chars().enumerate() {
+        let mut corner = above;
+        row[0] = above + 1;
+        for at in 0..b.len() {
+            let changed = corner + usize::from(letter != b[at]);
+            corner = row[at + 1];
+            row[at + 1] = changed.min(corner + 1).min(row[at] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// Makes an environment of this crate with its defaults: with a time limit, and with checks.
+///
+/// # Errors
+/// `NotFound` for an unknown name.
+pub fn make(id: &str) -> Result<Box<dyn Environment>> {
+    Registry::builtin().get(id)?.make(&ParamMap::new())
+}
+
+/// Makes `options.count` environments that are stepped together, with their defaults.
+///
+/// # Errors
+/// `NotFound` for an unknown name, `InvalidParam` for no environment or too many.
+pub fn make_vec(id: &str, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
+    let registration = Registry::builtin().get(id)?;
+    if registration.id == <CartPole as Registered>::ID {
+        let params = CartPoleParams::default();
+        return Ok(Box::new(CartPoleVector::new(&params, options.count, options.autoreset)?));
+    }
+    let environments = (0..options.checked_count()?).map(|_| registration.make(&ParamMap::new()));
+    let environments = environments.collect::<Result<Vec<_>>>()?;
+    Ok(Box::new(EnvironmentVector::new(environments, options.autoreset, options.threads)?))
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::ErrorKind;
+    use opendr_engine::params::ParamValue;
+
+    use super::*;
+
+    #[test]
+    fn names_are_found_or_near_ones_told() {
+        assert_eq!(make("CartPole-v1").unwrap().spec().max_episode_steps, Some(500));
+        assert_eq!(make("CartPole").unwrap().spec().id, "CartPole-v1");
+        let message = |id: &str| {
+            let error = make(id).err().unwrap();
+            assert_eq!(error.kind(), ErrorKind::NotFound);
+            error.to_string()
+        };
+        assert!(message("CartPole-v7").ends_with("the newest is \"CartPole-v1\""));
+        assert!(message("cartpol-v1").ends_with("there is CartPole-v1"));
+        assert!(message("Walker").contains("Pendulum-v1"));
+        assert!(message(&"x".repeat(1000)).contains("Pendulum-v1"));
+    }
+
+    #[test]
+    fn parameters_are_typed() {
+        let pendulum = Registry::builtin().get("Pendulum-v1").unwrap();
+        assert_eq!(pendulum.fields()[0].name, "g");
+        let with = |value: ParamValue| pendulum.make(&ParamMap::from([("g".to_owned(), value)]));
+        assert!(with(ParamValue::Float(9.81)).is_ok());
+        assert!(with(ParamValue::Float(-1.0)).is_err());
+        assert!(with(ParamValue::Text("heavy".to_owned())).is_err());
+        assert!(pendulum.make(&ParamMap::from([("gg".to_owned(), ParamValue::Int(1))])).is_err());
+    }
+
+    #[test]
+    fn others_can_be_added_once() {
+        let mut registry = Registry::builtin().clone();
+        let mine = |id: &str| Registration::new(id, &[], |_| make("CartPole-v1"));
+        registry.add(mine("mine/CartPole-v2")).unwrap();
+        registry.add(mine("mine/CartPole-v10")).unwrap();
+        assert_eq!(registry.get("mine/CartPole").unwrap().id(), "mine/CartPole-v10");
+        assert!(registry.add(mine("mine/CartPole-v2")).is_err());
+        assert!(registry.add(mine("CartPole")).is_err());
+    }
+}

@@ -1,0 +1,151 @@
+//! Many environments of one kind, stepped together.
+
+mod batch;
+mod cart_pole_vector;
+mod chunk;
+mod environment_vector;
+#[cfg(test)]
+mod tests;
+
+use opendr_engine::environment::{EnvironmentSpec, ResetOptions};
+use opendr_engine::{Error, Result};
+
+pub use batch::Batch;
+pub use cart_pole_vector::CartPoleVector;
+pub use environment_vector::EnvironmentVector;
+
+/// When an environment whose episode ended begins the next one (Gymnasium's `AutoresetMode`).
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Autoreset {
+    /// The step after the end ignores its action: it answers with the first observation and a reward of 0.
+    #[default]
+    NextStep,
+    /// The step that ends an episode answers with the first observation of the next one; the last is in
+    /// [`Batch::final_observations`].
+    SameStep,
+    /// Never: the caller resets, with a mask.
+    Disabled,
+}
+
+/// Where the environments' random numbers begin.
+#[derive(Debug, Clone, Copy, Default)]
+pub enum Seeds<'a> {
+    /// Each goes on with its stream, or begins one by chance.
+    #[default]
+    Chance,
+    /// Environment `i` begins with the seed plus `i`.
+    From(u64),
+    /// One for each environment.
+    Each(&'a [Option<u64>]),
+}
+
+impl Seeds<'_> {
+    fn check(&self, count: usize) -> Result<()> {
+        match self {
+            Self::Each(seeds) if seeds.len() != count => Err(Error::invalid_input(format!(
+                "{} seeds for {count} environments; give one for each",
+                seeds.len()
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    fn at(&self, index: usize) -> Option<u64> {
+        match self {
+            Self::Chance => None,
+            Self::From(seed) => Some(seed.wrapping_add(index as u64)),
+            Self::Each(seeds) => seeds.get(index).copied().flatten(),
+        }
+    }
+}
+
+/// Environments that are stepped together. What they answer does not depend on threads.
+pub trait VecEnvironment: Send {
+    /// What each of them is.
+    fn spec(&self) -> &EnvironmentSpec;
+
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// When episodes begin anew.
+    fn autoreset(&self) -> Autoreset;
+
+    /// Begins an episode in every environment, or where `mask` says so, and writes the first observations.
+    ///
+    /// # Errors
+    /// `InvalidInput` when seeds, mask or batch are of another size, or the mask is nowhere true; else as
+    /// [`reset`](opendr_engine::environment::Environment::reset).
+    fn reset(
+        &mut self,
+        seeds: Seeds<'_>,
+        options: &ResetOptions,
+        mask: Option<&[bool]>,
+        batch: &mut Batch,
+    ) -> Result<()>;
+
+    /// Takes one step in every environment; `actions` lie in a row.
+    ///
+    /// # Errors
+    /// `InvalidInput` when actions or batch are of another size, when an action is none, before the first reset, and
+    /// without autoreset where an episode is over. The message names the environment; the others may have
+    /// taken their step.
+    fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
+}
+
+/// How [`make_vec`](crate::make_vec) makes environments.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct VectorOptions {
+    /// How many environments.
+    pub count: usize,
+    /// When episodes begin anew.
+    pub autoreset: Autoreset,
+    /// How many threads step them; those so light that threads would slow them down ignore it.
+    pub threads: usize,
+}
+
+impl VectorOptions {
+    /// `count` environments on one thread.
+    pub fn new(count: usize) -> Self {
+        Self { count, autoreset: Autoreset::default(), threads: 1 }
+    }
+
+    pub(crate) fn checked_count(&self) -> Result<usize> {
+        check_count(self.count)
+    }
+}
+
+/// A number of environments that memory allows.
+fn check_count(count: usize) -> Result<usize> {
+    const MOST: usize = 1 << 20;
+    if (1..=MOST).contains(&count) {
+        return Ok(count);
+    }
+    Err(Error::invalid_param(format!("{count} environments; give 1 to {MOST}")))
+}
+
+/// Checks sizes of what comes with a reset.
+fn check_reset(seeds: &Seeds<'_>, mask: Option<&[bool]>, count: usize) -> Result<()> {
+    seeds.check(count)?;
+    match mask {
+        Some(mask) if mask.len() != count || !mask.contains(&true) => {
+            let (len, chosen) = (mask.len(), mask.iter().filter(|chosen| **chosen).count());
+            Err(Error::invalid_input(format!(
+                "a mask of {len} with {chosen} chosen for {count} environments; give one for each, at least one true"
+            )))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Checks the number of actions of a step.
+fn check_actions(actions: &[f32], spec: &EnvironmentSpec, count: usize) -> Result<()> {
+    let wanted = spec.action.len() * count;
+    if actions.len() == wanted {
+        return Ok(());
+    }
+    let given = actions.len();
+    Err(Error::invalid_input(format!(
+        "{given} numbers of actions for {count} of {}; give {wanted}, environment after environment",
+        spec.id
+    )))
+}

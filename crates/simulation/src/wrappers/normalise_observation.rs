@@ -1,0 +1,75 @@
+//! Observations of mean 0 and variance 1.
+
+use opendr_engine::data::Image;
+use opendr_engine::environment::{
+    Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
+};
+use opendr_engine::{Error, Result};
+
+use super::RunningMoments;
+
+/// Normalises observations by the mean and variance of all that were seen (Gymnasium's `NormalizeObservation`).
+#[derive(Debug, Clone)]
+pub struct NormaliseObservation<E> {
+    inner: E,
+    spec: EnvironmentSpec,
+    /// What was seen: to be saved with a policy.
+    pub moments: RunningMoments,
+    /// Whether observations still change the moments; not while a policy is evaluated.
+    pub learning: bool,
+}
+
+impl<E: Environment> NormaliseObservation<E> {
+    /// Normalises from nothing seen.
+    ///
+    /// # Errors
+    /// `Unsupported` when observations are no box.
+    pub fn new(inner: E) -> Result<Self> {
+        let mut spec = inner.spec().clone();
+        let Space::Box { shape, .. } = &spec.observation else {
+            let space = &spec.observation;
+            return Err(Error::unsupported(format!("{space} has no mean; flatten it to a box first")));
+        };
+        spec.observation = Space::uniform(f32::NEG_INFINITY, f32::INFINITY, shape)?;
+        Ok(Self { inner, moments: RunningMoments::new(spec.observation.len()), spec, learning: true })
+    }
+
+    fn show(&mut self, observation: &mut [f32]) {
+        if self.learning {
+            self.moments.add(observation.iter().copied().map(f64::from));
+        }
+        self.moments.normalise(observation);
+    }
+}
+
+impl<E: Environment> Environment for NormaliseObservation<E> {
+    fn spec(&self) -> &EnvironmentSpec {
+        &self.spec
+    }
+
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
+        let info = self.inner.reset(seed, options, observation)?;
+        self.show(observation);
+        Ok(info)
+    }
+
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
+        let step = self.inner.step(action, observation)?;
+        self.show(observation);
+        Ok(step)
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.moments.save(snapshot);
+        self.inner.save_state(snapshot)
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.moments.load(state)?;
+        self.inner.load_state(state)
+    }
+
+    fn render(&mut self) -> Result<Option<Image>> {
+        self.inner.render()
+    }
+}

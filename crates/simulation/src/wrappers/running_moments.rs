@@ -1,0 +1,82 @@
+//! Mean and variance of what has been seen so far.
+
+use opendr_engine::Result;
+use opendr_engine::environment::{Snapshot, StateReader};
+
+/// Mean and variance of each of several numbers, sample after sample (Chan, Golub and LeVeque, 1979), as Gymnasium's
+/// `RunningMeanStd`: begins with mean 0, variance 1 and the weight of 1e-4 samples.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunningMoments {
+    mean: Vec<f64>,
+    variance: Vec<f64>,
+    count: f64,
+}
+
+impl RunningMoments {
+    /// Of `size` numbers.
+    pub fn new(size: usize) -> Self {
+        Self { mean: vec![0.0; size], variance: vec![1.0; size], count: 1e-4 }
+    }
+
+    /// Adds one sample.
+    pub fn add(&mut self, sample: impl IntoIterator<Item = f64>) {
+        let total = self.count + 1.0;
+        for ((mean, variance), number) in self.mean.iter_mut().zip(&mut self.variance).zip(sample) {
+            let delta = number - *mean;
+            *mean += delta / total;
+            *variance = (*variance * self.count + delta * delta * self.count / total) / total;
+        }
+        self.count = total;
+    }
+
+    /// Takes in what another has seen: the outcome does not depend on which saw what.
+    pub fn merge(&mut self, other: &Self) {
+        let total = self.count + other.count;
+        let own = self.mean.iter_mut().zip(&mut self.variance);
+        for ((mean, variance), (other_mean, other_variance)) in
+            own.zip(other.mean.iter().zip(&other.variance))
+        {
+            let delta = other_mean - *mean;
+            let both = *variance * self.count + other_variance * other.count;
+            *mean += delta * other.count / total;
+            *variance = (both + delta * delta * self.count * other.count / total) / total;
+        }
+        self.count = total;
+    }
+
+    /// The means.
+    pub fn mean(&self) -> &[f64] {
+        &self.mean
+    }
+
+    /// The variances.
+    pub fn variance(&self) -> &[f64] {
+        &self.variance
+    }
+
+    /// How many samples were added, and 1e-4.
+    pub fn count(&self) -> f64 {
+        self.count
+    }
+
+    /// Brings each number to mean 0 and variance 1.
+    pub fn normalise(&self, numbers: &mut [f32]) {
+        for (number, (mean, variance)) in numbers.iter_mut().zip(self.mean.iter().zip(&self.variance)) {
+            *number = ((f64::from(*number) - mean) / (variance + EPSILON).sqrt()) as f32;
+        }
+    }
+
+    pub(super) fn save(&self, snapshot: &mut Snapshot) {
+        snapshot.extend_numbers(self.mean.iter().chain(&self.variance).copied().chain([self.count]));
+    }
+
+    pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        for number in self.mean.iter_mut().chain(&mut self.variance).chain([&mut self.count]) {
+            *number = state.finite()?;
+        }
+        Ok(())
+    }
+}
+
+/// What keeps a division from zero.
+pub(super) const EPSILON: f64 = 1e-8;
