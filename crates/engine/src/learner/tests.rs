@@ -5,7 +5,7 @@ use crate::dataset::{Dataset, DatasetIterator, Sample};
 use crate::learner::counter::{Counter, CounterInputs, CounterParams, CounterTargets, write_model};
 use crate::learner::{CheckOptions, FitJob, Handle, Learner, Ports, Registry, check_learner};
 use crate::model::{Manifest, ModelWriter};
-use crate::params::{ParamMap, ParamValue};
+use crate::params::{ParamMap, ParamValue, Params};
 use crate::target::{BoundingBox, BoundingBoxList};
 use crate::{Device, ErrorKind, Header, Result, Value};
 
