@@ -64,6 +64,13 @@ def test_eval_gives_pycocotools_numbers(coco128, evaluated):
     assert worst.shape == answers.shape and (worst != answers).any()
 
 
+def test_answers_are_ranked_below_the_threshold_of_the_card(opendr, coco128):
+    card = opendr.run("eval", "single_shot_detector", coco128, "--limit", "3")
+    assert done(card) and "threshold 0.01 instead of 0.3" in card.stderr
+    asked = opendr.run("eval", "single_shot_detector", coco128, "--limit", "3", "--threshold", "0.5")
+    assert done(asked) and "instead of" not in asked.stderr
+
+
 def test_broken_off_evaluation_goes_on(opendr, coco128, evaluated, tmp_path):
     environment = {**opendr.environment, "OPENDR_THREADS": "1"}
     command = [opendr.binary, "eval", "centernet", str(coco128), "--out", str(tmp_path)]

@@ -21,13 +21,13 @@ use crate::{Objective, TrainingParams, fit_network};
 /// `InvalidInput` when the format has none such, else what kept it from being read.
 pub fn open_for_training<'a, L: Learner>(
     dataset: DatasetRef<'a>,
-    params: &TrainingParams,
+    job: &FitJob<'_>,
 ) -> Result<Box<dyn DatasetIterator + 'a>> {
     match dataset {
         DatasetRef::Iterator(dataset) => Ok(Box::new(dataset)),
         DatasetRef::External(external) => {
             let target = L::Target::OUTPUTS.first().map(|output| output.value_type);
-            let problems = if params.skip_unreadable { Problems::skipping() } else { Problems::strict() };
+            let problems = if job.skip_broken { Problems::skipping() } else { Problems::strict() };
             opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
         }
     }

@@ -77,8 +77,6 @@ pub struct TrainingParams {
     /// Threads that read and augment samples.
     #[param(default = 2, range = 0..=1024)]
     pub num_workers: usize,
-    /// Whether samples that cannot be read are left out and listed, instead of ending the training.
-    pub skip_unreadable: bool,
     /// What first weights, order, augmentation and dropout follow from.
     #[param(default = 0)]
     pub seed: u64,

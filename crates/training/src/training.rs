@@ -139,7 +139,7 @@ impl<'a, O: Objective> Training<'a, O> {
         let device = training_device(job.device)?.autodiff();
         let checkpoints = Checkpoints::new(&job.output.join(CHECKPOINTS), params.checkpoints_kept)?;
         let setting = Setting { samples: dataset.len(), params: params.to_map() };
-        let batches = Self::options(params, dataset).1 as u64;
+        let batches = Self::options(params, dataset, job).1 as u64;
         let per_epoch = batches.div_ceil(params.accumulate as u64);
         let all = per_epoch * params.epochs as u64;
         let steps = if params.max_steps == 0 { all } else { all.min(params.max_steps) };
@@ -173,7 +173,11 @@ impl<'a, O: Objective> Training<'a, O> {
     }
 
     /// How the data set is gone through, and how many batches an epoch has.
-    fn options(params: &TrainingParams, dataset: &dyn DatasetIterator) -> (LoaderOptions, usize) {
+    fn options(
+        params: &TrainingParams,
+        dataset: &dyn DatasetIterator,
+        job: &FitJob<'_>,
+    ) -> (LoaderOptions, usize) {
         let batch_size = params.batch_size.min(dataset.len());
         let options = LoaderOptions {
             batch_size,
@@ -181,10 +185,14 @@ impl<'a, O: Objective> Training<'a, O> {
             seed: params.seed,
             // A last batch of one or two would spoil the statistics of batch normalisation.
             drop_last: true,
-            skip_broken: params.skip_unreadable,
+            skip_broken: job.skip_broken,
             ..LoaderOptions::default()
         };
         (options, dataset.len() / batch_size)
+    }
+
+    fn loader_options(&self) -> LoaderOptions {
+        Self::options(self.params, self.dataset, self.job).0
     }
 
     /// Goes on from the last checkpoint, where the job says so and there is one.
@@ -216,7 +224,7 @@ impl<'a, O: Objective> Training<'a, O> {
     }
 
     fn run(&mut self, mut validate: Option<Validate<'_>>) -> Result<()> {
-        let options = Self::options(self.params, self.dataset).0;
+        let options = self.loader_options();
         let loader = self.loader(options)?;
         check_memory(loader.options().batch_size, || self.try_step())?;
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
@@ -247,7 +255,7 @@ impl<'a, O: Objective> Training<'a, O> {
     /// A few samples forwards and backwards, without a trace: on a copy of the network.
     fn try_step(&self) -> Result<()> {
         let options =
-            LoaderOptions { batch_size: TRIED, threads: 0, ..Self::options(self.params, self.dataset).0 };
+            LoaderOptions { batch_size: TRIED, threads: 0, ..self.loader_options() };
         let loader = self.loader(options)?;
         let Some(network) = &self.network else {
             return Err(Error::internal("a training without a network"));

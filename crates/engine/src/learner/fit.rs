@@ -19,6 +19,8 @@ pub struct FitJob<'a> {
     pub logging_path: Option<&'a Path>,
     /// Where to train.
     pub device: Device,
+    /// Whether samples that cannot be read are left out and told of, instead of ending the training.
+    pub skip_broken: bool,
     /// To whom to report; it also says when the user wants to stop.
     pub progress: &'a dyn Progress,
 }
@@ -26,7 +28,7 @@ pub struct FitJob<'a> {
 impl<'a> FitJob<'a> {
     /// A silent job on the best device that writes to `output`.
     pub fn new(output: &'a Path) -> Self {
-        Self { output, resume: false, logging_path: None, device: Device::Auto, progress: &Silent }
+        Self { output, resume: false, logging_path: None, device: Device::Auto, skip_broken: false, progress: &Silent }
     }
 
     /// Where the trained container is written.

@@ -78,6 +78,7 @@ pub fn fit(
         resume: options.resume,
         logging_path: options.logging_path.as_deref(),
         device: learner.device(),
+        skip_broken: options.skip_broken,
         progress,
     };
     let statistics = match progress.stopped() {

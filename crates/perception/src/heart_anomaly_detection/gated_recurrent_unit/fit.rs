@@ -44,7 +44,7 @@ impl Fit for GatedRecurrentUnit {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let training = &fit_params.training;
-        let dataset = open_for_training::<Self>(dataset, training)?;
+        let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.n_class, "n_class")?;
         let [time, features] = shape_of(&*dataset)?;
         must_be("in_channels", params.in_channels, features)?;

@@ -51,7 +51,7 @@ impl Fit for ImageClassifier {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let training = &fit_params.training;
-        let dataset = open_for_training::<Self>(dataset, training)?;
+        let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, None, "classes")?;
         let device = begin(job, training)?;
         let network = Network::new(classes.len(), fit_params.width, fit_params.dropout, &device);

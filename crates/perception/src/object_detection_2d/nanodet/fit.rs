@@ -62,7 +62,7 @@ impl Fit for Nanodet {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let NanodetFitParams { freeze, augment, training } = fit_params;
-        let dataset = open_for_training::<Self>(dataset, training)?;
+        let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_of(&*dataset, base)?;
         let device = begin(job, training)?;
         let network = match base {

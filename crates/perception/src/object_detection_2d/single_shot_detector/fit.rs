@@ -110,7 +110,7 @@ impl Fit for SingleShotDetector {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let training = &fit_params.training;
-        let dataset = open_for_training::<Self>(dataset, training)?;
+        let dataset = open_for_training::<Self>(dataset, job)?;
         let mut objective = fit_params.objective(base, &*dataset)?;
         let network = fit_params.network(base, &objective, job)?;
         if fit_params.freeze >= BACKBONE_LAYERS && is_on_processor(job)? {

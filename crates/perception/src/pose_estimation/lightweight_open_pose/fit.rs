@@ -90,7 +90,7 @@ impl Fit for LightweightOpenPose {
             augment: fit_params.augment,
             frozen: (fit_params.freeze && is_on_processor(job)?).then(backbone).transpose()?,
         };
-        let dataset = open_for_training::<Self>(dataset, &fit_params.training)?;
+        let dataset = open_for_training::<Self>(dataset, job)?;
         fit_learner::<Self, _>(&objective, network, params, &fit_params.training, &*dataset, val_dataset, job)
     }
 }

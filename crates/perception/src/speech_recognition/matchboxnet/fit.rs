@@ -40,7 +40,7 @@ impl Fit for MatchboxNet {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let training = &fit_params.training;
-        let dataset = open_for_training::<Self>(dataset, training)?;
+        let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.output_classes_n, "output_classes_n")?;
         let sizes = NetworkSizes {
             blocks: params.number_of_blocks,
