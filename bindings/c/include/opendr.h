@@ -1099,6 +1099,44 @@ static inline opendr_status opendr_infer_posenet(const opendr_learner *learner,
 }
 
 /*
+ * LightweightOpenPoseLearner: Lightweight OpenPose finds 18 joints of any number of persons and follows them; it trains.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped. The score is the mean of those of the 18 joints; missing ones count as 0.
+ *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
+ *   base_height (an int 64..=2048 px, may change while it runs, default 256): Height of the network's input; the width follows from the picture. Larger finds smaller persons.
+ *   upsample_ratio (an int 1..=8, may change while it runs, default 4): Steps between the cells of the heat maps in which joints are looked for.
+ *   track (a bool, may change while it runs, default true): Whether persons keep their identity from frame to frame.
+ *   smooth (a bool, may change while it runs, default true): Whether joints are smoothed over frames; needs `track`.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_lightweight_open_pose(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("lightweight_open_pose", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_lightweight_open_pose(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * ImageClassifierLearner: A small network that learns the classes of a user's own pictures in minutes.
  *
  * Parameters:

@@ -7,9 +7,11 @@ from typing import Any, Literal, NamedTuple, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw as draw
 from opendr._drawing import get_bbox as get_bbox
-from opendr._native_learner import NativeLearner
+from opendr._native_learner import NativeLearner, PathLike
 from opendr.engine.data import Image
 from opendr.engine.target import PoseList
+from opendr.engine.datasets import Dataset
+from opendr.engine.learners import Learner
 
 class MovenetLearner(NativeLearner):
     """MoveNet finds 18 joints of one person (lightning) or of up to six (multipose).
@@ -76,3 +78,106 @@ class PosenetLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ...) -> list[PoseList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., peak_threshold: float = ..., nms_radius: float = ..., max_detections: int = ...) -> Iterator[PoseList]: ...
+
+class LightweightOpenPoseLearner(NativeLearner):
+    """Lightweight OpenPose finds 18 joints of any number of persons and follows them; it trains.
+
+    Task: pose_estimation. ``infer`` takes:
+
+        image: Image.
+
+    and gives: PoseList.
+
+    Args:
+        threshold: Persons below this score are dropped. The score is the mean of those of the 18 joints; missing
+            ones count as 0. (default 0.1; 0 to 1; may change while running, also for one call of infer)
+        keypoint_threshold: Joints below this score are missing. (default 0.1; 0.01 to 1; may change while
+            running, also for one call of infer)
+        base_height: Height of the network's input; the width follows from the picture. Larger finds smaller
+            persons. (default 256; 64 to 2048 px; may change while running, also for one call of infer)
+        upsample_ratio: Steps between the cells of the heat maps in which joints are looked for. (default 4; 1 to
+            8; may change while running, also for one call of infer)
+        track: Whether persons keep their identity from frame to frame. (default True; may change while running,
+            also for one call of infer)
+        smooth: Whether joints are smoothed over frames; needs `track`. (default True; may change while running,
+            also for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        epochs: How often the data set is gone through. (default 280; 1 to 1e+06; in OpenDR iters)
+        max_steps: Optimiser steps after which training ends, whatever the number of epochs; 0 for no limit.
+            (default 0; 0 to 1e+09)
+        batch_size: Samples a batch. (default 80; 1 to 65536)
+        accumulate: Batches whose gradients are added up for one step of the optimiser. (default 1; 1 to 4096; in
+            OpenDR batches_per_iter)
+        lr: Learning rate at its highest. (default 4e-05; 0 to 100)
+        optimizer: What turns gradients into steps. (default 'adam'; one of 'adamw', 'adam', 'sgd', 'rmsprop')
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0005; 0 to 10)
+        lr_schedule: How the learning rate goes on after the warm-up. (default 'constant'; one of 'constant',
+            'step', 'cosine', 'linear')
+        warmup_steps: Steps over which the learning rate rises from `warmup_ratio` of itself. (default 0; 0 to
+            1e+08)
+        warmup_ratio: What share of the learning rate the warm-up begins with. (default 0.1; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 0.0; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default [])
+        lr_gamma: What `step` multiplies the learning rate with. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Gradients whose norm over all weights is above this are scaled down to it; 0 for no limit.
+            (default 0.0; 0 to 1e+09)
+        ema: Share of itself that the moving average of the weights keeps each step, e.g. 0.999; it is what is
+            validated and saved. 0 for no average. (default 0.0; 0 to 0.999999)
+        early_stop: Validations without a better metric after which training ends; 0 for never. (default 0; 0 to
+            100000)
+        val_after: Epochs between validations. (default 1; 1 to 1e+06)
+        checkpoint_after_iter: Steps between checkpoints; 0 for none but those by the clock. (default 5000; 0 to
+            1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for none by the clock. (default 10.0; 0 to 10000 min)
+        checkpoints_kept: Checkpoints that are kept beside the best. (default 2; 1 to 1000)
+        log_after: Steps between lines of the log. (default 100; 1 to 1e+06)
+        num_workers: Threads that read and augment samples. (default 2; 0 to 1024)
+        seed: What first weights, order, augmentation and dropout follow from. (default 0)
+        backbone: Where the backbone begins: `mobilenet`, with random weights; else a container or file of weights
+            whose first layers are a MobileNetV1 of this width, such as PoseNet's (width 0.75, 2 extra blocks).
+            (default 'mobilenet')
+        freeze: Whether the backbone keeps its weights. (default False)
+        width: Factor on the channels of the backbone. (default 1.0; 0.1 to 2; in OpenDR mobilenetv2_width)
+        extra_blocks: Blocks of the backbone after those of the paper. (default 0; 0 to 8)
+        channels: Channels of the stages; fewer make a smaller network. (default 128; 4 to 1024)
+        separable: Whether the convolutions of the stages are separable: a seventh of their weights. (default
+            False)
+        num_refinement_stages: Stages that refine the maps of the first. (default 2; 0 to 8)
+        crop_size: Side of the pictures that are trained on; a multiple of 8. (default 368; 32 to 2048 px)
+        augment: Whether pictures are cut around persons, turned, scaled, mirrored and recoloured at random.
+            (default True)
+
+    Arguments of OpenDR that are taken and have no effect:
+        mobilenet_use_stride: no effect: the maps lie at every 8th pixel.
+        shufflenet_groups: no effect: the backbone is MobileNet.
+        experiment_name: no effect: the folder of a training says it.
+        weights_only: no effect: `resume` of `fit` says it.
+        output_name: no effect: `eval` says where answers are written.
+        multiscale: no effect: a larger `base_height` finds smaller persons.
+        scales: no effect: a larger `base_height` finds smaller persons.
+        visualize: no effect: `draw` shows poses.
+        img_mean: no effect: the network says what it takes.
+        img_scale: no effect: the network says what it takes.
+        pad_value: no effect: the network says what it takes.
+        half_precision: no effect: the runtime chooses the precision.
+    """
+
+    threshold: float
+    keypoint_threshold: float
+    base_height: int
+    upsample_ratio: int
+    track: bool
+    smooth: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., freeze: bool = ..., width: float = ..., mobilenetv2_width: float = ..., extra_blocks: int = ..., channels: int = ..., separable: bool = ..., num_refinement_stages: int = ..., crop_size: int = ..., augment: bool = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> PoseList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> list[PoseList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> Iterator[PoseList]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., backbone: str = ..., freeze: bool = ..., width: float = ..., mobilenetv2_width: float = ..., extra_blocks: int = ..., channels: int = ..., separable: bool = ..., num_refinement_stages: int = ..., crop_size: int = ..., augment: bool = ...) -> dict[str, Any]: ...  # type: ignore[override]
