@@ -30,7 +30,6 @@ pub fn halve_weights(graph: &mut GraphProto) -> usize {
         let name = format!("{}/half", tensor.name);
         casts.push(NodeProto {
             op_type: "Cast".to_owned(),
-            name: format!("{}/widened", tensor.name),
             input: vec![name.clone()],
             output: vec![std::mem::replace(&mut tensor.name, name)],
             attribute: Operator::new("Cast").int("to", DataType::Float as i64).attributes().to_vec(),
