@@ -1,5 +1,7 @@
 //! Random numbers that are the same on every machine.
 
+use crate::{Error, Result};
+
 /// A stream of random numbers: xoshiro256++ (Blackman and Vigna, Scrambled linear pseudorandom number generators, 2021).
 ///
 /// Only operations that IEEE 754 rounds exactly are used, so a stream is the same, bit for bit, on every machine and
@@ -37,6 +39,22 @@ impl Random {
                 mixed(hash)
             }),
         }
+    }
+
+    /// The stream that goes on from a state.
+    ///
+    /// # Errors
+    /// `Format` for a state of zeros, which no stream reaches.
+    pub fn from_state(state: [u64; 4]) -> Result<Self> {
+        match state {
+            [0, 0, 0, 0] => Err(Error::format("random numbers cannot go on from a state of zeros")),
+            state => Ok(Self { state }),
+        }
+    }
+
+    /// Where the stream is: what to keep in a checkpoint.
+    pub fn state(&self) -> [u64; 4] {
+        self.state
     }
 
     /// 64 random bits.
@@ -137,6 +155,15 @@ mod tests {
         let mut random = Random { state: [1, 2, 3, 4] };
         let wanted = [41_943_041, 58_720_359, 3_588_806_011_781_223, 3_591_011_842_654_386];
         assert_eq!([(); 4].map(|()| random.bits()), wanted);
+    }
+
+    #[test]
+    fn goes_on_from_a_state() {
+        let mut random = Random::new(5);
+        random.bits();
+        let mut same = Random::from_state(random.state()).unwrap();
+        assert_eq!(random.bits(), same.bits());
+        assert!(Random::from_state([0; 4]).is_err());
     }
 
     #[test]

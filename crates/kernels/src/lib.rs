@@ -23,6 +23,7 @@ mod column_sums;
 mod compute;
 mod elementary;
 mod gaussian;
+mod initialise;
 mod isa;
 mod lanes;
 mod layer;
@@ -38,11 +39,14 @@ pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
+pub use initialise::Initialisation;
 pub use isa::Isa;
 pub use layer::{Conv2d, Dense, Gru, GruTape, LayerNorm};
 pub use matrix::{Matrix, MatrixMut};
 pub use network::{Layer, Network, Tape};
-pub use optimizer::{Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm};
+pub use optimizer::{
+    Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, move_towards,
+};
 pub use pool::WorkerPool;
 pub use product::{Bias, Product};
 pub use softmax::{categorical_backward, cross_entropy, entropy, log_softmax, log_softmax_backward};

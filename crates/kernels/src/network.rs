@@ -111,6 +111,13 @@ impl Layer {
     }
 }
 
+impl Tape {
+    /// What the last [`Network::forward`] gave; empty before one.
+    pub fn output(&self) -> &[f32] {
+        self.values.last().map_or(&[], |values| values)
+    }
+}
+
 impl Network {
     /// A network of these layers.
     ///

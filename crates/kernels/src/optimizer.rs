@@ -3,7 +3,9 @@
 mod adam;
 mod gradient_norm;
 mod momentum;
+mod polyak;
 
 pub use adam::{Adam, AdamOptions, WeightDecay};
 pub use gradient_norm::{clip_gradient_norm, gradient_norm};
 pub use momentum::Momentum;
+pub use polyak::move_towards;

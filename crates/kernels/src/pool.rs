@@ -119,6 +119,18 @@ impl WorkerPool {
         }
     }
 
+    /// Calls both, side by side where there are threads, and returns when both are done.
+    ///
+    /// # Panics
+    /// As [`WorkerPool::run`].
+    pub fn join(&self, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
+        let (first, second) = (Mutex::new(Some(first)), Mutex::new(Some(second)));
+        self.run(2, |piece| match piece {
+            0 => lock(&first).take().map_or((), |first| first()),
+            _ => lock(&second).take().map_or((), |second| second()),
+        });
+    }
+
     /// Cuts `data` into pieces of `length`, the last one shorter, and calls `piece` with the number and the content of each.
     ///
     /// # Panics

@@ -63,6 +63,31 @@ impl Conv2d {
         self.outputs * self.patches.columns()
     }
 
+    /// Channels, height and width of what comes in.
+    pub fn input_shape(&self) -> [usize; 3] {
+        [self.patches.channels, self.patches.size[0], self.patches.size[1]]
+    }
+
+    /// Height and width of the kernels.
+    pub fn kernel(&self) -> [usize; 2] {
+        self.patches.kernel
+    }
+
+    /// Steps of the kernels, downwards and to the right.
+    pub fn stride(&self) -> [usize; 2] {
+        self.patches.stride
+    }
+
+    /// Zeros around, above and below, and on both sides.
+    pub fn padding(&self) -> [usize; 2] {
+        self.patches.padding
+    }
+
+    /// What is done to every output.
+    pub fn activation(&self) -> Activation {
+        self.activation
+    }
+
     /// Channels, height and width of what goes out.
     pub fn output_shape(&self) -> [usize; 3] {
         [self.outputs, self.patches.places[0], self.patches.places[1]]

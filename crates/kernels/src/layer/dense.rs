@@ -34,6 +34,11 @@ impl Dense {
         self.outputs
     }
 
+    /// What is done to every output.
+    pub fn activation(&self) -> Activation {
+        self.activation
+    }
+
     /// Numbers of W and b.
     pub fn parameters(&self) -> usize {
         (self.inputs + 1) * self.outputs

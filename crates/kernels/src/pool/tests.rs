@@ -86,3 +86,12 @@ fn dropping_joins() {
     drop(pool);
     assert!(shared.upgrade().is_none(), "a thread still holds the pool");
 }
+
+#[test]
+fn both_are_done() {
+    for threads in 1..3 {
+        let (mut a, mut b) = (0, 0);
+        WorkerPool::new(threads).join(|| a = 1, || b = 2);
+        assert_eq!((a, b), (1, 2));
+    }
+}

@@ -7,7 +7,7 @@ mod environment_vector;
 #[cfg(test)]
 mod tests;
 
-use opendr_engine::environment::{EnvironmentSpec, ResetOptions};
+use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Result};
 
 pub use batch::Batch;
@@ -90,6 +90,53 @@ pub trait VecEnvironment: Send {
     /// without autoreset where an episode is over. The message names the environment; the others may have
     /// taken their step.
     fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
+
+    /// Writes everything that decides the future of all, as
+    /// [`save_state`](opendr_engine::environment::Environment::save_state) of each; threads play no part.
+    ///
+    /// # Errors
+    /// `Unsupported` where a world cannot be written, `InvalidInput` before the first reset.
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        let _ = snapshot;
+        Err(Error::unsupported(format!("many {} keep no snapshots", self.spec().id)))
+    }
+
+    /// Takes back what [`Self::save_state`] wrote of as many environments.
+    ///
+    /// # Errors
+    /// `Unsupported` where a world cannot be written, `Format` when the snapshot is of something else.
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        let _ = state;
+        Err(Error::unsupported(format!("many {} keep no snapshots", self.spec().id)))
+    }
+
+    /// The states of now, to come back to.
+    ///
+    /// # Errors
+    /// As [`Self::save_state`].
+    fn snapshot(&self) -> Result<Snapshot> {
+        let mut snapshot = Snapshot::new(&self.spec().id);
+        snapshot.push(self.count() as u64);
+        self.save_state(&mut snapshot)?;
+        Ok(snapshot)
+    }
+
+    /// Goes back to states: the same actions then have the same outcomes, bit for bit.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a snapshot of other or of more or fewer environments, else as [`Self::load_state`]. After an
+    /// error all must be reset.
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let mut state = snapshot.read(&self.spec().id)?;
+        let (count, own) = (state.word()?, self.count());
+        if count != own as u64 {
+            return Err(Error::invalid_input(format!(
+                "a snapshot of {count} environments cannot be restored in {own}; make {count}"
+            )));
+        }
+        self.load_state(&mut state)?;
+        state.finish()
+    }
 }
 
 /// How [`make_vec`](crate::make_vec) makes environments.

@@ -148,3 +148,38 @@ fn a_panic_of_a_thread_is_an_error() {
     assert!(vector.step(&[0.0; 2], &mut batch).unwrap_err().to_string().contains("panicked"));
     assert!(vector.step(&[0.0; 2], &mut batch).is_err());
 }
+
+/// Steps on with fixed actions and gives what was answered.
+fn played_on(vector: &mut dyn VecEnvironment, actions: &[f32]) -> Vec<Batch> {
+    let mut batch = Batch::new(vector.spec(), vector.count());
+    let mut step = || {
+        vector.step(actions, &mut batch).unwrap();
+        batch.clone()
+    };
+    (0..60).map(|_| step()).collect()
+}
+
+#[test]
+fn states_come_back_in_any_number_of_threads() {
+    for mode in [Autoreset::NextStep, Autoreset::SameStep] {
+        let carts = || CartPoleVector::new(&CartPoleParams::default(), 5, mode).unwrap();
+        let pairs: [[Box<dyn VecEnvironment>; 2]; 2] = [
+            [Box::new(carts()), Box::new(carts())],
+            [Box::new(several("CartPole-v1", 5, mode, 1)), Box::new(several("CartPole-v1", 5, mode, 3))],
+        ];
+        for [mut vector, mut other] in pairs {
+            assert!(vector.snapshot().is_err());
+            played(&mut *vector, 37);
+            let snapshot = vector.snapshot().unwrap();
+            let wanted = played_on(&mut *vector, &[1.0, 0.0, 1.0, 1.0, 0.0]);
+            other.restore(&snapshot).unwrap();
+            let got = played_on(&mut *other, &[1.0, 0.0, 1.0, 1.0, 0.0]);
+            // What stands in a batch where no episode ended is left over from before.
+            for (got, wanted) in got.iter().zip(&wanted) {
+                assert_eq!(got.observations, wanted.observations, "{mode:?}");
+                assert_eq!(got.terminated, wanted.terminated, "{mode:?}");
+            }
+            assert!(several("CartPole-v1", 4, mode, 1).restore(&snapshot).is_err());
+        }
+    }
+}

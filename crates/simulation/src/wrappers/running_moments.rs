@@ -1,7 +1,7 @@
 //! Mean and variance of what has been seen so far.
 
-use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, StateReader};
+use opendr_engine::{Error, Result};
 
 /// Mean and variance of each of several numbers, sample after sample (Chan, Golub and LeVeque, 1979), as Gymnasium's
 /// `RunningMeanStd`: begins with mean 0, variance 1 and the weight of 1e-4 samples.
@@ -16,6 +16,24 @@ impl RunningMoments {
     /// Of `size` numbers.
     pub fn new(size: usize) -> Self {
         Self { mean: vec![0.0; size], variance: vec![1.0; size], count: 1e-4 }
+    }
+
+    /// What [`Self::mean`], [`Self::variance`] and [`Self::count`] told.
+    ///
+    /// # Errors
+    /// `Format` when they differ in length, one is not finite, or a variance or the count is negative.
+    pub fn from_parts(mean: Vec<f64>, variance: Vec<f64>, count: f64) -> Result<Self> {
+        let is_sound = |number: &f64| number.is_finite() && *number >= 0.0;
+        let sound =
+            mean.iter().all(|mean| mean.is_finite()) && variance.iter().all(is_sound) && is_sound(&count);
+        if mean.len() == variance.len() && sound {
+            return Ok(Self { mean, variance, count });
+        }
+        Err(Error::format(format!(
+            "{} means and {} variances of {count} samples: there is one of each, all finite, no variance negative",
+            mean.len(),
+            variance.len()
+        )))
     }
 
     /// Adds one sample.
@@ -66,11 +84,16 @@ impl RunningMoments {
         }
     }
 
-    pub(super) fn save(&self, snapshot: &mut Snapshot) {
+    /// Writes all into a snapshot.
+    pub fn save(&self, snapshot: &mut Snapshot) {
         snapshot.extend_numbers(self.mean.iter().chain(&self.variance).copied().chain([self.count]));
     }
 
-    pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+    /// Takes back what [`Self::save`] wrote, of as many numbers.
+    ///
+    /// # Errors
+    /// `Format` at the end of the snapshot and for what is not finite.
+    pub fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         for number in self.mean.iter_mut().chain(&mut self.variance).chain([&mut self.count]) {
             *number = state.finite()?;
         }

@@ -1,0 +1,37 @@
+//! PPO learns to balance a pole: `cargo run --release -p opendr-rl --example ppo_cart_pole [SEED]`.
+
+use std::ops::ControlFlow;
+
+use opendr_engine::Result;
+use opendr_rl::{Algorithm as _, Ppo, PpoConfig};
+use opendr_simulation::make_vec;
+use opendr_simulation::vector::{Autoreset, VectorOptions};
+
+fn main() -> Result<()> {
+    let seed = std::env::args().nth(1).and_then(|seed| seed.parse().ok()).unwrap_or(0);
+    let Some(mut preset) = PpoConfig::preset("CartPole-v1") else { return Ok(()) };
+    preset.config.seed = seed;
+    let options = VectorOptions { autoreset: Autoreset::SameStep, ..VectorOptions::new(preset.environments) };
+    let mut carts = make_vec("CartPole-v1", options)?;
+    let mut ppo = Ppo::new(&preset.config, carts.spec())?;
+    let (begun, mut solved) = (std::time::Instant::now(), None);
+    let report = ppo.train(&mut *carts, preset.timesteps, &mut |event| {
+        let mean = event.report.mean_return.unwrap_or(0.0);
+        if solved.is_none() && event.report.episodes >= 100 && mean >= 475.0 {
+            solved = Some(event.report.timesteps);
+        }
+        Ok(ControlFlow::Continue(()))
+    })?;
+    let (steps, mean) = (report.timesteps, report.mean_return.unwrap_or(0.0));
+    let seconds = cpu_seconds().unwrap_or_else(|| begun.elapsed().as_secs_f64());
+    let rate = steps as f64 / seconds;
+    println!("seed {seed}: {steps} steps in {seconds:.2} CPU-seconds, {rate:.0} a second");
+    println!("mean return of the last 100 episodes {mean:.1}; 475 first at step {solved:?}");
+    Ok(())
+}
+
+/// Seconds that this thread has spent on a processor, where the system tells.
+fn cpu_seconds() -> Option<f64> {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    text.split(' ').next()?.parse::<f64>().ok().map(|nanoseconds| nanoseconds * 1e-9)
+}

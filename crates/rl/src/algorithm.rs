@@ -1,0 +1,144 @@
+//! What all learners of this crate have in common.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use opendr_engine::environment::{Info, Snapshot};
+use opendr_engine::{Error, Result};
+use opendr_simulation::vector::VecEnvironment;
+
+use crate::episodes::Episodes;
+use crate::policy::Policy;
+use crate::saved_state::SavedState;
+
+/// How a training goes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Report {
+    /// Steps of all environments together.
+    pub timesteps: u64,
+    /// Episodes that ended.
+    pub episodes: u64,
+    /// The mean return of the last hundred.
+    pub mean_return: Option<f64>,
+    /// Their mean length.
+    pub mean_length: Option<f64>,
+    /// The share of successes among those whose infos tell.
+    pub success_rate: Option<f64>,
+    /// Losses and the like of the last update, by the names of Stable-Baselines3; empty before one.
+    pub metrics: Info,
+}
+
+/// What an observer of a training sees after each iteration.
+pub struct Event<'a, A> {
+    /// The learner, e.g. to evaluate its policy.
+    pub learner: &'a A,
+    /// Its environments, e.g. to save a checkpoint.
+    pub environments: &'a dyn VecEnvironment,
+    /// How the training goes.
+    pub report: &'a Report,
+}
+
+/// A learner: it acts in environments and changes its policy.
+///
+/// A training is a loop of [`iterate`](Self::iterate), by [`train`](Self::train) or by the caller; between two iterations it can be
+/// saved, and goes on later, elsewhere, with any number of threads, with the same bits.
+pub trait Algorithm {
+    /// Its name: `ppo`.
+    fn name(&self) -> &'static str;
+
+    /// What it has learnt.
+    fn policy(&self) -> &Policy;
+
+    /// How the training goes.
+    fn report(&self) -> &Report;
+
+    /// Acts for some steps and learns from them. `total_timesteps` is the length of the whole training, on which
+    /// schedules depend.
+    ///
+    /// # Errors
+    /// `InvalidInput` for environments of another kind, or not with [`Autoreset::SameStep`](opendr_simulation::vector::Autoreset), and
+    /// for observations and rewards that are not finite; `Internal` when learning diverges. The message has the step.
+    fn iterate(&mut self, environments: &mut dyn VecEnvironment, total_timesteps: u64) -> Result<&Report>;
+
+    /// Everything that decides the future.
+    ///
+    /// # Errors
+    /// `Unsupported` for environments without snapshots, `InvalidInput` before the first iteration.
+    fn saved_state(&self, environments: &dyn VecEnvironment) -> Result<SavedState>;
+
+    /// Goes back to a state, in environments of the same kind and number.
+    ///
+    /// # Errors
+    /// `InvalidInput` and `Format` for a state of something else; the learner is then not to be used.
+    fn restore(&mut self, state: &SavedState, environments: &mut dyn VecEnvironment) -> Result<()>;
+
+    /// The long rows of numbers in its state.
+    fn rows(&self) -> &'static [&'static str];
+
+    /// Saves a checkpoint as a folder, which appears whole or not at all.
+    ///
+    /// # Errors
+    /// As [`Self::saved_state`], and `Io`.
+    fn save(&self, folder: &Path, environments: &dyn VecEnvironment) -> Result<()> {
+        self.saved_state(environments)?.save(folder)
+    }
+
+    /// Goes on from a checkpoint.
+    ///
+    /// # Errors
+    /// `NotFound` where there is none of this learner, and as [`Self::restore`].
+    fn load(&mut self, folder: &Path, environments: &mut dyn VecEnvironment) -> Result<()> {
+        let state = SavedState::load(folder, self.rows())?;
+        self.restore(&state, environments)
+    }
+
+    /// Trains until `total_timesteps` steps were taken, or `observer`, asked after each iteration, breaks off. A
+    /// training that was broken off, or loaded, goes on.
+    ///
+    /// # Errors
+    /// As [`Self::iterate`], and those of the observer.
+    fn train(
+        &mut self,
+        environments: &mut dyn VecEnvironment,
+        total_timesteps: u64,
+        observer: &mut dyn FnMut(Event<'_, Self>) -> Result<ControlFlow<()>>,
+    ) -> Result<&Report>
+    where
+        Self: Sized,
+    {
+        while self.report().timesteps < total_timesteps {
+            self.iterate(environments, total_timesteps)?;
+            let event = Event { learner: &*self, environments: &*environments, report: self.report() };
+            if observer(event)?.is_break() {
+                break;
+            }
+        }
+        Ok(self.report())
+    }
+}
+
+impl Report {
+    pub(crate) fn count(&mut self, timesteps: u64, episodes: &Episodes) {
+        self.timesteps = timesteps;
+        self.episodes = episodes.count();
+        self.mean_return = episodes.mean_return();
+        self.mean_length = episodes.mean_length();
+        self.success_rate = episodes.success_rate();
+    }
+}
+
+pub(crate) fn not_begun(name: &str) -> Error {
+    Error::invalid_input(format!("{name} has not begun; iterate once before its state is saved"))
+}
+
+/// The states of environments, with a word on what wanted them.
+pub(crate) fn snapshot_of(environments: &dyn VecEnvironment) -> Result<Snapshot> {
+    environments.snapshot().map_err(|error| error.context("saving the state of a training"))
+}
+
+/// The error of a loss or gradient that is not finite.
+pub(crate) fn diverged(what: &str, number: f64, timesteps: u64) -> Error {
+    Error::internal(format!(
+        "{what} is {number} at time step {timesteps}: learning diverged; lower learning_rate, or normalise rewards"
+    ))
+}

@@ -1,0 +1,231 @@
+//! How good a policy is, on episodes that are always the same.
+
+use std::time::Instant;
+
+use opendr_engine::environment::{Environment, ResetOptions, Step};
+use opendr_engine::params::Params;
+use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
+use opendr_kernels::Compute;
+
+use crate::policy::{Acting, Policy, PolicyMemory};
+
+/// Which episodes a policy is measured on, and how it acts there.
+#[derive(Debug, Clone, PartialEq, Params)]
+pub struct EvaluationProtocol {
+    /// How many episodes; episode `i` begins with the first seed plus `i`.
+    #[param(default = 100, range = 1..=1_000_000)]
+    pub episodes: u64,
+    /// The seed of the first episode; far from those of trainings.
+    #[param(default = 1_000_000)]
+    pub first_seed: u64,
+    /// Whether the policy takes its most likely actions.
+    #[param(default = true)]
+    pub deterministic: bool,
+    /// Where an episode is given up that neither terminates nor is truncated.
+    #[param(default = 100_000, range = 1..=1_000_000_000)]
+    pub max_steps: u64,
+}
+
+/// An episode that was measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EvaluatedEpisode {
+    /// What it began with.
+    pub seed: u64,
+    /// The sum of its rewards.
+    pub earned: f64,
+    /// Its steps.
+    pub length: u64,
+    /// Whether it reached its goal, where that is known.
+    pub success: Option<bool>,
+    /// Whether it ended by itself, and not by a time limit.
+    pub terminated: bool,
+}
+
+/// A share of successes with what chance allows for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SuccessRate {
+    /// The share.
+    pub rate: f64,
+    /// The 95 % interval of Wilson (1927).
+    pub interval: [f64; 2],
+    /// Of how many episodes.
+    pub episodes: u64,
+}
+
+/// What was measured.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EvaluationReport {
+    /// Every episode, in the order of their seeds.
+    pub episodes: Vec<EvaluatedEpisode>,
+    /// The mean return.
+    pub mean_return: f64,
+    /// The deviation of returns, of the sample.
+    pub std_return: f64,
+    /// The mean length.
+    pub mean_length: f64,
+    /// The share of successes among the episodes that told; none where none told.
+    pub success: Option<SuccessRate>,
+    /// How long it took.
+    pub seconds: f64,
+}
+
+/// Measures a policy; an episode is a success where the info of its last step has a `success` above 0.5.
+///
+/// # Errors
+/// `InvalidInput` for an environment of other spaces, else those of the environment, with the seed.
+pub fn evaluate(
+    policy: &Policy,
+    environment: &mut dyn Environment,
+    protocol: &EvaluationProtocol,
+) -> Result<EvaluationReport> {
+    let spec = environment.spec();
+    if (&spec.observation, &spec.action) != (policy.observation(), policy.action()) {
+        return Err(Error::invalid_input(format!(
+            "{} shows {} and takes {}, but the policy sees {} and gives {}; evaluate it in its own environment",
+            spec.id,
+            spec.observation,
+            spec.action,
+            policy.observation(),
+            policy.action()
+        )));
+    }
+    let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
+    let mut random = Random::at([protocol.first_seed, 1]);
+    let mut act = |observation: &[f32], action: &mut [f32]| {
+        let acting = match protocol.deterministic {
+            true => Acting::Deterministic,
+            false => Acting::Sampled(&mut random),
+        };
+        policy.act(&compute, observation, acting, &mut memory, action)
+    };
+    let success = |step: &Step| step.info.get("success").map(|success| success > 0.5);
+    evaluate_actions(&mut act, environment, protocol, &success)
+}
+
+/// Measures whatever writes an action for an observation, e.g. a controller. `success` tells from the last step of an
+/// episode whether it reached its goal.
+///
+/// # Errors
+/// Those of the environment and of what acts, with the seed.
+pub fn evaluate_actions(
+    act: &mut dyn FnMut(&[f32], &mut [f32]) -> Result<()>,
+    environment: &mut dyn Environment,
+    protocol: &EvaluationProtocol,
+    success: &dyn Fn(&Step) -> Option<bool>,
+) -> Result<EvaluationReport> {
+    protocol.check()?;
+    let begun = Instant::now();
+    let seeds = (0..protocol.episodes).map(|index| protocol.first_seed.wrapping_add(index));
+    let episodes = seeds.map(|seed| {
+        let episode = run(act, environment, protocol.max_steps, seed, success);
+        episode.context(|| format!("evaluating the episode of seed {seed}"))
+    });
+    let episodes = episodes.collect::<Result<Vec<_>>>()?;
+    let count = episodes.len() as f64;
+    let mean = |of: &dyn Fn(&EvaluatedEpisode) -> f64| episodes.iter().map(of).sum::<f64>() / count;
+    let mean_return = mean(&|episode| episode.earned);
+    let variance = mean(&|episode| (episode.earned - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
+    let told: Vec<_> = episodes.iter().filter_map(|episode| episode.success).collect();
+    Ok(EvaluationReport {
+        mean_return,
+        std_return: variance.sqrt(),
+        mean_length: mean(&|episode| episode.length as f64),
+        success: SuccessRate::of(told.iter().filter(|success| **success).count() as u64, told.len() as u64),
+        seconds: begun.elapsed().as_secs_f64(),
+        episodes,
+    })
+}
+
+fn run(
+    act: &mut dyn FnMut(&[f32], &mut [f32]) -> Result<()>,
+    environment: &mut dyn Environment,
+    max_steps: u64,
+    seed: u64,
+    success: &dyn Fn(&Step) -> Option<bool>,
+) -> Result<EvaluatedEpisode> {
+    let mut observation = vec![0.0; environment.spec().observation.len()];
+    let mut action = vec![0.0; environment.spec().action.len()];
+    environment.reset(Some(seed), &ResetOptions::new(), &mut observation)?;
+    let mut earned = 0.0;
+    for length in 1..=max_steps {
+        act(&observation, &mut action)?;
+        let step = environment.step(&action, &mut observation)?;
+        earned += step.reward;
+        if step.is_over() || length == max_steps {
+            let (success, terminated) = (success(&step), step.terminated);
+            return Ok(EvaluatedEpisode { seed, earned, length, success, terminated });
+        }
+    }
+    Err(Error::internal("an episode of no steps"))
+}
+
+impl SuccessRate {
+    /// The share of `successes` among `episodes`; none where there are no episodes.
+    pub fn of(successes: u64, episodes: u64) -> Option<Self> {
+        if episodes == 0 {
+            return None;
+        }
+        let (count, z) = (episodes as f64, 1.959_963_984_540_054);
+        let rate = successes as f64 / count;
+        let centre = rate + z * z / (2.0 * count);
+        let width = z * (rate * (1.0 - rate) / count + z * z / (4.0 * count * count)).sqrt();
+        let scale = 1.0 + z * z / count;
+        let interval = [((centre - width) / scale).max(0.0), ((centre + width) / scale).min(1.0)];
+        Some(Self { rate, interval, episodes })
+    }
+}
+
+impl From<&EvaluationReport> for Statistics {
+    fn from(report: &EvaluationReport) -> Self {
+        let mut statistics = Self::default();
+        statistics.set("episodes", report.episodes.len() as f64);
+        statistics.set("mean_return", report.mean_return);
+        statistics.set("std_return", report.std_return);
+        statistics.set("mean_length", report.mean_length);
+        if let Some(success) = report.success {
+            statistics.set("success_rate", success.rate);
+            statistics.set("success_rate_low", success.interval[0]);
+            statistics.set("success_rate_high", success.interval[1]);
+        }
+        statistics.set("seconds", report.seconds);
+        statistics
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wilson_intervals() {
+        // The roots of (p - rate)^2 = z^2 p (1 - p) / n, by Python.
+        for (successes, episodes, low, high) in
+            [(8, 10, 0.490_162, 0.943_318), (0, 20, 0.0, 0.161_125), (500, 500, 0.992_376, 1.0)]
+        {
+            let rate = SuccessRate::of(successes, episodes).unwrap();
+            let [got_low, got_high] = rate.interval;
+            assert!((got_low - low).abs() < 1e-6 && (got_high - high).abs() < 1e-6, "{rate:?}");
+        }
+        assert!(SuccessRate::of(0, 0).is_none());
+    }
+
+    #[test]
+    fn the_same_episodes_each_time() {
+        let mut environment = opendr_simulation::make("CartPole-v1").unwrap();
+        let protocol = EvaluationProtocol { episodes: 7, ..EvaluationProtocol::default() };
+        let mut measure = || {
+            // Pushes against the lean of the pole.
+            let mut act = |observation: &[f32], action: &mut [f32]| {
+                action[0] = f32::from(observation[2] + observation[3] > 0.0);
+                Ok(())
+            };
+            let success = |step: &Step| Some(step.truncated);
+            evaluate_actions(&mut act, &mut *environment, &protocol, &success).unwrap()
+        };
+        let (first, again) = (measure(), measure());
+        assert_eq!((&first.episodes, first.episodes.len()), (&again.episodes, 7));
+        assert!(first.mean_return > 50.0 && first.mean_return == first.mean_length, "{first:?}");
+        assert_eq!(first.success.unwrap().episodes, 7);
+        assert_eq!(Statistics::from(&first).get("mean_return"), Some(first.mean_return));
+    }
+}

@@ -1,0 +1,154 @@
+//! What learners have in common that learn from steps of the past.
+
+use opendr_engine::environment::{Space, StateReader};
+use opendr_engine::params::Params;
+use opendr_engine::{Error, Random, Result};
+use opendr_simulation::vector::VecEnvironment;
+
+use crate::interaction::Interaction;
+use crate::policy::Policy;
+use crate::replay_buffer::{ReplayBuffer, Transition};
+use crate::saved_state::{SavedState, push_random, read_random};
+
+/// Settings that SAC, TD3 and DQN share. Names are those of Stable-Baselines3, and so is what each makes the default.
+#[derive(Debug, Clone, PartialEq, Params)]
+pub struct OffPolicyConfig {
+    /// Learning rate of Adam, of all networks.
+    #[param(default = 3e-4, range = 0.0..=1.0, log)]
+    pub learning_rate: f32,
+    /// Steps that are remembered.
+    #[param(default = 1_000_000, range = 1..=1_000_000_000, log)]
+    pub buffer_size: usize,
+    /// Steps of all environments, with actions by chance, before learning begins.
+    #[param(default = 100, range = 0..=1_000_000_000)]
+    pub learning_starts: u64,
+    /// Steps that one gradient step learns from.
+    #[param(default = 256, range = 1..=1_000_000, log)]
+    pub batch_size: usize,
+    /// How far targets move to their networks at a time.
+    #[param(default = 0.005, range = 0.0..=1.0, log)]
+    pub tau: f32,
+    /// Discount of rewards.
+    #[param(default = 0.99, range = 0.0..=1.0)]
+    pub gamma: f32,
+    /// Steps of each environment between two updates.
+    #[param(default = 1, range = 1..=1_000_000)]
+    pub train_freq: usize,
+    /// Gradient steps of an update; none is one for each step that was taken.
+    #[param(default = Some(1), range = 1..=1_000_000)]
+    pub gradient_steps: Option<usize>,
+    /// What fixes everything random.
+    #[param(default = 0)]
+    pub seed: u64,
+}
+
+/// Environments and what was seen in them.
+#[derive(Debug, Clone)]
+pub(crate) struct Experience {
+    pub interaction: Interaction,
+    pub buffer: ReplayBuffer,
+    /// What the environments take, and what the buffer keeps of it.
+    pub actions: Vec<f32>,
+    pub kept: Vec<f32>,
+    before: Vec<f32>,
+    last: Vec<f32>,
+}
+
+impl Experience {
+    pub fn begin(
+        environments: &mut dyn VecEnvironment,
+        policy: &mut Policy,
+        config: &OffPolicyConfig,
+    ) -> Result<Self> {
+        let interaction = Interaction::begin(environments, &mut policy.encoder, config.seed)?;
+        Self::around(interaction, policy, config)
+    }
+
+    fn around(interaction: Interaction, policy: &Policy, config: &OffPolicyConfig) -> Result<Self> {
+        let (encoded, action) = (policy.encoder.encoded_len(), policy.head.action_len());
+        let actions = vec![0.0; interaction.count() * action];
+        Ok(Self {
+            buffer: ReplayBuffer::new(config.buffer_size, encoded, action)?,
+            kept: actions.clone(),
+            actions,
+            before: vec![0.0; interaction.encoded.len()],
+            last: vec![0.0; encoded],
+            interaction,
+        })
+    }
+
+    /// Takes `actions` in all environments and keeps what came of it, with `kept` as the actions.
+    pub fn step(&mut self, environments: &mut dyn VecEnvironment, policy: &mut Policy) -> Result<()> {
+        let Self { interaction, buffer, actions, kept, before, last } = self;
+        before.copy_from_slice(&interaction.encoded);
+        interaction.step(environments, &mut policy.encoder, actions)?;
+        let (size, width) = (last.len(), kept.len() / interaction.count());
+        for index in 0..interaction.count() {
+            let (batch, row) = (&interaction.batch, index * size..(index + 1) * size);
+            // Where an episode ended, the next one is seen already.
+            let next_observation = match batch.terminated[index] || batch.truncated[index] {
+                true => {
+                    policy.encoder.encode(interaction.final_observation(index), last)?;
+                    &last[..]
+                }
+                false => &interaction.encoded[row.clone()],
+            };
+            buffer.add(Transition {
+                observation: &before[row],
+                action: &kept[index * width..(index + 1) * width],
+                reward: batch.rewards[index] as f32,
+                next_observation,
+                terminated: batch.terminated[index],
+            });
+        }
+        Ok(())
+    }
+
+    /// Writes actions by chance from the whole space.
+    pub fn act_by_chance(&mut self, policy: &Policy, space: &Space, random: &mut Random) {
+        for action in self.actions.chunks_exact_mut(space.len()) {
+            space.sample_into(random, action);
+        }
+        policy.head.distribution_actions(&self.actions, &mut self.kept);
+    }
+
+    /// How many gradient steps follow `train_freq` steps of all environments; none before learning begins.
+    pub fn gradient_steps(&self, config: &OffPolicyConfig) -> usize {
+        if self.interaction.timesteps <= config.learning_starts || self.buffer.len() == 0 {
+            return 0;
+        }
+        config.gradient_steps.unwrap_or(config.train_freq * self.interaction.count())
+    }
+
+    pub fn save(&self, state: &mut SavedState, random: &Random) {
+        push_random(&mut state.words, random);
+        self.interaction.save(&mut state.words);
+        self.buffer.save(state);
+    }
+
+    /// What [`Self::save`] wrote of `environments`.
+    pub fn load(
+        state: &SavedState,
+        words: &mut StateReader<'_>,
+        environments: &dyn VecEnvironment,
+        policy: &Policy,
+        config: &OffPolicyConfig,
+    ) -> Result<(Self, Random)> {
+        let random = read_random(words)?;
+        let interaction = Interaction::load(words, environments, &policy.encoder)?;
+        let mut experience = Self::around(interaction, policy, config)?;
+        experience.buffer.load(state, words)?;
+        Ok((experience, random))
+    }
+}
+
+/// Learners whose values take an action beside the observation see no pictures.
+pub(crate) fn check_no_pictures(policy: &Policy) -> Result<()> {
+    match policy.extractor.is_identity() {
+        true => Ok(()),
+        false => Err(Error::unsupported(format!(
+            "{} has pictures; use ppo or dqn, or picture_network = flat for small ones",
+            policy.observation()
+        ))),
+    }
+}

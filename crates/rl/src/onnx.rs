@@ -1,0 +1,262 @@
+//! Policies as ONNX models, for runtimes that know nothing of learning.
+
+use opendr_engine::{Error, Result};
+use opendr_kernels::{Activation, Layer, Network};
+use opendr_onnx::{Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, model_from_graph};
+
+use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind, Policy};
+
+/// The bytes of an ONNX model of a policy's most likely actions, with everything before and behind its network: the
+/// normaliser, pictures to [0, 1], the largest score, bounds of actions.
+///
+/// Its input `observation` is `[batch, numbers]`, as the environment gives them. Its output `action` is `[batch, numbers]`, as the
+/// environment takes them (int64 for choices); its output `network` is what the network gave: scores of choices, means before they
+/// are squashed or clipped.
+///
+/// # Errors
+/// `Unsupported` for observations with choices, or policies with layer normalisation.
+pub fn onnx_from_policy(policy: &Policy) -> Result<Vec<u8>> {
+    let mut graph = Graph { builder: Builder::default() };
+    graph.builder.reserve("action");
+    graph.builder.reserve("network");
+    let raw = policy.encoder.raw_len();
+    let observation = graph.builder.input("observation", Kind::Float, vec![None, Some(raw)], &["batch", ""]);
+    let features = graph.features(policy, &observation)?;
+    let first = policy.extractor.parameters();
+    let parameters = &policy.parameters[first..first + policy.network.parameters()];
+    let outputs = graph.network(&policy.network, parameters, features)?;
+    graph.builder.output("network", &outputs, "what the network gives", &["batch", ""])?;
+    let action = graph.action(&policy.head, &outputs)?;
+    graph.builder.output("action", &action, "the most likely action", &["batch", ""])?;
+    Ok(bytes_from_model(&model_from_graph(graph.builder.finish("policy"))))
+}
+
+struct Graph {
+    builder: Builder,
+}
+
+impl Graph {
+    fn add(&mut self, operator: Operator, inputs: &[&Wire], width: usize) -> Result<Wire> {
+        self.builder.add("", operator, inputs, Kind::Float, vec![None, Some(width)])
+    }
+
+    /// What the network behind the parts of an observation takes.
+    fn features(&mut self, policy: &Policy, observation: &Wire) -> Result<Wire> {
+        let encoder = &policy.encoder;
+        let (mut features, mut number) = (Vec::new(), 0);
+        for (part, (_, network)) in encoder.parts().iter().zip(policy.extractor.parts()) {
+            let raw = match encoder.parts() {
+                [_] => observation.clone(),
+                _ => self.slice(observation, part)?,
+            };
+            let encoded = match (&part.kind, &encoder.normaliser) {
+                (PartKind::Numbers, None) => raw,
+                (PartKind::Numbers, Some(normaliser)) => {
+                    number += part.raw.len();
+                    self.normalised(raw, normaliser, number - part.raw.len(), part.raw.len())?
+                }
+                (PartKind::Picture { low, scale, .. }, _) => {
+                    let width = part.raw.len();
+                    let shifted = self.add(Operator::new("Sub"), &[&raw, &Wire::scalar(*low)], width)?;
+                    self.add(Operator::new("Mul"), &[&shifted, &Wire::scalar(*scale)], width)?
+                }
+                (PartKind::Choices(..), _) => {
+                    return Err(Error::unsupported(
+                        "observations with choices have no ONNX form here; show them as numbers",
+                    ));
+                }
+            };
+            features.push(match (network, &part.kind) {
+                (Some((network, range)), PartKind::Picture { shape, .. }) => {
+                    self.pictures(network, &policy.parameters[range], *shape, encoded)?
+                }
+                _ => encoded,
+            });
+        }
+        match &features[..] {
+            [only] => Ok(only.clone()),
+            several => {
+                let several: Vec<_> = several.iter().collect();
+                self.add(Operator::new("Concat").int("axis", 1), &several, policy.extractor.outputs())
+            }
+        }
+    }
+
+    fn slice(&mut self, observation: &Wire, part: &Part) -> Result<Wire> {
+        let ends = [part.raw.start as i64, part.raw.end as i64].map(|end| Wire::ints([end]));
+        let inputs = [observation, &ends[0], &ends[1], &Wire::ints([1])];
+        self.add(Operator::new("Slice"), &inputs, part.raw.len())
+    }
+
+    fn normalised(
+        &mut self,
+        raw: Wire,
+        normaliser: &ObservationNormaliser,
+        first: usize,
+        width: usize,
+    ) -> Result<Wire> {
+        let moments = &normaliser.moments;
+        let mean = moments.mean()[first..first + width].iter().map(|mean| *mean as f32);
+        let variance = moments.variance()[first..first + width].iter();
+        let deviation = variance.map(|variance| (variance + EPSILON).sqrt() as f32);
+        let (mean, deviation) = (row(mean.collect())?, row(deviation.collect())?);
+        let shifted = self.add(Operator::new("Sub"), &[&raw, &mean], width)?;
+        let scaled = self.add(Operator::new("Div"), &[&shifted, &deviation], width)?;
+        let clip = normaliser.clip;
+        self.add(Operator::new("Clip"), &[&scaled, &Wire::scalar(-clip), &Wire::scalar(clip)], width)
+    }
+
+    /// A picture through convolutions, and flat again.
+    fn pictures(
+        &mut self,
+        network: &Network,
+        parameters: &[f32],
+        shape: [usize; 3],
+        flat: Wire,
+    ) -> Result<Wire> {
+        let sizes = shape.map(|size| size as i64);
+        let reshape = Wire::ints([-1, sizes[0], sizes[1], sizes[2]]);
+        let dims = vec![None, Some(shape[0]), Some(shape[1]), Some(shape[2])];
+        let picture =
+            self.builder.add("", Operator::new("Reshape"), &[&flat, &reshape], Kind::Float, dims)?;
+        self.network(network, parameters, picture)
+    }
+
+    fn network(&mut self, network: &Network, parameters: &[f32], from: Wire) -> Result<Wire> {
+        let mut wire = from;
+        for (index, layer) in network.layers().iter().enumerate() {
+            let own = &parameters[network.parameters_of(index)];
+            wire = match layer {
+                Layer::Dense(dense) => {
+                    let (inputs, outputs) = (dense.inputs(), dense.outputs());
+                    if wire.rank() > 2 {
+                        wire = self.add(Operator::new("Flatten").int("axis", 1), &[&wire], inputs)?;
+                    }
+                    let (weights, biases) = own.split_at(inputs * outputs);
+                    let (weights, biases) =
+                        (constant(vec![inputs, outputs], weights)?, constant(vec![outputs], biases)?);
+                    let product = self.add(Operator::new("Gemm"), &[&wire, &weights, &biases], outputs)?;
+                    self.activation(dense.activation(), product)?
+                }
+                Layer::Conv2d(convolution) => {
+                    let ([inputs, ..], [outputs, ..]) =
+                        (convolution.input_shape(), convolution.output_shape());
+                    let kernel = convolution.kernel();
+                    let (weights, biases) = own.split_at(own.len() - outputs);
+                    let weights = constant(vec![outputs, inputs, kernel[0], kernel[1]], weights)?;
+                    let biases = constant(vec![outputs], biases)?;
+                    let [stride, padding] = [convolution.stride(), convolution.padding()];
+                    let whole = |sizes: [usize; 2]| sizes.map(|size| size as i64);
+                    let pads = [padding[0], padding[1], padding[0], padding[1]].map(|side| side as i64);
+                    let operator = Operator::new("Conv").ints("strides", whole(stride)).ints("pads", pads);
+                    let [_, height, width] = convolution.output_shape();
+                    let dims = vec![None, Some(outputs), Some(height), Some(width)];
+                    let inputs = [&wire, &weights, &biases];
+                    let convolved = self.builder.add("", operator, &inputs, Kind::Float, dims)?;
+                    self.activation(convolution.activation(), convolved)?
+                }
+                Layer::Activation(activation, _) => self.activation(*activation, wire)?,
+                Layer::LayerNorm(_) => {
+                    return Err(Error::unsupported("a layer normalisation has no ONNX form here"));
+                }
+            };
+        }
+        Ok(wire)
+    }
+
+    fn activation(&mut self, activation: Activation, wire: Wire) -> Result<Wire> {
+        let name = match activation {
+            Activation::Identity => return Ok(wire),
+            Activation::Relu => "Relu",
+            Activation::Tanh => "Tanh",
+            Activation::Sigmoid => "Sigmoid",
+        };
+        let dims = wire.dims().to_vec();
+        self.builder.add("", Operator::new(name), &[&wire], Kind::Float, dims)
+    }
+
+    fn action(&mut self, head: &Head, outputs: &Wire) -> Result<Wire> {
+        let axes = head.action_len();
+        match head {
+            Head::Categorical { counts, start } => {
+                let mut begin = 0;
+                let mut choices = Vec::new();
+                for count in counts {
+                    let end = begin + *count as usize;
+                    let own = match counts.len() {
+                        1 => outputs.clone(),
+                        _ => {
+                            let ends = [begin as i64, end as i64].map(|end| Wire::ints([end]));
+                            let inputs = [outputs, &ends[0], &ends[1], &Wire::ints([1])];
+                            self.add(Operator::new("Slice"), &inputs, end - begin)?
+                        }
+                    };
+                    choices.push(self.largest(&own, *start)?);
+                    begin = end;
+                }
+                match &choices[..] {
+                    [only] => Ok(only.clone()),
+                    several => {
+                        let (several, dims): (Vec<_>, _) = (several.iter().collect(), vec![None, Some(axes)]);
+                        let concat = Operator::new("Concat").int("axis", 1);
+                        self.builder.add("", concat, &several, Kind::Int, dims)
+                    }
+                }
+            }
+            Head::Greedy { start, .. } => self.largest(outputs, *start),
+            Head::Gaussian(bounds) => self.clipped(outputs, bounds),
+            Head::Squashed(bounds) => {
+                let squashed = self.activation(Activation::Tanh, outputs.clone())?;
+                self.stretched(&squashed, bounds)
+            }
+            Head::SquashedGaussian(bounds) => {
+                let end = Wire::ints([axes as i64]);
+                let inputs = [outputs, &Wire::ints([0]), &end, &Wire::ints([1])];
+                let means = self.add(Operator::new("Slice"), &inputs, axes)?;
+                let squashed = self.activation(Activation::Tanh, means)?;
+                self.stretched(&squashed, bounds)
+            }
+        }
+    }
+
+    fn largest(&mut self, scores: &Wire, start: i32) -> Result<Wire> {
+        let operator = Operator::new("ArgMax").int("axis", 1).int("keepdims", 1);
+        let dims = vec![None, Some(1)];
+        let place = self.builder.add("", operator, &[scores], Kind::Int, dims.clone())?;
+        match start {
+            0 => Ok(place),
+            start => {
+                let start = Wire::ints([start.into()]);
+                self.builder.add("", Operator::new("Add"), &[&place, &start], Kind::Int, dims)
+            }
+        }
+    }
+
+    fn clipped(&mut self, actions: &Wire, bounds: &Bounds) -> Result<Wire> {
+        let width = bounds.low.len();
+        let (low, high) = (row(bounds.low.clone())?, row(bounds.high.clone())?);
+        let above = self.add(Operator::new("Max"), &[actions, &low], width)?;
+        self.add(Operator::new("Min"), &[&above, &high], width)
+    }
+
+    /// As [`Bounds::stretch`].
+    fn stretched(&mut self, actions: &Wire, bounds: &Bounds) -> Result<Wire> {
+        let width = bounds.low.len();
+        let both = bounds.low.iter().zip(&bounds.high);
+        let half = row(both.map(|(low, high)| 0.5 * (high - low)).collect())?;
+        let above = self.add(Operator::new("Add"), &[actions, &Wire::scalar(1.0)], width)?;
+        let scaled = self.add(Operator::new("Mul"), &[&above, &half], width)?;
+        let moved = self.add(Operator::new("Add"), &[&scaled, &row(bounds.low.clone())?], width)?;
+        self.clipped(&moved, bounds)
+    }
+}
+
+fn row(numbers: Vec<f32>) -> Result<Wire> {
+    let dims = vec![1, numbers.len()];
+    constant(dims, &numbers)
+}
+
+fn constant(dims: Vec<usize>, numbers: &[f32]) -> Result<Wire> {
+    let array = Array::new(dims, Data::Float(numbers.to_vec()));
+    array.map(Wire::constant).ok_or_else(|| Error::internal("a constant of another size"))
+}

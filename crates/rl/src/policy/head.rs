@@ -1,0 +1,257 @@
+//! From what a network gives to actions.
+
+use opendr_engine::environment::Space;
+use opendr_engine::{Error, Random, Result};
+use opendr_kernels::Isa;
+
+use super::likelihood::Likelihood;
+
+/// Bounds of continuous actions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds {
+    /// Smallest values.
+    pub low: Vec<f32>,
+    /// Largest values.
+    pub high: Vec<f32>,
+}
+
+/// What the numbers are that a policy's network gives, and how actions come from them.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Head {
+    /// Scores of choices, each choice from a categorical distribution: how many there are, and the number of the first.
+    Categorical {
+        /// Choices that are made at once, each of so many.
+        counts: Vec<u32>,
+        /// The number of the first.
+        start: i32,
+    },
+    /// Means of a normal distribution; logarithms of its deviations are parameters of the policy. Actions are clipped.
+    Gaussian(Bounds),
+    /// Means, then logarithms of deviations, of a normal distribution whose tanh is stretched to the bounds.
+    SquashedGaussian(Bounds),
+    /// Actions themselves, before a tanh is stretched to the bounds.
+    Squashed(Bounds),
+    /// Values of choices, of which the largest is taken: how many there are, and the number of the first.
+    Greedy {
+        /// How many.
+        count: u32,
+        /// The number of the first.
+        start: i32,
+    },
+}
+
+/// Logarithms of deviations of a squashed distribution lie between these, as in Haarnoja et al. (2018).
+pub(crate) const LOG_STD_BOUNDS: [f32; 2] = [-20.0, 2.0];
+
+impl Bounds {
+    /// The bounds of a box; `finite` where a tanh is to be stretched to them.
+    pub(crate) fn of(space: &Space, finite: bool) -> Result<Self> {
+        let Space::Box { low, high, .. } = space else {
+            return Err(Error::unsupported(format!("actions are {space}; this learner acts in a box only")));
+        };
+        if finite && !low.iter().chain(high).all(|bound| bound.is_finite()) {
+            return Err(Error::unsupported(format!("actions are {space}; this learner needs finite bounds")));
+        }
+        Ok(Self { low: low.clone(), high: high.clone() })
+    }
+
+    /// Stretches a number of [-1, 1] to the bounds of an axis.
+    pub(crate) fn stretch(&self, axis: usize, number: f32) -> f32 {
+        let (low, high) = (self.low[axis], self.high[axis]);
+        // Rounding must not lead out of the space.
+        (low + 0.5 * (number + 1.0) * (high - low)).clamp(low, high)
+    }
+
+    /// The inverse of [`Self::stretch`].
+    pub(crate) fn shrink(&self, axis: usize, number: f32) -> f32 {
+        let (low, high) = (self.low[axis], self.high[axis]);
+        2.0 * (number - low) / (high - low) - 1.0
+    }
+}
+
+impl Head {
+    /// The distribution that on-policy learners use over actions of `space`.
+    ///
+    /// # Errors
+    /// `Unsupported` for dictionaries, tuples and binary digits.
+    pub fn stochastic(space: &Space) -> Result<Self> {
+        match space {
+            Space::Discrete { n, start } => Ok(Self::Categorical { counts: vec![*n], start: *start }),
+            Space::MultiDiscrete(counts) => Ok(Self::Categorical { counts: counts.clone(), start: 0 }),
+            Space::Box { .. } => Bounds::of(space, false).map(Self::Gaussian),
+            _ => Err(Error::unsupported(format!(
+                "a policy cannot act in {space}; use choices or a box of numbers"
+            ))),
+        }
+    }
+
+    /// How many numbers the network gives.
+    pub fn outputs(&self) -> usize {
+        match self {
+            Self::Categorical { counts, .. } => counts.iter().map(|count| *count as usize).sum(),
+            Self::Gaussian(bounds) | Self::Squashed(bounds) => bounds.low.len(),
+            Self::SquashedGaussian(bounds) => 2 * bounds.low.len(),
+            Self::Greedy { count, .. } => *count as usize,
+        }
+    }
+
+    /// How many numbers an action has.
+    pub fn action_len(&self) -> usize {
+        match self {
+            Self::Categorical { counts, .. } => counts.len(),
+            Self::Gaussian(bounds) | Self::Squashed(bounds) | Self::SquashedGaussian(bounds) => {
+                bounds.low.len()
+            }
+            Self::Greedy { .. } => 1,
+        }
+    }
+
+    /// Parameters beside those of networks: logarithms of deviations.
+    pub(crate) fn parameters(&self) -> usize {
+        match self {
+            Self::Gaussian(bounds) => bounds.low.len(),
+            _ => 0,
+        }
+    }
+
+    /// Writes the most likely actions, as the environment takes them, from `outputs`, row after row.
+    pub(crate) fn most_likely(&self, outputs: &[f32], actions: &mut [f32]) {
+        let rows = outputs.chunks_exact(self.outputs()).zip(actions.chunks_exact_mut(self.action_len()));
+        for (outputs, actions) in rows {
+            match self {
+                Self::Categorical { counts, start } => {
+                    let mut rest = outputs;
+                    for (action, count) in actions.iter_mut().zip(counts) {
+                        let (own, behind) = rest.split_at(*count as usize);
+                        *action = choice(largest(own), *start);
+                        rest = behind;
+                    }
+                }
+                Self::Greedy { start, .. } => actions[0] = choice(largest(outputs), *start),
+                Self::Gaussian(bounds) => {
+                    for (axis, (action, mean)) in actions.iter_mut().zip(outputs).enumerate() {
+                        *action = mean.clamp(bounds.low[axis], bounds.high[axis]);
+                    }
+                }
+                Self::Squashed(bounds) | Self::SquashedGaussian(bounds) => {
+                    for (axis, (action, mean)) in actions.iter_mut().zip(outputs).enumerate() {
+                        *action = bounds.stretch(axis, mean.tanh());
+                    }
+                }
+            }
+        }
+    }
+
+    /// Writes actions by chance, as the environment takes them; those of heads without chance are the most likely ones.
+    pub(crate) fn sample(
+        &self,
+        isa: Isa,
+        outputs: &[f32],
+        log_std: &[f32],
+        random: &mut Random,
+        likelihood: &mut Likelihood,
+        actions: &mut [f32],
+    ) {
+        match self {
+            Self::Categorical { .. } | Self::Gaussian(_) => {
+                likelihood.sample(isa, self, outputs, log_std, random);
+                self.environment_actions(&likelihood.actions, actions);
+            }
+            Self::SquashedGaussian(bounds) => {
+                let axes = bounds.low.len();
+                let rows = outputs.chunks_exact(2 * axes).zip(actions.chunks_exact_mut(axes));
+                for (outputs, actions) in rows {
+                    let (means, log_stds) = outputs.split_at(axes);
+                    for (axis, (action, (mean, log_std))) in
+                        actions.iter_mut().zip(means.iter().zip(log_stds)).enumerate()
+                    {
+                        let deviation = log_std.clamp(LOG_STD_BOUNDS[0], LOG_STD_BOUNDS[1]).exp();
+                        *action = bounds.stretch(axis, (mean + deviation * random.normal() as f32).tanh());
+                    }
+                }
+            }
+            Self::Squashed(_) | Self::Greedy { .. } => self.most_likely(outputs, actions),
+        }
+    }
+
+    /// From actions as distributions have them to those that the environment takes.
+    pub(crate) fn environment_actions(&self, actions: &[f32], taken: &mut [f32]) {
+        taken.copy_from_slice(actions);
+        match self {
+            Self::Categorical { start: 0, .. } => (),
+            Self::Categorical { start, .. } | Self::Greedy { start, .. } => {
+                taken.iter_mut().for_each(|action| *action = choice(*action as usize, *start));
+            }
+            Self::Gaussian(bounds) => {
+                for actions in taken.chunks_exact_mut(bounds.low.len()) {
+                    for (action, (low, high)) in actions.iter_mut().zip(bounds.low.iter().zip(&bounds.high)) {
+                        *action = action.clamp(*low, *high);
+                    }
+                }
+            }
+            Self::Squashed(bounds) | Self::SquashedGaussian(bounds) => {
+                for actions in taken.chunks_exact_mut(bounds.low.len()) {
+                    for (axis, action) in actions.iter_mut().enumerate() {
+                        *action = bounds.stretch(axis, *action);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The inverse of [`Self::environment_actions`], for demonstrations.
+    pub(crate) fn distribution_actions(&self, taken: &[f32], actions: &mut [f32]) {
+        actions.copy_from_slice(taken);
+        match self {
+            Self::Categorical { start, .. } | Self::Greedy { start, .. } => {
+                let start = f64::from(*start);
+                actions.iter_mut().for_each(|action| *action = (f64::from(*action) - start) as f32);
+            }
+            Self::Gaussian(_) => (),
+            Self::Squashed(bounds) | Self::SquashedGaussian(bounds) => {
+                for actions in actions.chunks_exact_mut(bounds.low.len()) {
+                    for (axis, action) in actions.iter_mut().enumerate() {
+                        *action = bounds.shrink(axis, *action);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The number of a choice.
+fn choice(place: usize, start: i32) -> f32 {
+    (place as f64 + f64::from(start)) as f32
+}
+
+/// The place of the largest number, the first of equals.
+pub(crate) fn largest(numbers: &[f32]) -> usize {
+    numbers.iter().enumerate().fold(0, |best, (at, number)| if *number > numbers[best] { at } else { best })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bounds_are_reached_and_never_left() {
+        let bounds = Bounds { low: vec![-0.1], high: vec![0.7] };
+        let head = Head::Squashed(bounds.clone());
+        let mut actions = [0.0; 3];
+        head.most_likely(&[-100.0, 0.0, 100.0], &mut actions);
+        assert_eq!((actions[0], actions[2]), (-0.1, 0.7));
+        assert!((actions[1] - 0.3).abs() < 1e-6 && bounds.shrink(0, actions[1]).abs() < 1e-6);
+    }
+
+    #[test]
+    fn choices_begin_where_the_space_does() {
+        let head = Head::stochastic(&Space::Discrete { n: 3, start: -4 }).unwrap();
+        let mut actions = [0.0; 2];
+        head.most_likely(&[0.0, 2.0, 1.0, 5.0, 5.0, 5.0], &mut actions);
+        assert_eq!(actions, [-3.0, -4.0]);
+        let mut back = [9.0; 2];
+        head.distribution_actions(&actions, &mut back);
+        assert_eq!(back, [1.0, 0.0]);
+        assert!(Head::stochastic(&Space::MultiBinary(vec![2])).is_err());
+    }
+}

@@ -1,0 +1,104 @@
+//! Spaces as JSON.
+
+use std::collections::BTreeMap;
+
+use opendr_engine::environment::Space;
+use opendr_engine::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// A space as it is written. Bounds are texts, so that infinite ones have a form; where all are the same there is one.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum SpaceRecord {
+    Box { low: Vec<String>, high: Vec<String>, shape: Vec<usize> },
+    Discrete { n: u32, start: i32 },
+    MultiDiscrete(Vec<u32>),
+    MultiBinary(Vec<usize>),
+    Dict(BTreeMap<String, SpaceRecord>),
+    Tuple(Vec<SpaceRecord>),
+}
+
+/// Numbers, or choices, of an element.
+const MOST_NUMBERS: usize = 1 << 24;
+
+impl SpaceRecord {
+    pub fn of(space: &Space) -> Result<Self> {
+        Ok(match space {
+            Space::Box { low, high, shape } => {
+                Self::Box { low: texts(low), high: texts(high), shape: shape.clone() }
+            }
+            Space::Discrete { n, start } => Self::Discrete { n: *n, start: *start },
+            Space::MultiDiscrete(counts) => Self::MultiDiscrete(counts.clone()),
+            Space::MultiBinary(shape) => Self::MultiBinary(shape.clone()),
+            Space::Dict(parts) => {
+                let parts = parts.iter().map(|(name, part)| Ok((name.clone(), Self::of(part)?)));
+                Self::Dict(parts.collect::<Result<_>>()?)
+            }
+            Space::Tuple(parts) => Self::Tuple(parts.iter().map(Self::of).collect::<Result<_>>()?),
+            other => return Err(Error::unsupported(format!("{other} has no written form"))),
+        })
+    }
+
+    /// The space, where it is no larger than anyone needs.
+    pub fn space(&self) -> Result<Space> {
+        let mut left = MOST_NUMBERS;
+        self.within(&mut left)
+    }
+
+    /// Takes what it needs off `left`.
+    fn within(&self, left: &mut usize) -> Result<Space> {
+        Ok(match self {
+            Self::Box { low, high, shape } => {
+                let count = take(shape.iter().copied(), left)?;
+                Space::bounded(numbers(low, count)?, numbers(high, count)?, shape.clone())?
+            }
+            Self::Discrete { n, start } => {
+                take([*n as usize], left)?;
+                Space::Discrete { n: *n, start: *start }
+            }
+            Self::MultiDiscrete(counts) => {
+                counts.iter().try_for_each(|count| take([*count as usize], left).map(drop))?;
+                Space::MultiDiscrete(counts.clone())
+            }
+            Self::MultiBinary(shape) => {
+                take(shape.iter().copied(), left)?;
+                Space::MultiBinary(shape.clone())
+            }
+            Self::Dict(parts) => {
+                let parts = parts.iter().map(|(name, part)| Ok((name.clone(), part.within(left)?)));
+                Space::Dict(parts.collect::<Result<_>>()?)
+            }
+            Self::Tuple(parts) => {
+                Space::Tuple(parts.iter().map(|part| part.within(left)).collect::<Result<_>>()?)
+            }
+        })
+    }
+}
+
+fn texts(bounds: &[f32]) -> Vec<String> {
+    match bounds {
+        [first, rest @ ..] if rest.iter().all(|bound| bound == first) => vec![first.to_string()],
+        all => all.iter().map(f32::to_string).collect(),
+    }
+}
+
+fn numbers(texts: &[String], count: usize) -> Result<Vec<f32>> {
+    let number = |text: &String| {
+        text.parse::<f32>().map_err(|_| Error::format(format!("{text:.40?} is no bound of a space")))
+    };
+    match texts {
+        [only] => Ok(vec![number(only)?; count]),
+        all => all.iter().map(number).collect(),
+    }
+}
+
+/// The product of sizes, which is taken off `left`.
+fn take(sizes: impl IntoIterator<Item = usize>, left: &mut usize) -> Result<usize> {
+    let product = sizes.into_iter().try_fold(1usize, |product, size| product.checked_mul(size));
+    let rest = product.and_then(|product| left.checked_sub(product));
+    let (Some(product), Some(rest)) = (product, rest) else {
+        return Err(Error::format(format!("a space of over {MOST_NUMBERS} numbers; the file is damaged")));
+    };
+    *left = rest;
+    Ok(product)
+}

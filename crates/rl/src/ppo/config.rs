@@ -1,0 +1,154 @@
+//! What a user may set of PPO.
+
+use opendr_engine::params::Params;
+
+use crate::policy::NetworkConfig;
+use crate::preset::Preset;
+use crate::schedule::Schedule;
+
+/// Settings of [`Ppo`](super::Ppo). Names and defaults are those of Stable-Baselines3; what is said by objects there, such as
+/// schedules and normalising wrappers, has a word of its own here.
+#[derive(Debug, Clone, PartialEq, Params)]
+pub struct PpoConfig {
+    /// Learning rate of Adam.
+    #[param(default = 3e-4, range = 0.0..=1.0, log)]
+    pub learning_rate: f32,
+    /// How it changes in the course of a training.
+    pub learning_rate_schedule: Schedule,
+    /// Steps of each environment between two updates.
+    #[param(default = 2048, range = 1..=1_000_000, log)]
+    pub n_steps: usize,
+    /// Steps in a minibatch.
+    #[param(default = 64, range = 1..=1_000_000, log)]
+    pub batch_size: usize,
+    /// How often an update goes over all steps.
+    #[param(default = 10, range = 1..=1000)]
+    pub n_epochs: usize,
+    /// Discount of rewards.
+    #[param(default = 0.99, range = 0.0..=1.0)]
+    pub gamma: f32,
+    /// From one-step (0) to whole-episode (1) estimates of advantages.
+    #[param(default = 0.95, range = 0.0..=1.0)]
+    pub gae_lambda: f32,
+    /// How far probabilities of actions may move in an update.
+    #[param(default = 0.2, range = 0.0..=10.0)]
+    pub clip_range: f32,
+    /// How that changes in the course of a training.
+    pub clip_range_schedule: Schedule,
+    /// How far values may move in an update; none is anywhere. It depends on the scale of rewards.
+    #[param(range = 0.0..=1e9)]
+    pub clip_range_vf: Option<f32>,
+    /// Whether the advantages of a minibatch are brought to mean 0 and deviation 1.
+    #[param(default = true)]
+    pub normalize_advantage: bool,
+    /// Weight of the entropy.
+    #[param(default = 0.0, range = 0.0..=10.0)]
+    pub ent_coef: f32,
+    /// Weight of the loss of values.
+    #[param(default = 0.5, range = 0.0..=100.0)]
+    pub vf_coef: f32,
+    /// Gradients longer than this are cut.
+    #[param(default = 0.5, range = 0.0..=1e9)]
+    pub max_grad_norm: f32,
+    /// An update ends when the policy moved by one and a half times this divergence; none is never.
+    #[param(range = 0.0..=1e9)]
+    pub target_kl: Option<f32>,
+    /// The networks of the policy.
+    #[param(flatten)]
+    pub network: NetworkConfig,
+    /// Neurons of the hidden layers of the values, where they are not those of the policy.
+    #[param(range = 1..=4096)]
+    pub net_arch_vf: Option<Vec<usize>>,
+    /// Whether weights begin orthogonal, else as PyTorch's default.
+    #[param(default = true)]
+    pub ortho_init: bool,
+    /// Logarithm of the first deviation of continuous actions.
+    #[param(default = 0.0, range = -20.0..=20.0)]
+    pub log_std_init: f32,
+    /// Whether observations are normalised by what training saw.
+    #[param(default = false)]
+    pub norm_obs: bool,
+    /// Whether rewards are divided by the deviation of the discounted return.
+    #[param(default = false)]
+    pub norm_reward: bool,
+    /// Normalised observations lie within plus and minus this.
+    #[param(default = 10.0, range = 0.0..=1e9)]
+    pub clip_obs: f32,
+    /// Normalised rewards lie within plus and minus this.
+    #[param(default = 10.0, range = 0.0..=1e9)]
+    pub clip_reward: f32,
+    /// What fixes everything random.
+    #[param(default = 0)]
+    pub seed: u64,
+}
+
+impl PpoConfig {
+    /// The settings of rl-zoo for an environment, where it has some that need nothing but PPO.
+    pub fn preset(id: &str) -> Option<Preset<Self>> {
+        let base = Self::default();
+        let (environments, timesteps, config) = match id {
+            "CartPole-v1" => (
+                8,
+                100_000,
+                Self {
+                    n_steps: 32,
+                    batch_size: 256,
+                    gae_lambda: 0.8,
+                    gamma: 0.98,
+                    n_epochs: 20,
+                    learning_rate: 1e-3,
+                    learning_rate_schedule: Schedule::Linear,
+                    clip_range_schedule: Schedule::Linear,
+                    ..base
+                },
+            ),
+            "Acrobot-v1" => (
+                16,
+                1_000_000,
+                Self {
+                    n_steps: 256,
+                    gae_lambda: 0.94,
+                    n_epochs: 4,
+                    norm_obs: true,
+                    norm_reward: true,
+                    ..base
+                },
+            ),
+            "MountainCar-v0" => (
+                16,
+                1_000_000,
+                Self {
+                    n_steps: 16,
+                    gae_lambda: 0.98,
+                    n_epochs: 4,
+                    norm_obs: true,
+                    norm_reward: true,
+                    ..base
+                },
+            ),
+            _ => return None,
+        };
+        Some(Preset { environments, timesteps, config })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn settings_are_set_by_name() {
+        let mut config = PpoConfig::default();
+        for (name, text) in
+            [("net_arch", "32,16"), ("target_kl", "0.02"), ("net_arch_vf", "8"), ("activation_fn", "relu")]
+        {
+            config.set_text(name, text).unwrap();
+        }
+        assert_eq!((&config.network.net_arch[..], config.target_kl), (&[32, 16][..], Some(0.02)));
+        assert_eq!(config.net_arch_vf, Some(vec![8]));
+        assert!(config.set_text("gamma", "1.5").is_err());
+        assert_eq!(PpoConfig::from_map(&config.to_map()).unwrap(), config);
+        assert!(PpoConfig::preset("Nothing-v0").is_none());
+        PpoConfig::preset("CartPole-v1").unwrap().config.check().unwrap();
+    }
+}

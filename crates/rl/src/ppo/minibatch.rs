@@ -1,0 +1,187 @@
+//! The loss of some steps, and its gradients.
+
+use opendr_kernels::{Compute, Network, Tape};
+
+use super::rollout::Rollout;
+use crate::policy::{Head, Likelihood, Policy};
+
+/// Steps that are learnt from at once.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Minibatch {
+    pub observations: Vec<f32>,
+    actions: Vec<f32>,
+    log_probabilities: Vec<f32>,
+    advantages: Vec<f32>,
+    values: Vec<f32>,
+    returns: Vec<f32>,
+}
+
+impl Minibatch {
+    /// Copies the steps numbered `places`, with their advantages at mean 0 and deviation 1 where `normalise`.
+    pub fn gather(&mut self, rollout: &Rollout, places: &[usize], normalise: bool) {
+        let total = rollout.values.len();
+        let rows = |from: &[f32], to: &mut Vec<f32>| {
+            let width = from.len() / total;
+            to.clear();
+            for &place in places {
+                to.extend_from_slice(&from[place * width..(place + 1) * width]);
+            }
+        };
+        rows(&rollout.observations, &mut self.observations);
+        rows(&rollout.actions, &mut self.actions);
+        rows(&rollout.log_probabilities, &mut self.log_probabilities);
+        rows(&rollout.advantages, &mut self.advantages);
+        rows(&rollout.values, &mut self.values);
+        rows(&rollout.returns, &mut self.returns);
+        if normalise && places.len() > 1 {
+            let count = places.len() as f32;
+            let mean = self.advantages.iter().sum::<f32>() / count;
+            let squares = self.advantages.iter().map(|advantage| (advantage - mean).powi(2)).sum::<f32>();
+            let deviation = (squares / (count - 1.0)).sqrt() + 1e-8;
+            self.advantages.iter_mut().for_each(|advantage| *advantage = (*advantage - mean) / deviation);
+        }
+    }
+}
+
+/// Weights of the loss.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Weights {
+    pub clip_range: f32,
+    pub clip_range_vf: Option<f32>,
+    pub entropy: f32,
+    pub value: f32,
+}
+
+/// What the steps of a minibatch tell of a policy, as means.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct ActorLoss {
+    pub policy: f32,
+    pub entropy: f32,
+    pub approx_kl: f32,
+    pub clip_fraction: f32,
+}
+
+/// The pass of a policy, with memory that is used again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct ActorPass {
+    pub tape: Tape,
+    pub likelihood: Likelihood,
+    dlogs: Vec<f32>,
+    /// Of all parameters of the policy.
+    pub gradients: Vec<f32>,
+    /// Of the features, where they are wanted.
+    pub dfeatures: Vec<f32>,
+    pub loss: ActorLoss,
+}
+
+impl ActorPass {
+    /// Forward and back from `features`; only the gradients of the network behind the features, and of the deviations.
+    pub fn run(
+        &mut self,
+        compute: &Compute,
+        policy: &Policy,
+        features: &[f32],
+        steps: &Minibatch,
+        weights: Weights,
+        wants_input: bool,
+    ) {
+        self.gradients.clear();
+        self.gradients.resize(policy.parameters.len(), 0.0);
+        let from = policy.extractor.parameters();
+        let to = from + policy.network.parameters();
+        let (network, log_std) = (&policy.parameters[from..to], policy.log_std());
+        let outputs = policy.network.forward(compute, network, features, &mut self.tape);
+        self.likelihood.evaluate(compute.isa(), &policy.head, outputs, log_std, &steps.actions);
+        let (dnetwork, dlog_std) = self.gradients[from..].split_at_mut(to - from);
+        self.loss = self.likelihood.clipped_loss(steps, weights.clip_range, &mut self.dlogs);
+        let dentropy = -weights.entropy / steps.advantages.len() as f32;
+        let head: &Head = &policy.head;
+        self.likelihood.backward(
+            head,
+            outputs,
+            log_std,
+            &steps.actions,
+            [&mut self.dlogs, dlog_std],
+            dentropy,
+        );
+        let doutputs = &self.likelihood.doutputs;
+        let dfeatures =
+            policy.network.backward(compute, network, doutputs, &mut self.tape, Some(dnetwork), wants_input);
+        self.dfeatures.clear();
+        self.dfeatures.extend_from_slice(dfeatures);
+    }
+}
+
+impl Likelihood {
+    /// The clipped surrogate (Schulman et al., 2017, Eq. 7) and its gradient by the log-probabilities.
+    fn clipped_loss(&self, steps: &Minibatch, clip_range: f32, dlogs: &mut Vec<f32>) -> ActorLoss {
+        let scale = 1.0 / steps.advantages.len() as f32;
+        let mut loss = ActorLoss::default();
+        dlogs.clear();
+        let rows = self.log_probabilities.iter().zip(&steps.log_probabilities).zip(&steps.advantages);
+        for ((now, before), advantage) in rows {
+            let difference = now - before;
+            let ratio = difference.exp();
+            let clipped = ratio.clamp(1.0 - clip_range, 1.0 + clip_range);
+            let (free, bound) = (advantage * ratio, advantage * clipped);
+            loss.policy -= free.min(bound);
+            loss.approx_kl += (ratio - 1.0) - difference;
+            loss.clip_fraction += f32::from((ratio - 1.0).abs() > clip_range);
+            // Where the bound is the smaller one, it does not move.
+            dlogs.push(if bound < free { 0.0 } else { -scale * free });
+        }
+        loss.entropy = self.entropies.iter().sum();
+        for sum in [&mut loss.policy, &mut loss.approx_kl, &mut loss.clip_fraction, &mut loss.entropy] {
+            *sum *= scale;
+        }
+        loss
+    }
+}
+
+/// The pass of the values, with memory that is used again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CriticPass {
+    pub tape: Tape,
+    dvalues: Vec<f32>,
+    pub gradients: Vec<f32>,
+    pub dfeatures: Vec<f32>,
+    /// The mean squared error.
+    pub loss: f32,
+}
+
+impl CriticPass {
+    /// Forward and back from `features`.
+    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a pass")]
+    pub fn run(
+        &mut self,
+        compute: &Compute,
+        network: &Network,
+        parameters: &[f32],
+        features: &[f32],
+        steps: &Minibatch,
+        weights: Weights,
+        wants_input: bool,
+    ) {
+        self.gradients.clear();
+        self.gradients.resize(parameters.len(), 0.0);
+        let values = network.forward(compute, parameters, features, &mut self.tape);
+        let scale = 1.0 / values.len() as f32;
+        self.loss = 0.0;
+        self.dvalues.clear();
+        for ((value, before), returned) in values.iter().zip(&steps.values).zip(&steps.returns) {
+            let moved = value - before;
+            let range = weights.clip_range_vf.unwrap_or(f32::INFINITY);
+            let predicted = if moved.abs() > range { before + range.copysign(moved) } else { *value };
+            let error = predicted - returned;
+            self.loss += error * error;
+            let slope = if moved.abs() > range { 0.0 } else { 2.0 * weights.value * scale };
+            self.dvalues.push(slope * error);
+        }
+        self.loss *= scale;
+        let gradients = Some(&mut self.gradients[..]);
+        let dfeatures =
+            network.backward(compute, parameters, &self.dvalues, &mut self.tape, gradients, wants_input);
+        self.dfeatures.clear();
+        self.dfeatures.extend_from_slice(dfeatures);
+    }
+}

@@ -1,0 +1,263 @@
+//! Proximal policy optimisation (Schulman et al., 2017), as Stable-Baselines3 has it.
+
+mod advantage;
+mod config;
+mod minibatch;
+mod reward_normaliser;
+mod rollout;
+mod state;
+mod update;
+
+use opendr_engine::environment::EnvironmentSpec;
+use opendr_engine::params::Params as _;
+use opendr_engine::{Error, Random, Result};
+use opendr_kernels::{Adam, AdamOptions, Compute, Network};
+use opendr_simulation::vector::VecEnvironment;
+
+pub use advantage::{Trajectory, generalised_advantages};
+pub use config::PpoConfig;
+use minibatch::{ActorPass, CriticPass, Minibatch};
+use reward_normaliser::RewardNormaliser;
+use rollout::Rollout;
+
+use crate::algorithm::Report;
+use crate::interaction::Interaction;
+use crate::policy::{Beginning, ExtractorMemory, Head, Policy};
+use crate::schedule::remaining;
+
+/// PPO: acts for some steps, then goes over them several times, and keeps the policy near the one that acted.
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use opendr_rl::{Algorithm as _, Ppo, PpoConfig};
+/// use opendr_simulation::vector::{Autoreset, VectorOptions};
+///
+/// let preset = PpoConfig::preset("CartPole-v1").unwrap();
+/// let options = VectorOptions { autoreset: Autoreset::SameStep, ..VectorOptions::new(preset.environments) };
+/// let mut carts = opendr_simulation::make_vec("CartPole-v1", options)?;
+/// let mut ppo = Ppo::new(&preset.config, carts.spec())?;
+/// let report = ppo.train(&mut *carts, 2000, &mut |_| Ok(ControlFlow::Continue(())))?;
+/// assert!(report.episodes > 10);
+/// # Ok::<_, opendr_engine::Error>(())
+/// ```
+pub struct Ppo {
+    config: PpoConfig,
+    compute: Compute,
+    random: Random,
+    policy: Policy,
+    critic: Network,
+    critic_parameters: Vec<f32>,
+    actor_adam: Adam,
+    critic_adam: Adam,
+    interaction: Option<Interaction>,
+    reward_normaliser: Option<RewardNormaliser>,
+    rollout: Rollout,
+    memory: Memory,
+    updates: u64,
+    report: Report,
+}
+
+/// Memory that holds nothing from one iteration to the next.
+#[derive(Debug, Clone, Default)]
+struct Memory {
+    extractor: ExtractorMemory,
+    actor: ActorPass,
+    critic: CriticPass,
+    minibatch: Minibatch,
+    dfeatures: Vec<f32>,
+    actions: Vec<f32>,
+    values: Vec<f32>,
+    /// Last observations of truncated episodes, encoded, and where those episodes were.
+    final_encoded: Vec<f32>,
+    truncated: Vec<usize>,
+}
+
+/// Adam's epsilon in Stable-Baselines3's on-policy learners.
+const EPSILON: f32 = 1e-5;
+
+impl Ppo {
+    /// A learner for environments of this kind, on one thread.
+    ///
+    /// # Errors
+    /// `InvalidParam` for settings out of range, `Unsupported` for spaces that no policy of this crate has.
+    pub fn new(config: &PpoConfig, spec: &EnvironmentSpec) -> Result<Self> {
+        config.check()?;
+        let head = Head::stochastic(&spec.action)?;
+        let clip = config.norm_obs.then_some(config.clip_obs);
+        let mut policy = Policy::new(spec, head, &config.network, clip)?;
+        let of_values = config.net_arch_vf.clone().unwrap_or_else(|| config.network.net_arch.clone());
+        let of_values = crate::policy::NetworkConfig { net_arch: of_values, ..config.network.clone() };
+        let critic = of_values.network(policy.extractor.outputs(), 1)?;
+        let mut random = Random::at([config.seed, 0]);
+        let beginning =
+            |output| if config.ortho_init { Beginning::Orthogonal(output) } else { Beginning::Uniform };
+        policy.initialise(beginning(0.01), config.log_std_init, &mut random);
+        let mut critic_parameters = vec![0.0; critic.parameters()];
+        critic.initialise(beginning(1.0).of_output(), &mut random, &mut critic_parameters);
+        let options = AdamOptions { epsilon: EPSILON, ..AdamOptions::default() };
+        Ok(Self {
+            config: config.clone(),
+            compute: Compute::single(),
+            random,
+            actor_adam: Adam::new(policy.parameters.len(), options),
+            critic_adam: Adam::new(critic.parameters(), options),
+            policy,
+            critic,
+            critic_parameters,
+            interaction: None,
+            reward_normaliser: None,
+            rollout: Rollout::default(),
+            memory: Memory::default(),
+            updates: 0,
+            report: Report::default(),
+        })
+    }
+
+    /// The same on other threads, which change no bit.
+    #[must_use]
+    pub fn with_compute(self, compute: Compute) -> Self {
+        Self { compute, ..self }
+    }
+
+    /// Begins from a policy, e.g. one that was imported or cloned from demonstrations; values are still to be learnt.
+    ///
+    /// # Errors
+    /// `InvalidInput` when it sees, acts or is made otherwise.
+    pub fn set_policy(&mut self, policy: &Policy) -> Result<()> {
+        if !self.policy.is_made_like(policy) {
+            return Err(Error::invalid_input(format!(
+                "a policy of {:?} for {} cannot go on here; set its networks in the settings",
+                policy.config,
+                policy.observation()
+            )));
+        }
+        self.policy = policy.clone();
+        Ok(())
+    }
+
+    /// What observations are worth, `encoded` as networks take them.
+    fn values(&mut self, encoded: &[f32]) -> &[f32] {
+        let policy = &self.policy;
+        let of_pictures = &policy.parameters[..policy.extractor.parameters()];
+        let features =
+            policy.extractor.forward(&self.compute, of_pictures, encoded, &mut self.memory.extractor);
+        self.critic.forward(&self.compute, &self.critic_parameters, features, &mut self.memory.critic.tape)
+    }
+
+    /// What the learner thinks that observations, one or more in a row, are worth: the discounted sum of what will be
+    /// earned, normalised where rewards are.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the length does not fit, and for numbers that are not finite.
+    pub fn predict_values(&mut self, observations: &[f32]) -> Result<Vec<f32>> {
+        let encoder = &self.policy.encoder;
+        let rows = observations.len() / encoder.raw_len();
+        let mut encoded = vec![0.0; rows * encoder.encoded_len()];
+        encoder.encode(observations, &mut encoded)?;
+        Ok(self.values(&encoded).to_vec())
+    }
+
+    fn begin(&mut self, environments: &mut dyn VecEnvironment) -> Result<()> {
+        let encoder = &mut self.policy.encoder;
+        let interaction = Interaction::begin(environments, encoder, self.config.seed)?;
+        self.prepare(interaction.count());
+        self.interaction = Some(interaction);
+        Ok(())
+    }
+
+    /// Room for what this many environments answer.
+    fn prepare(&mut self, environments: usize) {
+        let steps = self.config.n_steps * environments;
+        let action = self.policy.head.action_len();
+        self.rollout = Rollout::new(steps, self.policy.encoder.encoded_len(), action);
+        self.memory.actions.resize(environments * action, 0.0);
+        let (gamma, clip) = (self.config.gamma, self.config.clip_reward);
+        self.reward_normaliser =
+            self.config.norm_reward.then(|| RewardNormaliser::new(environments, gamma, clip));
+    }
+
+    /// Acts for `n_steps` in every environment.
+    fn collect(
+        &mut self,
+        environments: &mut dyn VecEnvironment,
+        interaction: &mut Interaction,
+    ) -> Result<()> {
+        for step in 0..self.config.n_steps {
+            self.act(interaction, step);
+            interaction.step(environments, &mut self.policy.encoder, &self.memory.actions)?;
+            self.earn(interaction, step)?;
+        }
+        let mut last_values = std::mem::take(&mut self.memory.values);
+        last_values.clear();
+        last_values.extend_from_slice(self.values(&interaction.encoded));
+        self.rollout.finish(&last_values, self.config.gamma, self.config.gae_lambda);
+        self.memory.values = last_values;
+        Ok(())
+    }
+
+    /// Writes actions for what is seen, and what is thought of them.
+    fn act(&mut self, interaction: &Interaction, step: usize) {
+        let Self { policy, compute, critic, memory, rollout, random, .. } = self;
+        let (count, encoded) = (interaction.count(), &interaction.encoded[..]);
+        let rows = step * count..(step + 1) * count;
+        let (of_pictures, rest) = policy.parameters.split_at(policy.extractor.parameters());
+        let features = policy.extractor.forward(compute, of_pictures, encoded, &mut memory.extractor);
+        let values = critic.forward(compute, &self.critic_parameters, features, &mut memory.critic.tape);
+        rollout.values[rows.clone()].copy_from_slice(values);
+        let own = &rest[..policy.network.parameters()];
+        let outputs = policy.network.forward(compute, own, features, &mut memory.actor.tape);
+        let likelihood = &mut memory.actor.likelihood;
+        likelihood.sample(compute.isa(), &policy.head, outputs, policy.log_std(), random);
+        policy.head.environment_actions(&likelihood.actions, &mut memory.actions);
+        rollout.log_probabilities[rows.clone()].copy_from_slice(&likelihood.log_probabilities);
+        let wide = |width: usize| rows.start * width..rows.end * width;
+        rollout.actions[wide(policy.head.action_len())].copy_from_slice(&likelihood.actions);
+        rollout.observations[wide(policy.encoder.encoded_len())].copy_from_slice(encoded);
+    }
+
+    /// Keeps what a step earned. Where an episode was cut off by time alone, what its last observation is worth is earned
+    /// too.
+    fn earn(&mut self, interaction: &Interaction, step: usize) -> Result<()> {
+        let (count, batch) = (interaction.count(), &interaction.batch);
+        let rows = step * count..(step + 1) * count;
+        let ends = &mut self.rollout.ends[rows.clone()];
+        for (end, (terminated, truncated)) in
+            ends.iter_mut().zip(batch.terminated.iter().zip(&batch.truncated))
+        {
+            *end = *terminated || *truncated;
+        }
+        let rewards = &mut self.rollout.rewards[rows.clone()];
+        match &mut self.reward_normaliser {
+            Some(normaliser) => normaliser.normalise(&batch.rewards, ends, rewards),
+            None => rewards.iter_mut().zip(&batch.rewards).for_each(|(to, reward)| *to = *reward as f32),
+        }
+        let is_cut = |index: &usize| batch.truncated[*index] && !batch.terminated[*index];
+        self.memory.truncated.clear();
+        self.memory.truncated.extend((0..count).filter(is_cut));
+        if self.memory.truncated.is_empty() {
+            return Ok(());
+        }
+        let mut encoded = std::mem::take(&mut self.memory.final_encoded);
+        let size = self.policy.encoder.encoded_len();
+        encoded.resize(self.memory.truncated.len() * size, 0.0);
+        for (&index, encoded) in self.memory.truncated.iter().zip(encoded.chunks_exact_mut(size)) {
+            self.policy.encoder.encode(interaction.final_observation(index), encoded)?;
+        }
+        self.values(&encoded);
+        let values = self.memory.critic.tape.output();
+        for (&index, value) in self.memory.truncated.iter().zip(values) {
+            self.rollout.rewards[rows.start + index] += self.config.gamma * value;
+        }
+        self.memory.final_encoded = encoded;
+        Ok(())
+    }
+
+    fn schedules(&self, timesteps: u64, total: u64) -> (f32, f32) {
+        let (left, config) = (remaining(timesteps, total), &self.config);
+        (
+            config.learning_rate_schedule.at(config.learning_rate, left),
+            config.clip_range_schedule.at(config.clip_range, left),
+        )
+    }
+}

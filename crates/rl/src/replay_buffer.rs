@@ -1,0 +1,191 @@
+//! What off-policy learners remember.
+
+use opendr_engine::environment::StateReader;
+use opendr_engine::{Error, Random, Result};
+
+use crate::saved_state::SavedState;
+
+/// Steps of the past, of which the oldest make way.
+#[derive(Debug, Clone)]
+pub(crate) struct ReplayBuffer {
+    capacity: usize,
+    len: usize,
+    next: usize,
+    widths: [usize; 2],
+    observations: Vec<f32>,
+    next_observations: Vec<f32>,
+    actions: Vec<f32>,
+    rewards: Vec<f32>,
+    /// 0 where the episode terminated, else 1.
+    continues: Vec<f32>,
+}
+
+/// Steps that were drawn; memory that is used again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Transitions {
+    pub observations: Vec<f32>,
+    pub next_observations: Vec<f32>,
+    pub actions: Vec<f32>,
+    pub rewards: Vec<f32>,
+    pub continues: Vec<f32>,
+}
+
+/// One step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Transition<'a> {
+    pub observation: &'a [f32],
+    pub action: &'a [f32],
+    pub reward: f32,
+    pub next_observation: &'a [f32],
+    pub terminated: bool,
+}
+
+/// No buffer has more numbers than this: 8 GiB.
+const MOST_NUMBERS: usize = 1 << 31;
+
+/// The rows of a saved buffer.
+pub(crate) const ROWS: [&str; 5] = [
+    "replay_observations",
+    "replay_next_observations",
+    "replay_actions",
+    "replay_rewards",
+    "replay_continues",
+];
+
+impl ReplayBuffer {
+    /// Room for `capacity` steps of so many numbers of observations and actions.
+    pub fn new(capacity: usize, observation: usize, action: usize) -> Result<Self> {
+        let numbers = (2 * observation + action + 2).checked_mul(capacity);
+        if capacity == 0 || numbers.is_none_or(|numbers| numbers > MOST_NUMBERS) {
+            return Err(Error::invalid_param(format!(
+                "buffer_size = {capacity} steps of {observation} and {action} numbers; give at least 1, and at most {MOST_NUMBERS} numbers"
+            )));
+        }
+        let zeros = |width: usize| vec![0.0; capacity * width];
+        Ok(Self {
+            capacity,
+            len: 0,
+            next: 0,
+            widths: [observation, action],
+            observations: zeros(observation),
+            next_observations: zeros(observation),
+            actions: zeros(action),
+            rewards: zeros(1),
+            continues: zeros(1),
+        })
+    }
+
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn add(&mut self, step: Transition<'_>) {
+        let ([observation, action], at) = (self.widths, self.next);
+        self.observations[at * observation..(at + 1) * observation].copy_from_slice(step.observation);
+        self.next_observations[at * observation..(at + 1) * observation]
+            .copy_from_slice(step.next_observation);
+        self.actions[at * action..(at + 1) * action].copy_from_slice(step.action);
+        self.rewards[at] = step.reward;
+        self.continues[at] = f32::from(!step.terminated);
+        self.next = (at + 1) % self.capacity;
+        self.len = self.capacity.min(self.len + 1);
+    }
+
+    /// Draws `count` steps, each as likely as the others.
+    pub fn sample(&self, count: usize, random: &mut Random, drawn: &mut Transitions) {
+        let [observation, action] = self.widths;
+        drawn.clear();
+        for _ in 0..count {
+            let at = random.below(self.len);
+            let row = at * observation..(at + 1) * observation;
+            drawn.observations.extend_from_slice(&self.observations[row.clone()]);
+            drawn.next_observations.extend_from_slice(&self.next_observations[row]);
+            drawn.actions.extend_from_slice(&self.actions[at * action..(at + 1) * action]);
+            drawn.rewards.push(self.rewards[at]);
+            drawn.continues.push(self.continues[at]);
+        }
+    }
+
+    pub fn save(&self, state: &mut SavedState) {
+        let ([observation, action], len) = (self.widths, self.len);
+        state.words.push(len as u64);
+        state.words.push(self.next as u64);
+        state.add(ROWS[0], &self.observations[..len * observation]);
+        state.add(ROWS[1], &self.next_observations[..len * observation]);
+        state.add(ROWS[2], &self.actions[..len * action]);
+        state.add(ROWS[3], &self.rewards[..len]);
+        state.add(ROWS[4], &self.continues[..len]);
+    }
+
+    pub fn load(&mut self, state: &SavedState, words: &mut StateReader<'_>) -> Result<()> {
+        let ([observation, action], len) = (self.widths, words.count(self.capacity)?);
+        self.next = words.count(self.capacity - 1)?;
+        self.len = len;
+        state.fill(ROWS[0], &mut self.observations[..len * observation])?;
+        state.fill(ROWS[1], &mut self.next_observations[..len * observation])?;
+        state.fill(ROWS[2], &mut self.actions[..len * action])?;
+        state.fill(ROWS[3], &mut self.rewards[..len])?;
+        state.fill(ROWS[4], &mut self.continues[..len])
+    }
+}
+
+impl Transitions {
+    fn clear(&mut self) {
+        self.rows().into_iter().for_each(Vec::clear);
+    }
+
+    fn rows(&mut self) -> [&mut Vec<f32>; 5] {
+        let Self { observations, next_observations, actions, rewards, continues } = self;
+        [observations, next_observations, actions, rewards, continues]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::environment::Snapshot;
+
+    use super::*;
+
+    fn filled(steps: usize) -> ReplayBuffer {
+        let mut buffer = ReplayBuffer::new(5, 2, 1).unwrap();
+        for step in 0..steps {
+            let number = step as f32;
+            buffer.add(Transition {
+                observation: &[number, -number],
+                action: &[10.0 * number],
+                reward: 100.0 * number,
+                next_observation: &[number + 1.0, 0.0],
+                terminated: step % 2 == 0,
+            });
+        }
+        buffer
+    }
+
+    #[test]
+    fn the_newest_steps_are_drawn_whole() {
+        let (buffer, mut random, mut drawn) = (filled(7), Random::new(1), Transitions::default());
+        buffer.sample(500, &mut random, &mut drawn);
+        let mut seen = [0; 7];
+        for at in 0..500 {
+            let number = drawn.observations[2 * at];
+            seen[number as usize] += 1;
+            assert_eq!(drawn.next_observations[2 * at], number + 1.0);
+            assert_eq!((drawn.actions[at], drawn.rewards[at]), (10.0 * number, 100.0 * number));
+            assert_eq!(drawn.continues[at], number % 2.0);
+        }
+        assert!(seen[..2] == [0, 0] && seen[2..].iter().all(|count| *count > 60), "{seen:?}");
+    }
+
+    #[test]
+    fn comes_back_from_a_state() {
+        let buffer = filled(3);
+        let mut state = SavedState::new("test", Snapshot::new("none"));
+        buffer.save(&mut state);
+        let mut other = ReplayBuffer::new(5, 2, 1).unwrap();
+        other.load(&state, &mut state.words.read("test").unwrap()).unwrap();
+        assert_eq!((other.len, other.next, &other.actions), (3, 3, &buffer.actions));
+        let mut small = ReplayBuffer::new(2, 2, 1).unwrap();
+        assert!(small.load(&state, &mut state.words.read("test").unwrap()).is_err());
+        assert!(ReplayBuffer::new(1 << 40, 2, 1).is_err());
+    }
+}
