@@ -93,10 +93,11 @@ fn densities(distribution: &Distribution, numbers: &[f64]) -> Vec<f64> {
         }
     };
     let mut counts = vec![0.0; cells];
-    places
-        .iter()
-        .filter_map(|place| counts.get(*place).map(|_| *place))
-        .for_each(|place| counts[place] += 1.0);
+    for place in places {
+        if let Some(count) = counts.get_mut(place) {
+            *count += 1.0;
+        }
+    }
     let kernels: Vec<(usize, f64)> =
         counts.iter().copied().enumerate().filter(|(_, count)| *count > 0.0).collect();
     let total = 1.0 + kernels.iter().map(|(_, count)| count).sum::<f64>();

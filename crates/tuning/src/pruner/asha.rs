@@ -10,7 +10,7 @@ use crate::records::{StudyRecord, TrialRecord, TrialState};
 /// Rungs stand at `first`, `first * factor`, `first * factor^2`, ... steps. A trial that reaches one is paused unless it is
 /// among the best 1 / `factor` of all that ever did; as more reach the rung, paused ones come to be among them, and are
 /// asked for again, those of the highest rung first, before any new trial is begun. The trial decides itself when it is
-/// complete.
+/// complete, and is so at its last step whatever the advice.
 #[derive(Debug, Clone, Copy)]
 pub struct Asha {
     first: i64,

@@ -34,7 +34,7 @@ fn rotate(matrix: &mut [f64], vectors: &mut [f64], size: usize, p: usize, q: usi
     let tangent = ratio.signum() / (ratio.abs() + ratio.hypot(1.0));
     let cosine = 1.0 / tangent.hypot(1.0);
     let sine = tangent * cosine;
-    let mut turn = |of: &mut [f64], a: usize, b: usize| {
+    let turn = |of: &mut [f64], a: usize, b: usize| {
         (of[a], of[b]) = (cosine * of[a] - sine * of[b], sine * of[a] + cosine * of[b]);
     };
     for row in 0..size {

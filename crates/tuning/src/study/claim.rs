@@ -47,7 +47,7 @@ impl Study {
             claimed = Some((number, resumed));
             Ok(operations)
         })?;
-        let trial = |(number, resumed)| {
+        let trial = |(number, resumed): (usize, Option<Value>)| {
             let params = self.inspect(|study| study.trials.get(number).map(|trial| trial.params.clone()));
             Trial { study: self, number, params: params.unwrap_or_default(), resumed }
         };

@@ -45,7 +45,7 @@ pub fn bytes_from_file(path: &Path) -> Result<Vec<u8>> {
 /// The operations that make the studies of a database.
 pub fn operations_from_bytes(bytes: &[u8]) -> Result<Vec<Operation>> {
     let database = Database::new(bytes)?;
-    let version = database.table("version_info")?.rows().map(|row| row.int("schema_version")).next_back();
+    let version = database.table("version_info")?.rows().map(|row| row.int("schema_version")).last();
     match version.transpose()? {
         Some(SCHEMA) => {}
         version => {
