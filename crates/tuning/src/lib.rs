@@ -3,7 +3,6 @@
 //! reads and goes on with. Nothing here knows what a trial does.
 
 mod distribution;
-mod figures;
 mod importance;
 mod normal;
 mod pruner;
@@ -16,7 +15,6 @@ mod table;
 mod timestamp;
 
 pub use distribution::Distribution;
-pub use figures::{history_figure, importance_figure};
 pub use importance::importance_from_study;
 pub use pruner::{Advice, Asha, Hyperband, Median, NoPruner, Pruner};
 pub use records::{Direction, StudyRecord, Suggestion, TrialRecord, TrialState};

@@ -23,7 +23,7 @@ fn optunas_study_is_read() {
         assert_eq!(trial.number, number);
     }
     let trial = &study.trials[5];
-    assert_eq!(trial.params["whole"].value(), (trial.params["whole"].number as i64).into());
+    assert_eq!(trial.params["whole"].value(), trial.params["whole"].number as i64);
     assert_eq!(trial.values, [trial.params["x"].number * 2.0]);
     assert_eq!(trial.reports.values().copied().collect::<Vec<_>>(), [5.0, 5.5]);
     assert_eq!(study.trials[0].values, [f64::INFINITY]);
@@ -42,11 +42,13 @@ fn damaged_databases_never_panic() {
         for _ in 0..=random.below(8) {
             let page = random.below(bytes.len() / 4096) * 4096;
             // Half of the time in the header of a page, where the structure is.
-            let at = page + random.below(if random.chance(0.5) { 64 } else { 4096 });
+            let within = if random.chance(0.5) { 64 } else { 4096 };
+            let at = page + random.below(within);
             bytes[at] = random.bits() as u8;
         }
         if random.chance(0.1) {
-            bytes.truncate(random.below(bytes.len()));
+            let length = random.below(bytes.len());
+            bytes.truncate(length);
         }
         refused += usize::from(Storage::from_sqlite_bytes(&bytes).is_err());
     }
