@@ -82,7 +82,7 @@ fn brackets_begin_later_and_are_fewer() {
         let begun = trial.record().unwrap().last_report().map_or(0, |(step, _)| step);
         let mut outcome = Outcome::from(1.0);
         for step in begun + 1..=9 {
-            if trial.report(step, trial.number() as f64).unwrap() == Advice::Pause {
+            if trial.report(step, -(trial.number() as f64)).unwrap() == Advice::Pause {
                 let first = &mut first_pause[hyperband.bracket(trial.number())];
                 *first = step.min(*first);
                 outcome = Outcome::Paused(step.into());

@@ -117,19 +117,6 @@ fn learning_samplers_beat_random_search() {
 }
 
 #[test]
-fn running_trials_keep_others_away() {
-    let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
-    let study =
-        Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap().with_sampler(Tpe::new(3));
-    let objective = |trial: &Trial<'_>| trial.float("x").map(|x| Outcome::from((x - 0.5).abs()));
-    study.optimize(&space, &Budget::more(30), objective, |_, _| Progress::Continue).unwrap();
-    let spread = |values: &[f64]| values.iter().map(|x| (x - 0.5).abs()).sum::<f64>() / values.len() as f64;
-    let running: Vec<f64> = (0..40).map(|_| study.ask(&space).unwrap().float("x").unwrap()).collect();
-    let (first, last) = (spread(&running[..8]), spread(&running[32..]));
-    assert!(last > 1.2 * first, "{first} {last}");
-}
-
-#[test]
 fn choices_of_any_kind_are_learned() {
     let choices = [json!(null), json!({"a": 1}), json!([1, 2]), json!(2.5), json!("x")];
     let space = SearchSpace::new().with("c", Distribution::categorical(choices.clone()).unwrap()).unwrap();
