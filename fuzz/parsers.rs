@@ -10,7 +10,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 17] = [
+pub const PARSERS: [(&str, Parser); 19] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("card_toml", card_toml),
@@ -28,6 +28,8 @@ pub const PARSERS: [(&str, Parser); 17] = [
     ("track_text", track_text),
     ("series_text", series_text),
     ("skeleton_text", skeleton_text),
+    ("optuna_journal", optuna_journal),
+    ("optuna_sqlite", optuna_sqlite),
 ];
 
 fn manifest_json(bytes: &[u8]) {
@@ -130,6 +132,14 @@ fn series_text(bytes: &[u8]) {
 
 fn skeleton_text(bytes: &[u8]) {
     opendr_datasets::fuzzing::skeleton_text(&String::from_utf8_lossy(bytes));
+}
+
+fn optuna_journal(bytes: &[u8]) {
+    opendr_tuning::Storage::from_journal_bytes(bytes).ok();
+}
+
+fn optuna_sqlite(bytes: &[u8]) {
+    opendr_tuning::Storage::from_sqlite_bytes(bytes).ok();
 }
 
 /// Feeds the parser called `name`.

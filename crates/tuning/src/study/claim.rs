@@ -1,0 +1,139 @@
+//! Which trial comes next, and with what parameters.
+
+use std::collections::BTreeMap;
+
+use opendr_engine::Result;
+use serde_json::Value;
+
+use crate::Timestamp;
+use crate::distribution::Distribution;
+use crate::records::{PAUSED_STATE, StudyRecord, Suggestion, TrialRecord, TrialState};
+use crate::space::{Parameter, SearchSpace};
+use crate::storage::{NewTrial, Notes, Operation, is_dead};
+use crate::study::{FIXED, Study, Trial, check_compatible, last_sign, outcome};
+
+impl Study {
+    /// The next trial: a paused one that should go on, one of the queue, or a new one where `may_begin` allows it. Choice
+    /// and parameters are written while no other worker can write, so no two get the same, and each knows of all others.
+    pub(super) fn claim(
+        &self,
+        space: &SearchSpace,
+        may_begin: impl FnOnce(&StudyRecord) -> bool,
+    ) -> Result<Option<Trial<'_>>> {
+        let mut claimed = None;
+        self.storage().transact(|replay, _| {
+            let study = replay
+                .study(self.id)
+                .ok_or_else(|| opendr_engine::Error::not_found("the study has been deleted"))?;
+            let mut operations = self.bury(study);
+            let queued =
+                || study.trials.iter().find(|trial| trial.state == TrialState::Waiting && !trial.is_paused());
+            let promoted = self.pruner.promotable(study).and_then(|number| study.trials.get(number));
+            let (number, id, known) = match promoted.or_else(queued) {
+                Some(trial) => {
+                    let (state, values, at) = (TrialState::Running, Vec::new(), Timestamp::now());
+                    operations.push(Operation::SetState { trial: trial.id, state, values, at });
+                    (trial.number, trial.id, Some(trial))
+                }
+                None if may_begin(study) => {
+                    let trial = Box::new(NewTrial::new(TrialState::Running));
+                    operations.push(Operation::CreateTrial { study: self.id, trial });
+                    (study.trials.len(), replay.next_trial(), None)
+                }
+                None => return Ok(operations),
+            };
+            let resumed = known.and_then(|trial| trial.system_attributes.get(PAUSED_STATE)).cloned();
+            operations.extend(self.parameters(study, space, number, id, known)?);
+            claimed = Some((number, resumed));
+            Ok(operations)
+        })?;
+        let trial = |(number, resumed): (usize, Option<Value>)| {
+            let params = self.inspect(|study| study.trials.get(number).map(|trial| trial.params.clone()));
+            Trial { study: self, number, params: params.unwrap_or_default(), resumed }
+        };
+        Ok(claimed.map(trial))
+    }
+
+    /// Ends the trials whose workers are dead. One that had been paused before waits again, with the state that it had.
+    fn bury(&self, study: &StudyRecord) -> Vec<Operation> {
+        let silent = |trial: &TrialRecord| {
+            self.abandoned_after
+                .zip(last_sign(trial))
+                .is_some_and(|(after, last)| Timestamp::now().since(last) > after)
+        };
+        let running = study.trials.iter().filter(|trial| trial.state == TrialState::Running);
+        let dead = running.filter(|trial| is_dead(&trial.worker) || silent(trial));
+        dead.flat_map(|trial| match trial.system_attributes.contains_key(PAUSED_STATE) {
+            true => vec![Operation::SetState {
+                trial: trial.id,
+                state: TrialState::Waiting,
+                values: Vec::new(),
+                at: Timestamp::now(),
+            }],
+            false => outcome::fail(trial, "its worker died"),
+        })
+        .collect()
+    }
+
+    /// The parameters of a trial that it does not have yet.
+    fn parameters(
+        &self,
+        study: &StudyRecord,
+        space: &SearchSpace,
+        number: usize,
+        id: usize,
+        known: Option<&TrialRecord>,
+    ) -> Result<Vec<Operation>> {
+        let mut params = known.map(|trial| trial.params.clone()).unwrap_or_default();
+        let fixed = known.and_then(|trial| trial.system_attributes.get(FIXED)).and_then(Value::as_object);
+        let mut operations = Vec::new();
+        for group in space.groups() {
+            let takes_part = group.first().is_some_and(|parameter| takes_part(parameter, &params));
+            let missing =
+                group.into_iter().filter(|parameter| takes_part && !params.contains_key(&parameter.name));
+            let (mut given, mut wanted): (Vec<(&Parameter, f64)>, Vec<&Parameter>) = Default::default();
+            for parameter in missing {
+                check_compatible(study, &parameter.name, &parameter.distribution)?;
+                let fixed = fixed.and_then(|fixed| fixed.get(&parameter.name));
+                // What a queued trial may not be is chosen, as by Optuna; whoever put it there is long gone.
+                let fixed = fixed.and_then(|value| parameter.distribution.number_from_value(value).ok());
+                match fixed.or_else(|| only_number(&parameter.distribution)) {
+                    Some(number) => given.push((parameter, number)),
+                    None => wanted.push(parameter),
+                }
+            }
+            if !wanted.is_empty() {
+                let drawn = self.sampler.draw(study, number, &wanted)?;
+                given.extend(wanted.into_iter().zip(drawn.numbers));
+                operations.extend(drawn.notes.into_iter().map(|(key, value)| Operation::NoteOfTrial {
+                    trial: id,
+                    notes: Notes::System,
+                    key,
+                    value,
+                }));
+            }
+            for (parameter, number) in given {
+                let suggestion = Suggestion { distribution: parameter.distribution.clone(), number };
+                params.insert(parameter.name.clone(), suggestion.clone());
+                operations.push(Operation::SetParam { trial: id, name: parameter.name.clone(), suggestion });
+            }
+        }
+        Ok(operations)
+    }
+}
+
+/// Whether a parameter's condition holds.
+fn takes_part(parameter: &Parameter, params: &BTreeMap<String, Suggestion>) -> bool {
+    parameter.condition.as_ref().is_none_or(|condition| {
+        let parent = params.get(&condition.parent);
+        parent.is_some_and(|parent| condition.values.contains(&parent.value()))
+    })
+}
+
+fn only_number(distribution: &Distribution) -> Option<f64> {
+    distribution.is_single().then_some(match distribution {
+        Distribution::Float { low, .. } => *low,
+        Distribution::Int { low, .. } => *low as f64,
+        Distribution::Categorical { .. } => 0.0,
+    })
+}
