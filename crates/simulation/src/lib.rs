@@ -17,6 +17,7 @@ mod sine_cosine;
 
 pub mod classic_control;
 pub mod raycast;
+pub mod uav_corridor;
 pub mod vector;
 pub mod wrappers;
 
