@@ -1,17 +1,7 @@
-use opendr_engine::environment::{Environment, ResetOptions};
-use opendr_engine::params::{ParamMap, ParamValue};
+use opendr_engine::environment::ResetOptions;
 
 use super::*;
-use crate::{Registered, Registry, make};
-
-fn corridor(params: UavDepthCorridorParams) -> UavDepthCorridor {
-    UavDepthCorridor::new(&params).unwrap()
-}
-
-fn still() -> UavDepthCorridorParams {
-    let options = CorridorOptions { min_obstacles: 0, max_obstacles: 0, walls: 0.0, ..Default::default() };
-    UavDepthCorridorParams { options, ..Default::default() }
-}
+use crate::make;
 
 /// Successes of a controller in 500 fixed worlds.
 fn successes(id: &str, controller: &mut dyn CorridorController) -> u32 {
