@@ -10,6 +10,8 @@ use super::{LANES, Pose, Scene, Vector, dot, length, minus};
 pub struct Camera {
     width: usize,
     height: usize,
+    /// Half of a pixel's side, one metre ahead.
+    scale: f32,
     /// How far to the left each column looks, over how far ahead; filled up to whole packets.
     pub(super) columns: Vec<[f32; LANES]>,
     /// How far up each row looks, over how far ahead.
@@ -50,7 +52,7 @@ impl Camera {
             })
         });
         let rows = (0..height).map(|row| scale * (height as f32 - 1.0 - 2.0 * row as f32));
-        Ok(Self { width, height, columns: columns.collect(), rows: rows.collect() })
+        Ok(Self { width, height, scale, columns: columns.collect(), rows: rows.collect() })
     }
 
     /// Pixels a row.
@@ -67,6 +69,15 @@ impl Camera {
     pub fn direction(&self, column: usize, row: usize) -> Vector {
         let left = self.columns.get(column / LANES).map_or(0.0, |packet| packet[column % LANES]);
         [1.0, left, self.rows.get(row).copied().unwrap_or(0.0)]
+    }
+
+    /// Where a point of the world is in the picture, pixels from its upper left corner; `None` for a point that is not
+    /// ahead.
+    pub fn project(&self, pose: &Pose, point: Vector) -> Option<[f32; 2]> {
+        let aside = minus(point, pose.position);
+        let [ahead, left, up] = pose.axes.map(|axis| dot(axis, aside));
+        let place = |pixels: usize, aside: f32| pixels as f32 / 2.0 - aside / (ahead * self.scale * 2.0);
+        (ahead > 0.0).then(|| [place(self.width, left), place(self.height, up)])
     }
 
     /// Looks at a scene, at most `range` metres ahead (along the optical axis, as depth cameras measure).

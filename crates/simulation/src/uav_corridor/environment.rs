@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
-    Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
+    Dtype, Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
 use opendr_engine::params::Params as _;
 use opendr_engine::{Random, Result};
@@ -214,8 +214,8 @@ fn observation_space(params: &UavDepthCorridorParams) -> Result<Space> {
         return Space::bounded(low, high, vec![numbers + unbounded]);
     }
     let mut parts = BTreeMap::from([
-        ("depth_cam".to_owned(), Space::uniform(0.0, 255.0, &[SIDE, SIDE, 1])?),
-        ("moving_target".to_owned(), Space::uniform(f32::NEG_INFINITY, f32::INFINITY, &[3])?),
+        ("depth_cam".to_owned(), Space::uniform(0.0, 255.0, &[SIDE, SIDE, 1])?.with_dtype(Dtype::Uint8)?),
+        ("moving_target".to_owned(), Space::symmetric(&[f32::INFINITY; 3]).with_dtype(Dtype::Float64)?),
     ]);
     if params.form.pose {
         parts.insert("pose".to_owned(), Space::symmetric(&pose));

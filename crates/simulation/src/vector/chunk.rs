@@ -1,6 +1,8 @@
 //! The environments that one thread steps.
 
-use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions, Step};
+use opendr_engine::environment::{
+    Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader, Step,
+};
 use opendr_engine::{Error, Result, ResultExt as _};
 
 use super::{Autoreset, Batch};
@@ -67,6 +69,22 @@ impl Chunk {
                 self.outcome = done;
             }
         }
+    }
+
+    pub fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        for (index, environment) in self.environments.iter().enumerate() {
+            snapshot.push(u64::from(self.over[index]));
+            environment.save_state(snapshot).context(|| format!("environment {}", self.first + index))?;
+        }
+        Ok(())
+    }
+
+    pub fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        for (index, environment) in self.environments.iter_mut().enumerate() {
+            self.over[index] = state.flag()?;
+            environment.load_state(state).context(|| format!("environment {}", self.first + index))?;
+        }
+        Ok(())
     }
 
     fn reset(&mut self, index: usize) -> Result<()> {

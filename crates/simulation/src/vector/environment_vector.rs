@@ -3,7 +3,7 @@
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, JoinHandle};
 
-use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions};
+use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Result};
 
 use super::chunk::{Chunk, Order};
@@ -114,6 +114,22 @@ impl VecEnvironment for EnvironmentVector {
             // Episodes that begin by themselves begin as by a plain reset.
             chunk.options.clear();
         })
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.own.save_state(snapshot)?;
+        for worker in &self.workers {
+            worker.chunk.as_ref().ok_or_else(thread_ended)?.save_state(snapshot)?;
+        }
+        Ok(())
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.own.load_state(state)?;
+        for worker in &mut self.workers {
+            worker.chunk.as_mut().ok_or_else(thread_ended)?.load_state(state)?;
+        }
+        Ok(())
     }
 }
 

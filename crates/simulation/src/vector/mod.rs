@@ -7,7 +7,7 @@ mod environment_vector;
 #[cfg(test)]
 mod tests;
 
-use opendr_engine::environment::{EnvironmentSpec, ResetOptions};
+use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Result};
 
 pub use batch::Batch;
@@ -90,6 +90,51 @@ pub trait VecEnvironment: Send {
     /// without autoreset where an episode is over. The message names the environment; the others may have
     /// taken their step.
     fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
+
+    /// Writes everything that decides the future of all environments.
+    ///
+    /// # Errors
+    /// `Unsupported` where a world cannot be written, `InvalidInput` before the first reset.
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        let _ = snapshot;
+        Err(Error::unsupported(format!("{} keeps no snapshots side by side", self.spec().id)))
+    }
+
+    /// Takes back what [`Self::save_state`] wrote, in the same order.
+    ///
+    /// # Errors
+    /// `Unsupported` where a world cannot be written, `Format` when the snapshot is of something else.
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        let _ = state;
+        Err(Error::unsupported(format!("{} keeps no snapshots side by side", self.spec().id)))
+    }
+
+    /// The state of all environments, to come back to. The last [`Batch`] is the caller's to keep: the next action
+    /// follows from it. Threads and arrays leave no trace in it.
+    ///
+    /// # Errors
+    /// As [`Self::save_state`].
+    fn snapshot(&self) -> Result<Snapshot> {
+        let mut snapshot = Snapshot::new(&snapshot_id(self.spec(), self.count()));
+        self.save_state(&mut snapshot)?;
+        Ok(snapshot)
+    }
+
+    /// Goes back to a state: the same actions then have the same outcome, bit for bit.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a snapshot of others, or of another count of them, else as [`Self::load_state`]. After an
+    /// error the environments must be reset.
+    fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
+        let mut state = snapshot.read(&snapshot_id(self.spec(), self.count()))?;
+        self.load_state(&mut state)?;
+        state.finish()
+    }
+}
+
+/// What a snapshot of several is a snapshot of.
+fn snapshot_id(spec: &EnvironmentSpec, count: usize) -> String {
+    format!("{count} x {}", spec.id)
 }
 
 /// How [`make_vec`](crate::make_vec) makes environments.
