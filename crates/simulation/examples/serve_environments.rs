@@ -1,4 +1,4 @@
-//! Steps environments as lines of JSON ask for it: the other half of `tests/simulation/compare_gymnasium.py`.
+//! Steps environments as lines of JSON ask for it: the other half of `tests/simulation/test_gymnasium.py`.
 //!
 //! `{"id": "Pendulum-v1", "state": [...], "action": [...]}` takes one step from a state;
 //! `{"id": "Pendulum-v1", "seed": 1, "actions": [[...], ...]}` plays an episode. Numbers that come in are the bits of

@@ -11,14 +11,18 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 
+mod drawing;
+mod film;
 mod numpy_random;
 mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
 pub mod raycast;
+pub mod uav_corridor;
 pub mod vector;
 pub mod wrappers;
 
+pub use film::Film;
 pub use numpy_random::NumpyRandom;
 pub use registry::{Registered, Registration, Registry, make, make_vec};

@@ -9,6 +9,7 @@ use opendr_engine::{Error, Result};
 use crate::classic_control::{
     Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
 };
+use crate::uav_corridor;
 use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
 use crate::wrappers::{Checked, TimeLimit};
 
@@ -71,7 +72,7 @@ impl Registration {
 }
 
 /// An environment with the time limit of its spec and with checks.
-fn checked(environment: impl Environment + 'static) -> Result<Box<dyn Environment>> {
+pub(crate) fn checked(environment: impl Environment + 'static) -> Result<Box<dyn Environment>> {
     Ok(match environment.spec().max_episode_steps {
         Some(limit) => Box::new(Checked::new(TimeLimit::new(environment, limit)?)),
         None => Box::new(Checked::new(environment)),
@@ -84,14 +85,15 @@ pub struct Registry {
     entries: Vec<Registration>,
 }
 
-static BUILTIN: LazyLock<Registry> = LazyLock::new(|| Registry {
-    entries: vec![
+static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
+    let classic = [
         Registration::of::<Acrobot>(),
         Registration::of::<CartPole>(),
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
         Registration::of::<Pendulum>(),
-    ],
+    ];
+    Registry { entries: classic.into_iter().chain(uav_corridor::registrations()).collect() }
 });
 
 impl Registry {

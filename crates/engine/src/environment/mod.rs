@@ -10,7 +10,7 @@ use crate::{Error, Result};
 
 pub use info::Info;
 pub use snapshot::{Snapshot, StateReader};
-pub use space::Space;
+pub use space::{Dtype, Space};
 pub use spec::EnvironmentSpec;
 
 /// What a reset is asked for beside its seed, e.g. `low` and `high` of the initial state.

@@ -3,10 +3,12 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use opendr_engine::Result;
+use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
 use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
@@ -89,6 +91,10 @@ impl Dynamics for AcrobotDynamics {
         for (seen, number) in observation.iter_mut().zip(all) {
             *seen = number as f32;
         }
+    }
+
+    fn picture(&self, state: &[f64; 4]) -> Result<Option<Image>> {
+        pictures::acrobot(*state).map(Some)
     }
 }
 

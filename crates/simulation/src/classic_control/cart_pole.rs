@@ -1,10 +1,12 @@
 //! A pole on a cart (Barto, Sutton and Anderson, Neuronlike adaptive elements, 1983).
 
 use opendr_engine::Result;
+use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
 use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
@@ -73,6 +75,10 @@ impl Dynamics for CartPoleDynamics {
         for (seen, number) in observation.iter_mut().zip(state) {
             *seen = *number as f32;
         }
+    }
+
+    fn picture(&self, state: &[f64; 4]) -> Result<Option<Image>> {
+        pictures::cart_pole(*state).map(Some)
     }
 }
 

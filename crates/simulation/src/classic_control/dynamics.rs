@@ -1,5 +1,6 @@
 //! What a small world of a few numbers is, and the environment around it.
 
+use opendr_engine::data::Image;
 use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
@@ -43,6 +44,14 @@ pub trait Dynamics: Clone + Send + Sized + 'static {
 
     /// Writes what is seen of a state.
     fn observe(&self, state: &Self::State, observation: &mut [f32]);
+
+    /// A picture of a state, where there is one.
+    ///
+    /// # Errors
+    /// None that states of the world have.
+    fn picture(&self, _state: &Self::State) -> Result<Option<Image>> {
+        Ok(None)
+    }
 }
 
 /// The environment around [`Dynamics`], without a time limit.
@@ -131,6 +140,11 @@ impl<D: Dynamics> Environment for Classic<D> {
         self.state = Some(state);
         self.observe(&state, observation)?;
         Ok(Step { reward, terminated, ..Step::default() })
+    }
+
+    fn render(&mut self) -> Result<Option<Image>> {
+        let state = self.state.as_ref().ok_or_else(|| not_begun(&self.spec))?;
+        self.dynamics.picture(state)
     }
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {

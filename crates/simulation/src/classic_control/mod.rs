@@ -6,6 +6,7 @@ mod dynamics;
 mod mountain_car;
 mod mountain_car_continuous;
 mod pendulum;
+mod pictures;
 #[cfg(test)]
 mod tests;
 

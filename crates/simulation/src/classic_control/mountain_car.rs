@@ -1,10 +1,12 @@
 //! A car in a valley whose motor is too weak for the hill (Moore, Efficient memory-based learning, 1990).
 
 use opendr_engine::Result;
-use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
+use opendr_engine::data::Image;
+use opendr_engine::environment::{Dtype, EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
 use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
@@ -34,7 +36,12 @@ const GRAVITY: f64 = 0.0025;
 /// Position and speed, of both cars.
 pub(super) fn seen() -> Space {
     let low = vec![POSITIONS.0 as f32, -MAX_SPEED as f32];
-    Space::Box { low, high: vec![POSITIONS.1 as f32, MAX_SPEED as f32], shape: vec![2] }
+    Space::Box {
+        low,
+        high: vec![POSITIONS.1 as f32, MAX_SPEED as f32],
+        shape: vec![2],
+        dtype: Dtype::Float32,
+    }
 }
 
 impl Dynamics for MountainCarDynamics {
@@ -72,5 +79,9 @@ impl Dynamics for MountainCarDynamics {
         for (seen, number) in observation.iter_mut().zip(state) {
             *seen = *number as f32;
         }
+    }
+
+    fn picture(&self, state: &[f64; 2]) -> Result<Option<Image>> {
+        pictures::mountain_car(state[0], GOAL).map(Some)
     }
 }

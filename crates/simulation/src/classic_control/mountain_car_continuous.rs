@@ -1,10 +1,12 @@
 //! The mountain car with a continuous motor.
 
 use opendr_engine::Result;
+use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 
 use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
 use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, seen};
+use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
@@ -70,6 +72,10 @@ impl Dynamics for MountainCarContinuousDynamics {
         for (seen, number) in observation.iter_mut().zip(state) {
             *seen = *number as f32;
         }
+    }
+
+    fn picture(&self, state: &[f64; 3]) -> Result<Option<Image>> {
+        pictures::mountain_car(state[0], GOAL).map(Some)
     }
 }
 

@@ -3,10 +3,12 @@
 use std::f64::consts::{PI, TAU};
 
 use opendr_engine::Result;
+use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
 use super::dynamics::{Classic, Dynamics, Outcome, reset_number};
+use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
@@ -72,5 +74,9 @@ impl Dynamics for PendulumDynamics {
         for (seen, number) in observation.iter_mut().zip([cosine, sine, *speed]) {
             *seen = number as f32;
         }
+    }
+
+    fn picture(&self, state: &[f64; 2]) -> Result<Option<Image>> {
+        pictures::pendulum(*state).map(Some)
     }
 }

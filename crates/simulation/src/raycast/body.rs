@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 use super::{Shape, Vector, dot, minus};
 
 /// A shape with position, orientation and label.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     shape: Shape,
     position: Vector,
@@ -45,8 +45,13 @@ impl Body {
     }
 
     /// What it is.
-    pub fn shape(&self) -> Shape {
-        self.shape
+    pub fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// Where the centre of its frame is.
+    pub fn position(&self) -> Vector {
+        self.position
     }
 
     /// What a picture of labels shows.
@@ -54,18 +59,17 @@ impl Body {
         self.label
     }
 
-    /// The distance of a point of the world from the surface; negative inside.
+    /// The distance of a point of the world from the surface; negative inside a solid.
     pub fn distance(&self, point: Vector) -> f32 {
         self.shape.distance(self.point_in_body(point))
     }
 
     pub(super) fn point_in_body(&self, point: Vector) -> Vector {
-        let from_centre = minus(point, self.position);
-        self.body_from_world.map(|axis| dot(axis, from_centre))
+        self.direction_in_body(minus(point, self.position))
     }
 
-    pub(super) fn body_from_world(&self) -> &[Vector; 3] {
-        &self.body_from_world
+    pub(super) fn direction_in_body(&self, direction: Vector) -> Vector {
+        self.body_from_world.map(|axis| dot(axis, direction))
     }
 
     /// The outward normal at a point of the world on the surface.

@@ -1,18 +1,14 @@
 //! Several rays at once.
 
-use super::shape::Directions;
-use super::{Body, Vector};
-
-/// Rays of a packet: one vector register of AVX-512, two of AVX2, four of NEON.
-pub const LANES: usize = 16;
+use super::{Body, Directions, LANES, Vector};
 
 /// Rays from one point, with what they have met so far.
 #[derive(Debug, Clone)]
-pub struct RayPacket {
+pub(super) struct RayPacket {
     origin: Vector,
     directions: Directions,
-    pub(super) distances: [f32; LANES],
-    pub(super) bodies: [u32; LANES],
+    pub distances: [f32; LANES],
+    pub bodies: [u32; LANES],
 }
 
 impl RayPacket {
@@ -28,21 +24,21 @@ impl RayPacket {
     }
 
     /// Keeps what is nearer than all before.
-    pub(super) fn meet(&mut self, body: &Body, number: u32) {
+    pub fn meet(&mut self, body: &Body, number: u32) {
+        let axes =
+            [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| body.direction_in_body(axis));
         let mut directions = [[0.0; LANES]; 3];
-        for (own, row) in directions.iter_mut().zip(body.body_from_world()) {
+        for (row, own) in directions.iter_mut().enumerate() {
             for lane in 0..LANES {
                 let [x, y, z] = self.directions.each_ref().map(|axis| axis[lane]);
-                own[lane] = row[0] * x + row[1] * y + row[2] * z;
+                own[lane] = axes[0][row] * x + axes[1][row] * y + axes[2][row] * z;
             }
         }
-        let mut distances = [0.0; LANES];
-        body.shape().meet(body.point_in_body(self.origin), &directions, &mut distances);
-        let best = self.distances.iter_mut().zip(&mut self.bodies);
-        for ((best, nearest), distance) in best.zip(distances) {
-            let nearer = distance < *best;
-            *nearest = if nearer { number } else { *nearest };
-            *best = if nearer { distance } else { *best };
+        let before = self.distances;
+        body.shape().meet(body.point_in_body(self.origin), &directions, &mut self.distances);
+        for lane in 0..LANES {
+            let nearer = self.distances[lane] < before[lane];
+            self.bodies[lane] = if nearer { number } else { self.bodies[lane] };
         }
     }
 }

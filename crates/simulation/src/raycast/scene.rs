@@ -2,7 +2,8 @@
 
 use opendr_engine::{Error, Result};
 
-use super::{Body, LANES, RayPacket, Vector, along, length, minus};
+use super::packet::RayPacket;
+use super::{Body, LANES, Vector, along, length, minus};
 
 /// What a ray met.
 #[derive(Debug, Clone, Copy, PartialEq)]

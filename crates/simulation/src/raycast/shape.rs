@@ -1,9 +1,11 @@
 //! Shapes in their own frame: where a ray meets them, how far away they are.
 
-use super::{LANES, Vector, length};
+use std::sync::Arc;
 
-/// A shape centred in its own frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
+use super::{Directions, HeightField, LANES, Mesh, Vector, length, unit};
+
+/// A shape in its own frame, centred there.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// All points at `radius` or less from the centre.
     Sphere {
@@ -24,27 +26,40 @@ pub enum Shape {
     },
     /// All points with z of 0 or less.
     HalfSpace,
+    /// Ground of any height, solid below.
+    HeightField(Arc<HeightField>),
+    /// A surface of triangles. It has no inside.
+    Mesh(Arc<Mesh>),
 }
-
-/// Directions of several rays: one array for each axis.
-pub(super) type Directions = [[f32; LANES]; 3];
 
 impl Shape {
     /// Whether all sizes are positive and finite.
     pub(super) fn is_valid(&self) -> bool {
         let positive = |size: f32| size > 0.0 && size < 1e6;
-        match *self {
-            Self::Sphere { radius } => positive(radius),
-            Self::Box { half } => half.into_iter().all(positive),
-            Self::Cylinder { radius, half_height } => positive(radius) && positive(half_height),
-            Self::HalfSpace => true,
+        match self {
+            Self::Sphere { radius } => positive(*radius),
+            Self::Box { half } => half.iter().copied().all(positive),
+            Self::Cylinder { radius, half_height } => positive(*radius) && positive(*half_height),
+            Self::HalfSpace | Self::HeightField(_) | Self::Mesh(_) => true,
         }
     }
 
-    /// The distance of a point from the surface; negative inside. Exact, so a ball of that radius is free.
+    /// The radius of a ball around the centre with all of it inside.
+    pub(super) fn reach(&self) -> f32 {
+        match self {
+            Self::Sphere { radius } => *radius,
+            Self::Box { half } => length(*half),
+            Self::Cylinder { radius, half_height } => length([*radius, *half_height, 0.0]),
+            Self::HalfSpace => f32::INFINITY,
+            Self::HeightField(field) => field.surface().reach(),
+            Self::Mesh(mesh) => mesh.reach(),
+        }
+    }
+
+    /// The distance of a point from the surface; negative inside a solid. Exact, so a ball of that radius is free.
     pub fn distance(&self, point: Vector) -> f32 {
         let [x, y, z] = point;
-        match *self {
+        match self {
             Self::Sphere { radius } => length(point) - radius,
             Self::Box { half } => {
                 let over: Vector = std::array::from_fn(|axis| point[axis].abs() - half[axis]);
@@ -52,17 +67,19 @@ impl Shape {
                 length(over.map(|side| side.max(0.0))) + inside
             }
             Self::Cylinder { radius, half_height } => {
-                let (aside, above) = (x.hypot(y) - radius, z.abs() - half_height);
-                aside.max(0.0).hypot(above.max(0.0)) + aside.max(above).min(0.0)
+                let (aside, above) = (length([x, y, 0.0]) - radius, z.abs() - half_height);
+                length([aside.max(0.0), above.max(0.0), 0.0]) + aside.max(above).min(0.0)
             }
             Self::HalfSpace => z,
+            Self::HeightField(field) => field.distance(point),
+            Self::Mesh(mesh) => mesh.distance(point),
         }
     }
 
     /// The direction away from the surface nearest to a point.
     pub(super) fn normal(&self, point: Vector) -> Vector {
         let [x, y, z] = point;
-        match *self {
+        match self {
             Self::Sphere { .. } => unit(point),
             Self::Box { half } => {
                 let over: Vector = std::array::from_fn(|axis| point[axis].abs() - half[axis]);
@@ -74,61 +91,75 @@ impl Shape {
                 false => unit([x, y, 0.0]),
             },
             Self::HalfSpace => [0.0, 0.0, 1.0],
+            Self::HeightField(field) => field.surface().normal(point),
+            Self::Mesh(mesh) => mesh.normal(point),
         }
     }
 
-    /// Writes how far each ray from `origin` goes until it meets the surface, from either side; infinite where it never does. The directions are
-    /// unit vectors. The loops have no branches: the compiler turns them into vectors.
+    /// Shortens the rays from `origin` that meet the surface, from either side, before they end. How far they go counts
+    /// in lengths of their directions.
+    #[inline(always)]
     pub(super) fn meet(&self, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
-        match *self {
-            Self::Sphere { radius } => meet_sphere(radius, origin, directions, distances),
-            Self::Box { half } => meet_box(half, origin, directions, distances),
+        match self {
+            Self::Sphere { radius } => meet_sphere(*radius, origin, directions, distances),
+            Self::Box { half } => meet_box(*half, origin, directions, distances),
             Self::Cylinder { radius, half_height } => {
-                meet_cylinder(radius, half_height, origin, directions, distances);
+                meet_cylinder(*radius, *half_height, origin, directions, distances);
             }
-            Self::HalfSpace => {
-                for lane in 0..LANES {
-                    let distance = -origin[2] / directions[2][lane];
-                    distances[lane] = if distance > 0.0 { distance } else { f32::INFINITY };
-                }
-            }
+            Self::HalfSpace => meet_half_space(origin, directions, distances),
+            Self::HeightField(field) => field.surface().meet(origin, directions, distances),
+            Self::Mesh(mesh) => mesh.meet(origin, directions, distances),
         }
     }
 }
 
-/// The nearer of entry and exit that lies ahead.
+/// The nearer of entry and exit that lies ahead and before the ray's end. The loops over lanes have no branches: the
+/// compiler turns them into vectors.
 #[inline(always)]
-fn ahead(entry: f32, exit: f32, meets: bool) -> f32 {
+fn shortened(end: f32, entry: f32, exit: f32, meets: bool) -> f32 {
     let distance = if entry > 0.0 { entry } else { exit };
-    if meets & (distance > 0.0) { distance } else { f32::INFINITY }
+    if meets & (distance > 0.0) & (distance < end) { distance } else { end }
+}
+
+#[inline(always)]
+pub(super) fn meet_half_space(origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
+    for lane in 0..LANES {
+        let distance = -origin[2] / directions[2][lane];
+        distances[lane] = shortened(distances[lane], distance, distance, true);
+    }
 }
 
 /// Haines et al., Precision improvements for ray/sphere intersection (Ray Tracing Gems, 2019): the discriminant from the
 /// ray's point nearest to the centre, since the textbook's cancels for far spheres.
 #[inline(always)]
-fn meet_sphere(radius: f32, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
-    let [x, y, z] = origin;
+pub(super) fn meet_sphere(
+    radius: f32,
+    [x, y, z]: Vector,
+    directions: &Directions,
+    distances: &mut [f32; LANES],
+) {
     for lane in 0..LANES {
         let [dx, dy, dz] = [directions[0][lane], directions[1][lane], directions[2][lane]];
-        let nearest = -(x * dx + y * dy + z * dz);
+        let inverse = 1.0 / (dx * dx + dy * dy + dz * dz);
+        let nearest = -(x * dx + y * dy + z * dz) * inverse;
         let [px, py, pz] = [x + nearest * dx, y + nearest * dy, z + nearest * dz];
         let square = radius * radius - (px * px + py * py + pz * pz);
-        let half = square.max(0.0).sqrt();
-        distances[lane] = ahead(nearest - half, nearest + half, square >= 0.0);
+        let half = (square.max(0.0) * inverse).sqrt();
+        distances[lane] = shortened(distances[lane], nearest - half, nearest + half, square >= 0.0);
     }
 }
 
 /// The slab method (Kay and Kajiya, 1986).
 #[inline(always)]
-fn meet_box(half: Vector, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
+pub(super) fn meet_box(half: Vector, origin: Vector, directions: &Directions, distances: &mut [f32; LANES]) {
     for lane in 0..LANES {
         let (mut entry, mut exit) = (f32::NEG_INFINITY, f32::INFINITY);
         for axis in 0..3 {
             let (first, second) = slab(half[axis], origin[axis], directions[axis][lane]);
-            entry = entry.max(first);
-            exit = exit.min(second);
+            entry = larger(first, entry);
+            exit = smaller(second, exit);
         }
-        distances[lane] = ahead(entry, exit, entry <= exit);
+        distances[lane] = shortened(distances[lane], entry, exit, entry <= exit);
     }
 }
 
@@ -136,13 +167,24 @@ fn meet_box(half: Vector, origin: Vector, directions: &Directions, distances: &m
 #[inline(always)]
 fn slab(half: f32, origin: f32, direction: f32) -> (f32, f32) {
     let inverse = 1.0 / direction;
-    // NaN on a face that the ray lies in: `min` and `max` pass over it.
     let (one, other) = ((-half - origin) * inverse, (half - origin) * inverse);
-    (one.min(other), one.max(other))
+    (smaller(one, other), larger(one, other))
+}
+
+/// One instruction, where `f32::min` has to look after NaN: that comes of a face that the ray lies in, and the second
+/// is then the answer.
+#[inline(always)]
+fn smaller(one: f32, other: f32) -> f32 {
+    if one < other { one } else { other }
 }
 
 #[inline(always)]
-fn meet_cylinder(
+fn larger(one: f32, other: f32) -> f32 {
+    if one > other { one } else { other }
+}
+
+#[inline(always)]
+pub(super) fn meet_cylinder(
     radius: f32,
     half_height: f32,
     [x, y, z]: Vector,
@@ -157,19 +199,13 @@ fn meet_cylinder(
         let inverse = 1.0 / across.max(1e-30);
         let (nearest, half) = (-(x * dx + y * dy) * inverse, square.max(0.0).sqrt() * inverse);
         // A ray along the axis is within the radius always or never.
-        let within = (across < 1e-12) & (x * x + y * y <= radius * radius);
-        let (aside_entry, aside_exit) = match within {
-            true => (f32::NEG_INFINITY, f32::INFINITY),
-            false => (nearest - half, nearest + half),
-        };
+        let is_along = across < 1e-12;
+        let within = is_along & (x * x + y * y <= radius * radius);
+        let aside_entry = if within { f32::NEG_INFINITY } else { nearest - half };
+        let aside_exit = if within { f32::INFINITY } else { nearest + half };
         let (entry, exit) = slab(half_height, z, dz);
-        let (entry, exit) = (entry.max(aside_entry), exit.min(aside_exit));
-        let meets = (within | ((across >= 1e-12) & (square >= 0.0))) & (entry <= exit);
-        distances[lane] = ahead(entry, exit, meets);
+        let (entry, exit) = (larger(entry, aside_entry), smaller(exit, aside_exit));
+        let meets = (within | (!is_along & (square >= 0.0))) & (entry <= exit);
+        distances[lane] = shortened(distances[lane], entry, exit, meets);
     }
-}
-
-fn unit(vector: Vector) -> Vector {
-    let size = length(vector);
-    if size > 0.0 { vector.map(|part| part / size) } else { [0.0, 0.0, 1.0] }
 }

@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use opendr_engine::Random;
 
 use super::*;
@@ -21,35 +23,38 @@ fn bodies() -> Vec<Body> {
 #[test]
 fn distances_in_closed_form() {
     let close = |a: f32, b: f32| (a - b).abs() <= 1e-4 * b.abs();
-    let met = |shape, origin, direction: Vector| {
+    let met = |shape: &Shape, origin, direction: Vector| {
         let mut scene = Scene::default();
-        scene.add(Body::upright(shape, [10.0, 0.0, 0.0], 3).unwrap());
+        scene.add(Body::upright(shape.clone(), [10.0, 0.0, 0.0], 3).unwrap());
         let mut hits = [None];
         let direction = direction.map(|part| part / length(direction));
         scene.hits(origin, &[direction], 100.0, &mut hits).unwrap();
         hits[0]
     };
     let sphere = Shape::Sphere { radius: 2.0 };
-    let hit = met(sphere, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]).unwrap();
+    let hit = met(&sphere, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]).unwrap();
     assert!(close(hit.distance, 10.0 - 3.0_f32.sqrt()), "{hit:?}");
     assert_eq!(hit.label, 3);
     assert!(close(hit.normal[1], 0.5) && close(hit.normal[0], -0.75_f32.sqrt()), "{hit:?}");
-    assert!(close(met(sphere, [10.0, 0.0, 0.0], [0.0, 1.0, 1.0]).unwrap().distance, 2.0));
-    assert_eq!(met(sphere, [0.0, 2.1, 0.0], [1.0, 0.0, 0.0]), None);
-    assert_eq!(met(sphere, [13.0, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
+    assert!(close(met(&sphere, [10.0, 0.0, 0.0], [0.0, 1.0, 1.0]).unwrap().distance, 2.0));
+    assert_eq!(met(&sphere, [0.0, 2.1, 0.0], [1.0, 0.0, 0.0]), None);
+    assert_eq!(met(&sphere, [13.0, 0.0, 0.0], [1.0, 0.0, 0.0]), None);
 
     let cube = Shape::Box { half: [1.0, 2.0, 3.0] };
-    assert!(close(met(cube, [0.0; 3], [1.0, 0.0, 0.0]).unwrap().distance, 9.0));
-    assert!(close(met(cube, [0.0; 3], [1.0, 0.1, 0.2]).unwrap().distance, 9.0 * 1.05_f32.sqrt()));
-    assert_eq!(met(cube, [0.0; 3], [1.0, 0.3, 0.0]), None);
+    assert!(close(met(&cube, [0.0; 3], [1.0, 0.0, 0.0]).unwrap().distance, 9.0));
+    assert!(close(met(&cube, [0.0; 3], [1.0, 0.1, 0.2]).unwrap().distance, 9.0 * 1.05_f32.sqrt()));
+    assert_eq!(met(&cube, [0.0; 3], [1.0, 0.3, 0.0]), None);
 
     let cylinder = Shape::Cylinder { radius: 1.0, half_height: 2.0 };
-    assert!(close(met(cylinder, [0.0, 0.5, 1.0], [1.0, 0.0, 0.0]).unwrap().distance, 10.0 - 0.75_f32.sqrt()));
-    let top = met(cylinder, [10.5, 0.0, 9.0], [0.0, 0.0, -1.0]).unwrap();
-    assert!(close(top.distance, 7.0) && top.normal == [0.0, 0.0, 1.0], "{top:?}");
-    assert_eq!(met(cylinder, [11.5, 0.0, 9.0], [0.0, 0.0, -1.0]), None);
     assert!(close(
-        met(Shape::HalfSpace, [0.0, 0.0, 4.0], [1.0, 0.0, -1.0]).unwrap().distance,
+        met(&cylinder, [0.0, 0.5, 1.0], [1.0, 0.0, 0.0]).unwrap().distance,
+        10.0 - 0.75_f32.sqrt()
+    ));
+    let top = met(&cylinder, [10.5, 0.0, 9.0], [0.0, 0.0, -1.0]).unwrap();
+    assert!(close(top.distance, 7.0) && top.normal == [0.0, 0.0, 1.0], "{top:?}");
+    assert_eq!(met(&cylinder, [11.5, 0.0, 9.0], [0.0, 0.0, -1.0]), None);
+    assert!(close(
+        met(&Shape::HalfSpace, [0.0, 0.0, 4.0], [1.0, 0.0, -1.0]).unwrap().distance,
         32.0_f32.sqrt()
     ));
 }
@@ -60,7 +65,7 @@ fn rays_end_where_the_distance_says() {
     let mut random = Random::new(5);
     for body in bodies() {
         let mut scene = Scene::default();
-        scene.add(body);
+        scene.add(body.clone());
         let mut met = 0;
         for _ in 0..3000 {
             let origin = [(); 3].map(|()| random.uniform(-2.0, 2.0));
@@ -87,29 +92,215 @@ fn rays_end_where_the_distance_says() {
     }
 }
 
+/// A million ways through bodies of every kind: whatever fine steps meet, the sweep meets no later.
 #[test]
 fn a_sweep_misses_nothing() {
     let mut random = Random::new(8);
-    let mut scene = Scene::default();
-    scene.add(Body::upright(Shape::Box { half: [0.001, 3.0, 3.0] }, [0.0; 3], 0).unwrap());
-    bodies().into_iter().take(3).for_each(|body| scene.add(body));
-    let mut touched = 0;
-    for _ in 0..5000 {
-        let [from, to] = [(); 2].map(|()| [(); 3].map(|()| random.uniform(-4.0, 4.0)));
-        let far = length(minus(to, from));
-        let direction = minus(to, from).map(|part| part / far);
+    let mut all = bodies();
+    all.push(Body::upright(Shape::Box { half: [0.001, 3.0, 3.0] }, [0.0; 3], 0).unwrap());
+    let (mut touched, mut passed) = (0, 0);
+    for way in 0..1_000_000 {
+        let mut scene = Scene::default();
+        scene.add(all[way % all.len()].clone());
+        let from = [(); 3].map(|()| random.uniform(-2.5, 2.5));
+        let direction = unit_by_chance(&mut random);
+        let far = random.uniform(0.05, 1.5);
+        let to = along(from, direction, far);
         let end = scene.sweep(from, to, 0.1);
         touched += usize::from(end.is_some());
         let free = end.unwrap_or(far);
-        for step in 0..200 {
-            let gap = scene.distance(along(from, direction, free * step as f32 / 200.0)) - 0.1;
-            assert!(gap > -1e-5 || free == 0.0, "{from:?} {to:?} {end:?} {gap}");
+        assert!((0.0..=far).contains(&free), "{from:?} {to:?} {end:?}");
+        for step in 0..=15 {
+            let at = far * step as f32 / 15.0;
+            let gap = scene.distance(along(from, direction, at)) - 0.1;
+            assert!(at >= free || gap > -1e-5, "{:?} {from:?} {to:?} {end:?} {gap}", scene.bodies()[0]);
         }
-        let passes = (from[0] > 0.0) != (to[0] > 0.0)
-            && [from, to].iter().all(|p| p[1].abs() < 3.0 && p[2].abs() < 3.0);
+        let is_thin = way % all.len() == all.len() - 1;
+        let passes = is_thin
+            && (from[0] > 0.0) != (to[0] > 0.0)
+            && [from, to].iter().all(|point| point[1].abs() < 3.0 && point[2].abs() < 3.0);
+        passed += usize::from(passes);
         assert!(!passes || end.is_some(), "{from:?} {to:?}");
     }
-    assert!((500..4500).contains(&touched), "{touched}");
+    assert!((100_000..800_000).contains(&touched) && passed > 10_000, "{touched} {passed}");
+}
+
+fn cube_of_triangles(half: Vector) -> Mesh {
+    let corner =
+        |at: u32| std::array::from_fn(|axis| if at >> axis & 1 == 1 { half[axis] } else { -half[axis] });
+    let vertices: Vec<Vector> = (0..8).map(corner).collect();
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces: Vec<_> = sides.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
+    Mesh::new(&vertices, &faces).unwrap()
+}
+
+fn scene_of(shape: Shape) -> Scene {
+    let mut scene = Scene::default();
+    scene.add(Body::new(shape, [0.4, -0.3, 0.2], [0.9, 0.3, -0.2, 0.4], 1).unwrap());
+    scene
+}
+
+#[test]
+fn a_cube_of_triangles_is_a_box() {
+    let half = [0.3, 1.2, 0.6];
+    let (cube, triangles) =
+        (scene_of(Shape::Box { half }), scene_of(Shape::Mesh(Arc::new(cube_of_triangles(half)))));
+    let mut random = Random::new(3);
+    for _ in 0..3000 {
+        let origin = [(); 3].map(|()| random.uniform(-2.0, 2.0));
+        let directions: Vec<_> = (0..20).map(|_| unit_by_chance(&mut random)).collect();
+        let [mut one, mut other] = [vec![None; 20], vec![None; 20]];
+        cube.hits(origin, &directions, 9.0, &mut one).unwrap();
+        triangles.hits(origin, &directions, 9.0, &mut other).unwrap();
+        for (one, other) in one.iter().zip(&other) {
+            // A ray that grazes an edge may be met by one and not by the other.
+            let (Some(one), Some(other)) = (one, other) else { continue };
+            assert!((one.distance - other.distance).abs() <= 1e-4 * one.distance, "{one:?} {other:?}");
+        }
+        let differing = one.iter().zip(&other).filter(|(one, other)| one.is_some() != other.is_some());
+        assert!(differing.count() <= 1);
+        let gap = cube.distance(origin).abs() - triangles.distance(origin);
+        assert!(gap.abs() < 1e-5, "{gap}");
+    }
+    let top = Shape::Mesh(Arc::new(cube_of_triangles([1.0; 3])));
+    assert!(dot(top.normal([0.2, 0.1, 1.3]), [0.0, 0.0, 1.0]) > 0.999);
+}
+
+/// Every triangle asked one by one, in double precision.
+#[test]
+fn a_tree_of_boxes_loses_no_triangle() {
+    let mut random = Random::new(4);
+    let vertices: Vec<Vector> = (0..900).map(|_| [(); 3].map(|()| random.uniform(-3.0, 3.0))).collect();
+    let near = |random: &mut Random, at: usize| ((at + random.below(30)) % 900) as u32;
+    let faces: Vec<_> =
+        (0..700).map(|at| [at as u32, near(&mut random, at), near(&mut random, at)]).collect();
+    let mesh = Mesh::new(&vertices, &faces).unwrap();
+    assert_eq!(mesh.triangles(), 700);
+    let mut scene = Scene::default();
+    scene.add(Body::upright(Shape::Mesh(Arc::new(mesh)), [0.0; 3], 0).unwrap());
+    let mut met = 0;
+    for _ in 0..300 {
+        let origin = [(); 3].map(|()| random.uniform(-6.0, 6.0));
+        let directions: Vec<_> = (0..33).map(|_| unit_by_chance(&mut random)).collect();
+        let mut depths = [0.0; 33];
+        scene.depths(origin, &directions, 50.0, &mut depths).unwrap();
+        for (depth, direction) in depths.into_iter().zip(&directions) {
+            let corners = |face: &[u32; 3]| face.map(|at| vertices[at as usize].map(f64::from));
+            let all = faces.iter().filter_map(|face| brute_force(corners(face), origin, *direction));
+            let (wanted, edge) = all.fold((50.0, 1.0), |best, hit| if hit.0 < best.0 { hit } else { best });
+            // Within single precision of an edge either answer is right.
+            assert!(
+                (f64::from(depth) - wanted).abs() <= 1e-4 * wanted.max(0.1) || edge < 1e-4,
+                "{depth} {wanted}"
+            );
+            met += usize::from(wanted < 50.0);
+        }
+    }
+    assert!(met > 1000, "{met}");
+}
+
+/// Where a ray meets a triangle, and how far within it, as a share: by Cramer's rule.
+fn brute_force(corners: [[f64; 3]; 3], origin: Vector, direction: Vector) -> Option<(f64, f64)> {
+    let [a, b, c] = corners;
+    let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
+    let determinant = |p: [f64; 3], q: [f64; 3], r: [f64; 3]| {
+        p[0] * (q[1] * r[2] - q[2] * r[1]) - q[0] * (p[1] * r[2] - p[2] * r[1])
+            + r[0] * (p[1] * q[2] - p[2] * q[1])
+    };
+    let (ab, ac, back) = (minus(b, a), minus(c, a), direction.map(|part| -f64::from(part)));
+    let from_a = minus(origin.map(f64::from), a);
+    let all = determinant(ab, ac, back);
+    let (u, v) = (determinant(from_a, ac, back) / all, determinant(ab, from_a, back) / all);
+    let distance = determinant(ab, ac, from_a) / all;
+    let within = u.min(v).min(1.0 - u - v);
+    (within >= -1e-5 && distance > 0.0).then_some((distance, within.abs()))
+}
+
+#[test]
+fn a_slope_of_heights_is_a_plane() {
+    let (columns, spacing) = (9, 0.5);
+    let slope = |x: f32, y: f32| 0.3 * x - 0.2 * y + 0.1;
+    let place = |at: usize| (at as f32 - 4.0) * spacing;
+    let heights: Vec<_> =
+        (0..columns * columns).map(|at| slope(place(at % columns), place(at / columns))).collect();
+    let field = HeightField::new(&heights, columns, spacing).unwrap();
+    let steep = (1.0_f32 + 0.09 + 0.04).sqrt();
+    let mut random = Random::new(6);
+    let mut scene = Scene::default();
+    scene.add(Body::upright(Shape::HeightField(Arc::new(field.clone())), [0.0; 3], 0).unwrap());
+    for _ in 0..3000 {
+        let [x, y] = [(); 2].map(|()| random.uniform(-1.4, 1.4));
+        assert!((field.height(x, y).unwrap() - slope(x, y)).abs() < 1e-5);
+        let above = random.uniform(-0.5, 0.5);
+        let distance = scene.distance([x, y, slope(x, y) + above]);
+        assert!((distance - above / steep).abs() < 1e-5, "{x} {y} {above} {distance}");
+        let mut hits = [None];
+        scene.hits([x, y, 5.0], &[[0.0, 0.0, -1.0]], 20.0, &mut hits).unwrap();
+        let hit = hits[0].unwrap();
+        assert!((hit.distance - (5.0 - slope(x, y))).abs() <= 1e-4 * hit.distance);
+        assert!(dot(hit.normal, [-0.3 / steep, 0.2 / steep, 1.0 / steep]) > 0.999_9);
+    }
+    assert_eq!((field.height(2.1, 0.0), field.height(f32::NAN, 0.0)), (None, None));
+    assert!(HeightField::new(&[0.0; 5], 2, 1.0).is_err() && HeightField::new(&[], 0, 1.0).is_err());
+    assert!(HeightField::new(&[f32::NAN; 4], 2, 1.0).is_err());
+    assert!(Mesh::new(&[[0.0; 3]], &[[0, 0, 1]]).is_err() && Mesh::new(&[], &[]).is_err());
+    assert!(Mesh::new(&[[f32::NAN; 3]], &[[0, 0, 0]]).is_err());
+}
+
+/// Patches, depth along the axis and wide vectors beside single rays.
+#[test]
+fn a_camera_sees_what_rays_meet() {
+    let mut random = Random::new(7);
+    let camera = Camera::new(37, 21, 0.7).unwrap();
+    let mut seen = DepthBuffer::default();
+    let mut nothing = 0;
+    for _ in 0..60 {
+        let mut scene = Scene::default();
+        scene.add(Body::upright(Shape::HalfSpace, [0.0, 0.0, -3.0], 0).unwrap());
+        let cube = Shape::Mesh(Arc::new(cube_of_triangles([0.5, 0.4, 0.3])));
+        let shapes = bodies().into_iter().take(3).map(|body| body.shape().clone()).chain([cube]);
+        for shape in shapes.cycle().take(8) {
+            let place = [(); 3].map(|()| random.uniform(-4.0, 4.0));
+            let turned = [(); 4].map(|()| random.uniform(0.1, 1.0));
+            scene.add(Body::new(shape, place, turned, 0).unwrap());
+        }
+        let place = [(); 3].map(|()| random.uniform(-4.0, 4.0));
+        let pose = Pose::looking(place, [(); 3].map(|()| random.uniform(-2.0, 2.0)));
+        camera.look(&scene, &pose, 1e4, &mut seen);
+        let mut differing = 0;
+        for (at, (depth, body)) in seen.depths().zip(seen.bodies()).enumerate() {
+            let direction = camera.direction(at % 37, at / 37);
+            let size = length(direction);
+            let mut hits = [None];
+            let unit = pose.turned(direction).map(|part| part / size);
+            scene.hits(pose.position, &[unit], 1e4 * size, &mut hits).unwrap();
+            let wanted = hits[0].map_or(1e4, |hit| hit.distance / size);
+            nothing += usize::from(body.is_none());
+            differing += usize::from((depth - wanted).abs() > 1e-4 * wanted.max(0.1));
+        }
+        // Rays that graze.
+        assert!(differing <= 3, "{differing}");
+    }
+    assert!((1000..40_000).contains(&nothing), "{nothing}");
+    assert!(Camera::new(0, 4, 1.0).is_err() && Camera::new(4, 4, f32::NAN).is_err());
+}
+
+#[test]
+fn light_shows_sides_and_sky() {
+    let mut scene = Scene::default();
+    scene.add(Body::upright(Shape::HalfSpace, [0.0; 3], 0).unwrap());
+    scene.add(Body::upright(Shape::Sphere { radius: 1.0 }, [4.0, 0.0, 1.5], 1).unwrap());
+    let camera = Camera::new(64, 64, 0.5).unwrap();
+    let pose = Pose::looking([0.0, 0.0, 1.5], [4.0, 0.0, 1.5]);
+    let picture = Shading::default().picture(&camera, &scene, &pose, 50.0).unwrap();
+    let pixels = picture.hwc_u8(opendr_engine::data::PixelFormat::Rgb);
+    let pixel = |column: usize, row: usize| &pixels[3 * (64 * row + column)..][..3];
+    let brightness = |column, row| pixel(column, row).iter().map(|part| i32::from(*part)).sum::<i32>();
+    let [sky, ball, ground] = [pixel(3, 3), pixel(32, 32), pixel(3, 60)];
+    assert!(sky[2] > sky[0] && ball[0] > ball[2] && ground[0].abs_diff(ground[2]) < 20, "{sky:?} {ball:?}");
+    assert!(brightness(32, 21) > brightness(32, 43) + 50);
+    let squares: std::collections::BTreeSet<_> = (0..64).map(|column| brightness(column, 50)).collect();
+    assert_eq!(squares.len(), 2);
 }
 
 #[test]

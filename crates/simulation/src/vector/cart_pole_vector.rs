@@ -183,26 +183,30 @@ impl VecEnvironment for CartPoleVector {
         Ok(())
     }
 
+    /// As single carts behind their wrappers write it: whether it is over, told twice, and the steps so far.
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let States { x, speed, angle, turning } = &self.states;
         for (index, random) in self.randoms.iter().enumerate() {
             let random = random.as_ref().ok_or_else(|| not_begun(&self.spec))?;
+            let over = u64::from(self.over[index]);
+            [over, over, u64::from(self.elapsed[index])].into_iter().for_each(|word| snapshot.push(word));
             snapshot.extend_numbers([x[index], speed[index], angle[index], turning[index]]);
-            snapshot.push(u64::from(self.elapsed[index]));
-            snapshot.push(u64::from(self.over[index]));
             random.save(snapshot);
         }
         Ok(())
     }
 
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.never_reset = self.count();
+        self.randoms.fill(None);
         let States { x, speed, angle, turning } = &mut self.states;
         for index in 0..self.over.len() {
+            self.over[index] = state.flag()?;
+            state.flag()?;
+            self.elapsed[index] = state.count(u32::MAX as usize)? as u32;
             for numbers in [&mut *x, &mut *speed, &mut *angle, &mut *turning] {
                 numbers[index] = state.finite()?;
             }
-            self.elapsed[index] = state.count(self.limit as usize)? as u32;
-            self.over[index] = state.flag()?;
             self.randoms[index] = Some(NumpyRandom::load(state)?);
         }
         self.never_reset = 0;

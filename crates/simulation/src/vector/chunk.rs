@@ -1,6 +1,8 @@
 //! The environments that one thread steps.
 
-use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader, Step};
+use opendr_engine::environment::{
+    Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader, Step,
+};
 use opendr_engine::{Error, Result, ResultExt as _};
 
 use super::{Autoreset, Batch};
@@ -69,6 +71,22 @@ impl Chunk {
         }
     }
 
+    pub fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        for (index, environment) in self.environments.iter().enumerate() {
+            snapshot.push(u64::from(self.over[index]));
+            environment.save_state(snapshot).context(|| format!("environment {}", self.first + index))?;
+        }
+        Ok(())
+    }
+
+    pub fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        for (index, environment) in self.environments.iter_mut().enumerate() {
+            self.over[index] = state.flag()?;
+            environment.load_state(state).context(|| format!("environment {}", self.first + index))?;
+        }
+        Ok(())
+    }
+
     fn reset(&mut self, index: usize) -> Result<()> {
         if !self.mask[index] {
             return Ok(());
@@ -76,22 +94,6 @@ impl Chunk {
         let info = self.begin(index, self.seeds[index])?;
         self.over[index] = false;
         self.batch.write(index, Step { info, ..Step::default() });
-        Ok(())
-    }
-
-    pub fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
-        for (environment, over) in self.environments.iter().zip(&self.over) {
-            snapshot.push(u64::from(*over));
-            environment.save_state(snapshot)?;
-        }
-        Ok(())
-    }
-
-    pub fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
-        for (environment, over) in self.environments.iter_mut().zip(&mut self.over) {
-            *over = state.flag()?;
-            environment.load_state(state)?;
-        }
         Ok(())
     }
 

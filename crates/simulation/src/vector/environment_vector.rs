@@ -118,16 +118,18 @@ impl VecEnvironment for EnvironmentVector {
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         self.own.save_state(snapshot)?;
-        self.workers
-            .iter()
-            .try_for_each(|worker| worker.chunk.as_ref().ok_or_else(thread_ended)?.save_state(snapshot))
+        for worker in &self.workers {
+            worker.chunk.as_ref().ok_or_else(thread_ended)?.save_state(snapshot)?;
+        }
+        Ok(())
     }
 
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         self.own.load_state(state)?;
-        self.workers
-            .iter_mut()
-            .try_for_each(|worker| worker.chunk.as_mut().ok_or_else(thread_ended)?.load_state(state))
+        for worker in &mut self.workers {
+            worker.chunk.as_mut().ok_or_else(thread_ended)?.load_state(state)?;
+        }
+        Ok(())
     }
 }
 

@@ -91,52 +91,50 @@ pub trait VecEnvironment: Send {
     /// taken their step.
     fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
 
-    /// Writes everything that decides the future of all, as
-    /// [`save_state`](opendr_engine::environment::Environment::save_state) of each; threads play no part.
+    /// Writes everything that decides the future of all environments.
     ///
     /// # Errors
     /// `Unsupported` where a world cannot be written, `InvalidInput` before the first reset.
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let _ = snapshot;
-        Err(Error::unsupported(format!("many {} keep no snapshots", self.spec().id)))
+        Err(Error::unsupported(format!("{} keeps no snapshots side by side", self.spec().id)))
     }
 
-    /// Takes back what [`Self::save_state`] wrote of as many environments.
+    /// Takes back what [`Self::save_state`] wrote, in the same order.
     ///
     /// # Errors
     /// `Unsupported` where a world cannot be written, `Format` when the snapshot is of something else.
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         let _ = state;
-        Err(Error::unsupported(format!("many {} keep no snapshots", self.spec().id)))
+        Err(Error::unsupported(format!("{} keeps no snapshots side by side", self.spec().id)))
     }
 
-    /// The states of now, to come back to.
+    /// The state of all environments, to come back to. The last [`Batch`] is the caller's to keep: the next action
+    /// follows from it. Threads and arrays leave no trace in it.
     ///
     /// # Errors
     /// As [`Self::save_state`].
     fn snapshot(&self) -> Result<Snapshot> {
-        let mut snapshot = Snapshot::new(&self.spec().id);
-        snapshot.push(self.count() as u64);
+        let mut snapshot = Snapshot::new(&snapshot_id(self.spec(), self.count()));
         self.save_state(&mut snapshot)?;
         Ok(snapshot)
     }
 
-    /// Goes back to states: the same actions then have the same outcomes, bit for bit.
+    /// Goes back to a state: the same actions then have the same outcome, bit for bit.
     ///
     /// # Errors
-    /// `InvalidInput` for a snapshot of other or of more or fewer environments, else as [`Self::load_state`]. After an
-    /// error all must be reset.
+    /// `InvalidInput` for a snapshot of others, or of another count of them, else as [`Self::load_state`]. After an
+    /// error the environments must be reset.
     fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
-        let mut state = snapshot.read(&self.spec().id)?;
-        let (count, own) = (state.word()?, self.count());
-        if count != own as u64 {
-            return Err(Error::invalid_input(format!(
-                "a snapshot of {count} environments cannot be restored in {own}; make {count}"
-            )));
-        }
+        let mut state = snapshot.read(&snapshot_id(self.spec(), self.count()))?;
         self.load_state(&mut state)?;
         state.finish()
     }
+}
+
+/// What a snapshot of several is a snapshot of.
+fn snapshot_id(spec: &EnvironmentSpec, count: usize) -> String {
+    format!("{count} x {}", spec.id)
 }
 
 /// How [`make_vec`](crate::make_vec) makes environments.

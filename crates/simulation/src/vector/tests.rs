@@ -59,6 +59,44 @@ fn carts_in_arrays_are_single_carts() {
     }
 }
 
+/// A snapshot does not tell threads or arrays apart, and each goes on from it as the others.
+#[test]
+fn all_go_on_from_a_snapshot() {
+    let arrays = |mode| Box::new(CartPoleVector::new(&CartPoleParams::default(), 5, mode).unwrap());
+    for mode in [Autoreset::NextStep, Autoreset::SameStep] {
+        let mut makers: [Box<dyn VecEnvironment>; 3] = [
+            Box::new(several("CartPole-v1", 5, mode, 1)),
+            Box::new(several("CartPole-v1", 5, mode, 3)),
+            arrays(mode),
+        ];
+        assert!(makers.iter().all(|vector| vector.snapshot().is_err()));
+        // Far enough that some have ended.
+        let played: Vec<_> = makers.iter_mut().map(|vector| played(&mut **vector, 40)).collect();
+        assert!(played.iter().all(|batches| *batches == played[0]));
+        let snapshots: Vec<_> = makers.iter().map(|vector| vector.snapshot().unwrap()).collect();
+        assert!(snapshots.iter().all(|snapshot| *snapshot == snapshots[0]));
+        let on = |vector: &mut dyn VecEnvironment| -> Vec<Batch> {
+            let mut batch = Batch::new(vector.spec(), 5);
+            (0..60)
+                .map(|step| {
+                    vector.step(&[(step % 2) as f32; 5], &mut batch).unwrap();
+                    batch.clone()
+                })
+                .collect()
+        };
+        let wanted = on(&mut *makers[0]);
+        assert!(wanted.iter().any(|batch| batch.terminated.contains(&true)));
+        for vector in &mut makers {
+            vector.restore(&snapshots[0]).unwrap();
+            let got = on(&mut **vector);
+            assert!(got.iter().zip(&wanted).all(|(got, wanted)| got.observations == wanted.observations
+                && got.terminated == wanted.terminated));
+        }
+        let mut fewer = several("CartPole-v1", 4, mode, 1);
+        assert!(fewer.restore(&snapshots[0]).is_err());
+    }
+}
+
 /// Gymnasium's order of events, by one cart that falls after a few pushes.
 #[test]
 fn episodes_begin_anew_as_in_gymnasium() {

@@ -22,7 +22,7 @@ impl<E: Environment> FrameStack<E> {
     /// `InvalidParam` when `count` is 0 or too large, `Unsupported` when observations are no box.
     pub fn new(inner: E, count: usize) -> Result<Self> {
         let mut spec = inner.spec().clone();
-        let Space::Box { low, high, shape } = &spec.observation else {
+        let Space::Box { low, high, shape, dtype } = &spec.observation else {
             let space = &spec.observation;
             return Err(Error::unsupported(format!("{space} cannot be stacked; flatten it to a box first")));
         };
@@ -33,7 +33,8 @@ impl<E: Environment> FrameStack<E> {
             )));
         }
         let shape = [&[count], &shape[..]].concat();
-        spec.observation = Space::Box { low: low.repeat(count), high: high.repeat(count), shape };
+        let (low, high) = (low.repeat(count), high.repeat(count));
+        spec.observation = Space::Box { low, high, shape, dtype: *dtype };
         Ok(Self { inner, frames: vec![0.0; spec.observation.len()], spec })
     }
 

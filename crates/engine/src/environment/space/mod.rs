@@ -1,5 +1,6 @@
 //! What observations and actions look like.
 
+mod dtype;
 mod flatten;
 mod sample;
 #[cfg(test)]
@@ -9,6 +10,8 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use crate::{Error, Result};
+
+pub use dtype::Dtype;
 
 /// A set of observations or actions.
 ///
@@ -25,6 +28,8 @@ pub enum Space {
         high: Vec<f32>,
         /// Size of each axis.
         shape: Vec<usize>,
+        /// What the numbers are.
+        dtype: Dtype,
     },
     /// One of `n` whole numbers beginning with `start`.
     Discrete {
@@ -64,7 +69,7 @@ impl Space {
                 low[at], high[at]
             )));
         }
-        Ok(Self::Box { low, high, shape })
+        Ok(Self::Box { low, high, shape, dtype: Dtype::Float32 })
     }
 
     /// A box with the same bounds on all elements.
@@ -84,7 +89,30 @@ impl Space {
     /// A row of elements, each within plus and minus its limit.
     pub fn symmetric(limits: &[f32]) -> Self {
         let high: Vec<_> = limits.iter().map(|limit| limit.abs()).collect();
-        Self::Box { low: high.iter().map(|limit| -limit).collect(), shape: vec![high.len()], high }
+        let low = high.iter().map(|limit| -limit).collect();
+        Self::Box { low, shape: vec![high.len()], high, dtype: Dtype::Float32 }
+    }
+
+    /// The same box of numbers of another type.
+    ///
+    /// # Errors
+    /// `InvalidInput` for what is no box, and for bounds that the type has not.
+    pub fn with_dtype(mut self, wanted: Dtype) -> Result<Self> {
+        let Self::Box { low, high, dtype, .. } = &mut self else {
+            return Err(Error::invalid_input(format!("{self} has no numbers of type {}", wanted.name())));
+        };
+        let mut bounds = low.iter().chain(high.iter());
+        let fits = |bound: &f32| match wanted {
+            Dtype::Uint8 => is_choice(f64::from(*bound), 256),
+            Dtype::Int64 => bound.fract() == 0.0,
+            Dtype::Float32 | Dtype::Float64 => true,
+        };
+        if let Some(bound) = bounds.find(|bound| !fits(bound)) {
+            let name = wanted.name();
+            return Err(Error::invalid_input(format!("a bound of {bound} is no {name}; give one that is")));
+        }
+        *dtype = wanted;
+        Ok(self)
     }
 
     /// One of `n` numbers from 0.
@@ -139,8 +167,10 @@ impl Space {
             ))
         };
         let position = match self {
-            Self::Box { low, high, .. } => {
-                let fits = |(value, (low, high)): (&f32, (&f32, &f32))| low <= value && value <= high;
+            Self::Box { low, high, dtype, .. } => {
+                let fits = |(value, (low, high)): (&f32, (&f32, &f32))| {
+                    low <= value && value <= high && (!dtype.is_whole() || value.fract() == 0.0)
+                };
                 element.iter().zip(low.iter().zip(high)).position(|pair| !fits(pair))
             }
             Self::Discrete { n, start } => element.iter().position(|value| {
@@ -177,14 +207,18 @@ fn check_parts<'a>(parts: impl Iterator<Item = &'a Space>, mut element: &[f32], 
 impl fmt::Display for Space {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Box { low, high, shape } => {
+            Self::Box { low, high, shape, dtype } => {
                 let of = |bounds: &[f32]| match bounds {
                     [first, rest @ ..] if rest.iter().all(|bound| bound == first) => format!("{first:?}"),
                     few if few.len() <= 8 => format!("{few:?}"),
                     [first, .., last] => format!("[{first:?} ... {last:?}]"),
                     [] | [_] => "[]".to_owned(),
                 };
-                write!(f, "Box({}, {}, {shape:?})", of(low), of(high))
+                write!(f, "Box({}, {}, {shape:?}", of(low), of(high))?;
+                match dtype {
+                    Dtype::Float32 => f.write_str(")"),
+                    other => write!(f, ", {})", other.name()),
+                }
             }
             Self::Discrete { n, start: 0 } => write!(f, "Discrete({n})"),
             Self::Discrete { n, start } => write!(f, "Discrete({n}, start={start})"),

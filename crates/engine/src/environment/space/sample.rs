@@ -8,6 +8,12 @@ impl Space {
     /// exponential beyond one, normal without any (as Gymnasium does); choices are all as likely.
     pub fn sample_into(&self, random: &mut Random, element: &mut [f32]) {
         match self {
+            Self::Box { low, high, dtype, .. } if dtype.is_whole() => {
+                for (value, (low, high)) in element.iter_mut().zip(low.iter().zip(high)) {
+                    // One more, since the upper bound is one of the numbers; infinite bounds leave none out.
+                    *value = number_between(random, *low, *high + 1.0).floor().clamp(*low, *high);
+                }
+            }
             Self::Box { low, high, .. } => {
                 for (value, (low, high)) in element.iter_mut().zip(low.iter().zip(high)) {
                     *value = number_between(random, *low, *high);

@@ -70,3 +70,17 @@ fn printed_as_gymnasium_does() {
     let names = names.map(|space| space.to_string());
     assert_eq!(names, ["Box(-2.0, 2.0, [1])", "Discrete(3)", "Discrete(3, start=1)"]);
 }
+
+#[test]
+fn boxes_have_types_of_numbers() {
+    let bytes = Space::uniform(0.0, 255.0, &[4]).unwrap().with_dtype(Dtype::Uint8).unwrap();
+    assert_eq!(bytes.to_string(), "Box(0.0, 255.0, [4], uint8)");
+    assert!(bytes.contains(&[0.0, 255.0, 7.0, 1.0]) && !bytes.contains(&[0.5, 0.0, 0.0, 0.0]));
+    let mut random = Random::new(3);
+    let samples: Vec<_> = (0..2000).flat_map(|_| bytes.sample(&mut random)).collect();
+    assert!(samples.iter().all(|sample| sample.fract() == 0.0));
+    assert!(samples.contains(&0.0) && samples.contains(&255.0));
+    assert!(Space::symmetric(&[1.0]).with_dtype(Dtype::Uint8).is_err());
+    assert!(Space::discrete(3).with_dtype(Dtype::Float64).is_err());
+    assert!(Space::uniform(f32::NEG_INFINITY, 3.0, &[1]).unwrap().with_dtype(Dtype::Int64).is_err());
+}

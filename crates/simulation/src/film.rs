@@ -1,0 +1,218 @@
+//! Pictures of an episode in a file.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use gif::{Encoder, Frame, Repeat};
+use opendr_engine::data::{Image, PixelFormat};
+use opendr_engine::{Error, Result, ResultExt as _};
+use opendr_vision::VideoWriter;
+
+/// Writes pictures, one after the other, to an animated GIF, a video (by an installed `ffmpeg`) or numbered PNG files.
+///
+/// GIFs and videos appear whole when [`Film::finish`] is called, or not at all.
+pub struct Film {
+    path: PathBuf,
+    target: Target,
+}
+
+enum Target {
+    Gif(Box<Gif>),
+    Video(Box<VideoWriter>),
+    /// How many there are.
+    Pictures(usize),
+}
+
+impl Film {
+    /// A film with `rate` pictures a second at `path`, which ends in `.gif`, `.mp4`, `.mov`, `.mkv`, or in `.png`, where
+    /// picture 7 of `flight.png` is `flight-00007.png`.
+    ///
+    /// # Errors
+    /// `Unsupported` for another extension, `InvalidParam` for a rate that is not from 0.01 to 1000, `NotFound` when
+    /// the folder does not exist.
+    pub fn create(path: impl AsRef<Path>, rate: f64) -> Result<Self> {
+        let path = path.as_ref();
+        if !(0.01..=1000.0).contains(&rate) {
+            return Err(Error::invalid_param(format!(
+                "a rate of {rate} pictures a second; give 0.01 to 1000"
+            )));
+        }
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+        let target = match extension.to_ascii_lowercase().as_str() {
+            "gif" => Target::Gif(Box::new(Gif::new(path, rate))),
+            "png" => Target::Pictures(0),
+            "mp4" | "mov" | "mkv" => Target::Video(Box::new(VideoWriter::create(path, rate)?)),
+            _ => {
+                return Err(Error::unsupported(format!(
+                    "{} is no film that is written; end the name with .gif, .mp4, .mov, .mkv or .png",
+                    path.display()
+                )));
+            }
+        };
+        Ok(Self { path: path.to_owned(), target })
+    }
+
+    /// Adds a picture.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the size is not the first picture's, `Unsupported` when `ffmpeg` is not installed, `Io` when
+    /// the file cannot be written.
+    pub fn write(&mut self, image: &Image) -> Result<()> {
+        let written = match &mut self.target {
+            Target::Gif(gif) => gif.write(image),
+            Target::Video(video) => return video.write(image),
+            Target::Pictures(count) => {
+                *count += 1;
+                let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+                let file = self.path.with_file_name(format!("{stem}-{count:05}.png"));
+                return opendr_vision::save(image, file);
+            }
+        };
+        written.context(|| format!("writing {}", self.path.display()))
+    }
+
+    /// Ends the file.
+    ///
+    /// # Errors
+    /// `InvalidInput` when there was no picture, `Io` when the file cannot be written.
+    pub fn finish(self) -> Result<()> {
+        let finished = match self.target {
+            Target::Gif(gif) => gif.finish(&self.path),
+            Target::Video(video) => return video.finish(),
+            Target::Pictures(0) => Err(no_picture()),
+            Target::Pictures(_) => Ok(()),
+        };
+        finished.context(|| format!("writing {}", self.path.display()))
+    }
+}
+
+fn no_picture() -> Error {
+    Error::invalid_input("no picture was given, and a film has at least one")
+}
+
+struct Gif {
+    encoder: Option<Encoder<BufWriter<File>>>,
+    size: (u16, u16),
+    /// Pictures last hundredths of a second: what the last ones are behind or ahead is made up for by the next.
+    pause: f64,
+    owed: f64,
+    partial: PathBuf,
+}
+
+impl Gif {
+    fn new(path: &Path, rate: f64) -> Self {
+        let mut name = path.file_stem().unwrap_or_default().to_owned();
+        name.push(format!(".{}.partial.gif", std::process::id()));
+        let partial = path.with_file_name(name);
+        Self { encoder: None, size: (0, 0), pause: 100.0 / rate, owed: 0.0, partial }
+    }
+
+    fn write(&mut self, image: &Image) -> Result<()> {
+        let size = |side: usize| {
+            u16::try_from(side).map_err(|_| {
+                Error::invalid_input(format!(
+                    "a side of {side} pixels; a GIF has at most 65535, write another format"
+                ))
+            })
+        };
+        let size = (size(image.width())?, size(image.height())?);
+        let encoder = match &mut self.encoder {
+            Some(encoder) => encoder,
+            None => {
+                let file = BufWriter::new(File::create(&self.partial)?);
+                let mut encoder = Encoder::new(file, size.0, size.1, &[]).map_err(failed)?;
+                encoder.set_repeat(Repeat::Infinite).map_err(failed)?;
+                self.size = size;
+                self.encoder.insert(encoder)
+            }
+        };
+        if self.size != size {
+            return Err(Error::invalid_input(format!(
+                "a picture of {size:?} pixels in a film of {:?}; resize it, or write another file",
+                self.size
+            )));
+        }
+        // Exact for up to 256 colours, of which plain drawings have few.
+        let mut frame = Frame::from_rgb_speed(size.0, size.1, &image.hwc_u8(PixelFormat::Rgb), 10);
+        self.owed += self.pause;
+        frame.delay = self.owed.round().clamp(1.0, 65_535.0) as u16;
+        self.owed -= f64::from(frame.delay);
+        encoder.write_frame(&frame).map_err(failed)
+    }
+
+    fn finish(mut self, path: &Path) -> Result<()> {
+        let encoder = self.encoder.take().ok_or_else(no_picture)?;
+        encoder.into_inner().map_err(failed)?.flush()?;
+        Ok(fs::rename(&self.partial, path)?)
+    }
+}
+
+impl Drop for Gif {
+    fn drop(&mut self) {
+        // There is none after a rename.
+        let _ = fs::remove_file(&self.partial);
+    }
+}
+
+fn failed(error: gif::EncodingError) -> Error {
+    Error::io("the picture could not be encoded").with_source(error)
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::environment::ResetOptions;
+
+    use super::*;
+    use crate::{Registry, make};
+
+    /// Every environment draws itself, another picture in another state.
+    #[test]
+    fn every_environment_has_pictures() {
+        for id in Registry::builtin().ids() {
+            let mut environment = make(id).unwrap();
+            assert!(environment.render().is_err(), "{id}");
+            let mut seen = vec![0.0; environment.spec().observation.len()];
+            environment.reset(Some(1), &ResetOptions::new(), &mut seen).unwrap();
+            let before = environment.render().unwrap().unwrap();
+            let action = vec![0.0; environment.spec().action.len()];
+            for _ in 0..3 {
+                if environment.step(&action, &mut seen).unwrap().is_over() {
+                    break;
+                }
+            }
+            let after = environment.render().unwrap().unwrap();
+            assert_eq!((before.width(), before.height()), (after.width(), after.height()), "{id}");
+            assert_ne!(before, after, "{id}");
+        }
+    }
+
+    #[test]
+    fn films_appear_whole_or_not_at_all() {
+        let folder = std::env::temp_dir().join(format!("opendr-film-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let picture = |grey: u8| Image::from_rgb8(vec![grey; 3 * 6 * 4], 6, 4).unwrap();
+        let path = folder.join("a.gif");
+        let mut film = Film::create(&path, 30.0).unwrap();
+        (0..3).for_each(|grey| film.write(&picture(grey)).unwrap());
+        assert!(!path.exists());
+        assert!(film.write(&Image::from_rgb8(vec![0; 3], 1, 1).unwrap()).is_err());
+        film.finish().unwrap();
+        let bytes = fs::read(&path).unwrap();
+        assert!(bytes.starts_with(b"GIF89a\x06\x00\x04\x00") && bytes.ends_with(b";"));
+        // Thirty a second are 3.33 hundredths each.
+        let delays: Vec<_> = bytes.windows(6).filter(|w| w[..3] == [0x21, 0xf9, 4]).map(|w| w[4]).collect();
+        assert_eq!(delays, [3, 4, 3]);
+
+        let mut film = Film::create(folder.join("b.png"), 1.0).unwrap();
+        film.write(&picture(7)).unwrap();
+        film.finish().unwrap();
+        assert_eq!(opendr_vision::open(folder.join("b-00001.png")).unwrap().chw_u8(), [7; 72]);
+        assert!(Film::create(folder.join("c.gif"), 5.0).unwrap().finish().is_err());
+        assert!(Film::create(folder.join("c.txt"), 5.0).is_err());
+        assert!(Film::create(folder.join("c.gif"), f64::NAN).is_err());
+        drop(Film::create(&path, 30.0).map(|mut film| film.write(&picture(1))).unwrap());
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

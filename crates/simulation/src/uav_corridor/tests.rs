@@ -1,0 +1,217 @@
+use opendr_engine::environment::{Environment, ResetOptions, Space, Step};
+use opendr_engine::params::{ParamMap, ParamValue, Params as _};
+
+use super::*;
+use crate::{Registered, make};
+
+fn corridor(options: CorridorOptions, form: CorridorForm) -> (UavDepthCorridor, Vec<f32>) {
+    let environment = UavDepthCorridor::new(&UavDepthCorridorParams { options, form }).unwrap();
+    let seen = vec![0.0; environment.spec().observation.len()];
+    (environment, seen)
+}
+
+/// A corridor in which there is nothing.
+fn empty(form: CorridorForm) -> (UavDepthCorridor, Vec<f32>) {
+    let nothing = CorridorOptions {
+        min_obstacles: 0,
+        max_obstacles: 0,
+        walls: 0.0,
+        wind: 0.0,
+        ..CorridorOptions::default()
+    };
+    let (mut environment, mut seen) = corridor(nothing, form);
+    environment.reset(Some(1), &ResetOptions::new(), &mut seen).unwrap();
+    (environment, seen)
+}
+
+fn options(pairs: &[(&str, ParamValue)]) -> ParamMap {
+    pairs.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
+}
+
+/// Successes of a controller in 500 fixed worlds.
+fn successes(controller: &mut dyn CorridorController) -> u32 {
+    let mut environment = make("UavDepthCorridor-v1").unwrap();
+    let space = environment.spec().observation.clone();
+    let (mut seen, mut sight) = (vec![0.0; space.len()], CorridorSight::default());
+    let mut successes = 0;
+    for seed in 0..500 {
+        environment.reset(Some(1_000_000 + seed), &ResetOptions::new(), &mut seen).unwrap();
+        controller.begin();
+        loop {
+            sight.read(&space, &seen).unwrap();
+            let step = environment.step(&controller.act(&sight), &mut seen).unwrap();
+            if step.is_over() {
+                successes += u32::from(step.info.get("success") == Some(1.0));
+                break;
+            }
+        }
+    }
+    successes
+}
+
+/// Of 500; a few more or less where a system rounds sines otherwise.
+#[test]
+fn controllers_succeed_as_often_as_measured() {
+    assert!((90..=102).contains(&successes(&mut Straight)));
+    assert!((340..=400).contains(&successes(&mut Reactive::default())));
+    assert!((358..=378).contains(&successes(&mut PotentialField::default())));
+}
+
+#[test]
+fn rewards_are_opendrs() {
+    let (mut environment, mut seen) = empty(CorridorForm::default());
+    let y = environment.position()[1];
+    let step = environment.step(&[0.0, 0.0], &mut seen).unwrap();
+    assert!((step.reward - (2.0 - 0.4 * f64::from(y.abs()))).abs() < 1e-5, "{step:?}");
+    let step = environment.step(&[0.0, 1.0], &mut seen).unwrap();
+    let turned = std::f64::consts::FRAC_PI_8;
+    assert!((step.reward - (2.0 - 0.4 * f64::from(y.abs()) - 0.3 * turned)).abs() < 1e-5, "{step:?}");
+    // To the left: the target is to the right then.
+    assert!(environment.yaw() > 0.3 && seen[SIDE * SIDE + 1] < -1.5, "{:?}", &seen[SIDE * SIDE..]);
+    let length = seen[SIDE * SIDE..].iter().map(|part| part * part).sum::<f32>();
+    assert!((length - 25.0 - y * y).abs() < 1e-3);
+    let ends = |environment: &mut UavDepthCorridor, seen: &mut [f32], action: [f32; 2]| -> Step {
+        loop {
+            let step = environment.step(&action, seen).unwrap();
+            if step.is_over() {
+                return step;
+            }
+        }
+    };
+    let step = ends(&mut environment, &mut seen, [1.0, 0.0]);
+    assert_eq!((step.reward, step.info.get("success"), step.terminated), (-10.0, Some(0.0), true));
+    environment.reset(Some(2), &ResetOptions::new(), &mut seen).unwrap();
+    let step = ends(&mut environment, &mut seen, [0.0, 0.0]);
+    assert_eq!((step.reward, step.info.get("success"), step.truncated), (20.0, Some(1.0), false));
+    assert_eq!(environment.path().len(), 32);
+}
+
+/// The drone stops where it touches, and balls ahead cost reward before.
+#[test]
+fn obstacles_end_flights() {
+    let (mut environment, mut seen) = corridor(CorridorOptions::default(), CorridorForm::default());
+    let (mut collisions, mut warned) = (0, 0);
+    for seed in 0..60 {
+        environment.reset(Some(seed), &ResetOptions::new(), &mut seen).unwrap();
+        loop {
+            let step = environment.step(&[0.0, 0.0], &mut seen).unwrap();
+            let gap = environment.world().scene().distance(environment.position()) - RADIUS;
+            let collided = step.info.get("collision") == Some(1.0);
+            assert_eq!(collided, gap < 2e-4, "{gap} {step:?}");
+            if step.is_over() {
+                assert!(!collided || step.reward == -20.0);
+                collisions += u32::from(collided);
+                break;
+            }
+            warned += u32::from(step.reward < -8.0);
+        }
+    }
+    assert!(collisions > 30 && warned > 20, "{collisions} {warned}");
+}
+
+#[test]
+fn worlds_have_opendrs_numbers() {
+    let (mut environment, mut seen) = corridor(CorridorOptions::default(), CorridorForm::default());
+    let (mut counts, mut walls, mut passable) = ([0; 7], 0, 0);
+    for seed in 0..300 {
+        environment.reset(Some(seed), &ResetOptions::new(), &mut seen).unwrap();
+        let world = environment.world();
+        counts[world.obstacles().len()] += 1;
+        walls += u32::from(world.walls().is_some());
+        passable += u32::from(world.is_passable());
+        assert!(world.walls().is_none_or(|aside| (2.0..5.0).contains(&aside)));
+        for body in world.obstacles() {
+            let [x, _, z] = body.position();
+            assert!((-7.0..20.0).contains(&x) && (2.0..3.0).contains(&z));
+        }
+    }
+    assert!(counts[..2] == [0; 2] && counts[2..].iter().all(|count| *count > 30), "{counts:?}");
+    assert!((120..180).contains(&walls) && passable > 290, "{walls} {passable}");
+
+    let crowded = options(&[("min_obstacles", 8_i64.into()), ("max_obstacles", 10_i64.into())]);
+    environment.reset(Some(1), &crowded, &mut seen).unwrap();
+    assert!((8..=10).contains(&environment.world().obstacles().len()));
+    environment.reset(None, &ResetOptions::new(), &mut seen).unwrap();
+    assert!(environment.world().obstacles().len() <= 6);
+    for wrong in [
+        options(&[("min_obstacles", 7_i64.into())]),
+        options(&[("max_obstacles", 16_i64.into())]),
+        options(&[("range_noise", f64::NAN.into())]),
+        options(&[("obstacles", 3_i64.into())]),
+    ] {
+        assert!(environment.reset(Some(1), &wrong, &mut seen).is_err(), "{wrong:?}");
+    }
+}
+
+#[test]
+fn sensors_have_the_faults_that_were_asked_for() {
+    let (mut environment, mut clean) = corridor(CorridorOptions::default(), CorridorForm::default());
+    environment.reset(Some(4), &ResetOptions::new(), &mut clean).unwrap();
+    let measure = |environment: &mut UavDepthCorridor, name: &str, value: f64| {
+        let mut seen = vec![0.0; SIDE * SIDE + 3];
+        environment.reset(Some(4), &options(&[(name, value.into())]), &mut seen).unwrap();
+        seen
+    };
+    let near = |seen: &[f32]| -> Vec<(f32, f32)> {
+        let pairs = clean.iter().zip(seen).take(SIDE * SIDE);
+        pairs.filter(|(clean, _)| **clean < 200.0).map(|(clean, seen)| (*clean, *seen)).collect()
+    };
+    let noisy = near(&measure(&mut environment, "range_noise", 0.02));
+    let shares: Vec<_> = noisy.iter().map(|(clean, seen)| (seen - clean) / (clean + 0.5)).collect();
+    let deviation = (shares.iter().map(|share| share * share).sum::<f32>() / shares.len() as f32).sqrt();
+    assert!(shares.len() > 300 && (0.015..0.025).contains(&deviation), "{} {deviation}", shares.len());
+    let dropped = near(&measure(&mut environment, "dropped_pixels", 0.05));
+    let share = dropped.iter().filter(|(_, seen)| *seen == 255.0).count() as f32 / dropped.len() as f32;
+    assert!((0.02..0.09).contains(&share), "{share}");
+    assert_eq!(measure(&mut environment, "range_noise", 0.02), measure(&mut environment, "range_noise", 0.02));
+}
+
+#[test]
+fn forms_change_spaces_only() {
+    let (bytes, shares) = (empty(CorridorForm::default()), CorridorForm { flat: true, ..Default::default() });
+    let shares = empty(CorridorForm { pose: true, ..shares });
+    assert!(matches!(shares.0.spec().observation, Space::Box { .. }));
+    assert_eq!(shares.1.len(), SIDE * SIDE + 5);
+    let [mut one, mut other] = [CorridorSight::default(), CorridorSight::default()];
+    one.read(&bytes.0.spec().observation, &bytes.1).unwrap();
+    other.read(&shares.0.spec().observation, &shares.1).unwrap();
+    assert!(one.depths.iter().zip(&other.depths).all(|(a, b)| (a - b).abs() <= RANGE / 255.0));
+    assert_eq!((one.target, shares.1[SIDE * SIDE + 3]), (other.target, shares.0.position()[1]));
+    assert!(one.read(&bytes.0.spec().observation, &[0.0; 5]).is_err());
+    assert!(bytes.0.spec().observation.contains(&bytes.1));
+
+    let (mut chosen, mut seen) = empty(CorridorForm { discrete: true, ..Default::default() });
+    let (mut told, _) = empty(CorridorForm::default());
+    chosen.step(&[6.0], &mut seen).unwrap();
+    told.step(&[-1.0, -1.0], &mut seen).unwrap();
+    assert_eq!((chosen.position(), chosen.yaw()), (told.position(), told.yaw()));
+    assert!(chosen.step(&[7.0], &mut seen).is_err() && told.step(&[f32::NAN, 0.0], &mut seen).is_err());
+}
+
+/// Without wind a flown drone arrives where a told one is.
+#[test]
+fn dynamics_go_where_they_are_told() {
+    let (mut flown, mut seen) = empty(CorridorForm { dynamics: true, ..Default::default() });
+    let (mut told, _) = empty(CorridorForm::default());
+    for step in 0..15 {
+        let action = [0.5 * ((step % 3) as f32 - 1.0), if step % 4 < 2 { 0.4 } else { -0.4 }];
+        flown.step(&action, &mut seen).unwrap();
+        told.step(&action, &mut seen).unwrap();
+    }
+    let away: Vec<_> = flown.position().into_iter().zip(told.position()).map(|(a, b)| (a - b).abs()).collect();
+    assert!(away[0] < 2.0 && away[1] < 1.5 && away[2] < 0.3, "{away:?}");
+    assert!((flown.yaw() - told.yaw()).abs() < 0.25, "{} {}", flown.yaw(), told.yaw());
+}
+
+#[test]
+fn names_have_defaults_of_their_own() {
+    let default = |id: &str, name: &str| {
+        let fields = crate::Registry::builtin().get(id).unwrap().fields();
+        fields.iter().find(|field| field.name == name).unwrap().default.value()
+    };
+    assert_eq!(default("UavDepthCorridor-dense-v1", "min_obstacles"), ParamValue::Int(8));
+    assert_eq!(default("UavDepthCorridor-dyn-v1", "dynamics"), ParamValue::Bool(true));
+    assert_eq!(make("UavDepthCorridor-noisy-v1").unwrap().spec().id, "UavDepthCorridor-noisy-v1");
+    assert_eq!(make("UavDepthCorridor-discrete").unwrap().spec().action, Space::discrete(7));
+    assert!(UavDepthCorridorParams::default().check().is_ok());
+}

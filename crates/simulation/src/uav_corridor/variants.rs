@@ -1,0 +1,96 @@
+//! The corridor under several names.
+
+use opendr_engine::Result;
+use opendr_engine::params::{ParamMap, Params};
+
+use super::{CorridorForm, CorridorOptions, UavDepthCorridor, UavDepthCorridorParams};
+use crate::Registration;
+use crate::registry::checked;
+
+/// `UavDepthCorridor-discrete-v1`: seven choices.
+#[derive(Debug, Clone, Params)]
+pub struct Discrete {
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten)]
+    pub options: CorridorOptions,
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten, discrete = true)]
+    pub form: CorridorForm,
+}
+
+/// `UavDepthCorridor-dyn-v1`: a quadrotor in wind.
+#[derive(Debug, Clone, Params)]
+pub struct Dynamic {
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten)]
+    pub options: CorridorOptions,
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten, dynamics = true)]
+    pub form: CorridorForm,
+}
+
+/// `UavDepthCorridor-dense-v1`: 8 to 10 obstacles.
+#[derive(Debug, Clone, Params)]
+pub struct Dense {
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten, min_obstacles = 8, max_obstacles = 10)]
+    pub options: CorridorOptions,
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten)]
+    pub form: CorridorForm,
+}
+
+/// `UavDepthCorridor-noisy-v1`: range noise of 2 %, 5 % of the pixels dropped.
+#[derive(Debug, Clone, Params)]
+pub struct Noisy {
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten, range_noise = 0.02, dropped_pixels = 0.05)]
+    pub options: CorridorOptions,
+    /// As in `UavDepthCorridor-v1`.
+    #[param(flatten)]
+    pub form: CorridorForm,
+}
+
+/// The corridor with other defaults.
+trait Variant: Params {
+    const ID: &'static str;
+
+    fn corridor(self) -> UavDepthCorridorParams;
+}
+
+macro_rules! variants {
+    ($($name:ident = $id:literal),*) => {
+        $(impl Variant for $name {
+            const ID: &'static str = $id;
+
+            fn corridor(self) -> UavDepthCorridorParams {
+                UavDepthCorridorParams { options: self.options, form: self.form }
+            }
+        })*
+    };
+}
+
+variants! {
+    Discrete = "UavDepthCorridor-discrete-v1",
+    Dynamic = "UavDepthCorridor-dyn-v1",
+    Dense = "UavDepthCorridor-dense-v1",
+    Noisy = "UavDepthCorridor-noisy-v1"
+}
+
+/// All of them, and the plain one.
+pub(crate) fn registrations() -> [Registration; 5] {
+    [
+        Registration::of::<UavDepthCorridor>(),
+        registration::<Discrete>(),
+        registration::<Dynamic>(),
+        registration::<Dense>(),
+        registration::<Noisy>(),
+    ]
+}
+
+fn registration<V: Variant>() -> Registration {
+    let make = |params: &ParamMap| -> Result<_> {
+        checked(UavDepthCorridor::called(V::ID, &V::from_map(params)?.corridor())?)
+    };
+    Registration::new(V::ID, V::FIELDS, make)
+}
