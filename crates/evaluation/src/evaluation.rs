@@ -104,7 +104,9 @@ impl<'a> Evaluation<'a> {
     fn lower_threshold(&self, learners: &mut [Box<dyn AnyLearner>]) -> Result<Option<ParamValue>> {
         let Some(first) = learners.first().filter(|_| self.metric.ranks) else { return Ok(None) };
         let Some(was) = first.params().remove(THRESHOLD) else { return Ok(None) };
-        if first.default_of(THRESHOLD).as_ref() != Some(&was) || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD) {
+        if first.default_of(THRESHOLD).as_ref() != Some(&was)
+            || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD)
+        {
             return Ok(None);
         }
         let low = ParamValue::Float(LOW_THRESHOLD);

@@ -254,8 +254,7 @@ impl<'a, O: Objective> Training<'a, O> {
 
     /// A few samples forwards and backwards, without a trace: on a copy of the network.
     fn try_step(&self) -> Result<()> {
-        let options =
-            LoaderOptions { batch_size: TRIED, threads: 0, ..self.loader_options() };
+        let options = LoaderOptions { batch_size: TRIED, threads: 0, ..self.loader_options() };
         let loader = self.loader(options)?;
         let Some(network) = &self.network else {
             return Err(Error::internal("a training without a network"));

@@ -28,7 +28,14 @@ pub struct FitJob<'a> {
 impl<'a> FitJob<'a> {
     /// A silent job on the best device that writes to `output`.
     pub fn new(output: &'a Path) -> Self {
-        Self { output, resume: false, logging_path: None, device: Device::Auto, skip_broken: false, progress: &Silent }
+        Self {
+            output,
+            resume: false,
+            logging_path: None,
+            device: Device::Auto,
+            skip_broken: false,
+            progress: &Silent,
+        }
     }
 
     /// Where the trained container is written.
