@@ -26,7 +26,8 @@ impl HeightField {
         let rows = heights.len() / columns.max(1);
         let fits = columns >= 2 && rows >= 2 && rows * columns == heights.len() && heights.len() <= 1 << 20;
         let is_finite = heights.iter().all(|height| height.abs() < 1e5);
-        if !fits || !is_finite || !(spacing > 0.0 && spacing < 1e3) {
+        let is_spaced = spacing > 0.0 && spacing < 1e3;
+        if !(fits && is_finite && is_spaced) {
             return Err(Error::invalid_input(format!(
                 "{} heights in {columns} columns, {spacing} m apart; give at least 2 of each, at most 2^20 heights, numbers below 1e5 and a spacing below 1e3",
                 heights.len()

@@ -36,9 +36,8 @@ impl RayPacket {
         }
         let before = self.distances;
         body.shape().meet(body.point_in_body(self.origin), &directions, &mut self.distances);
-        for lane in 0..LANES {
-            let nearer = self.distances[lane] < before[lane];
-            self.bodies[lane] = if nearer { number } else { self.bodies[lane] };
+        for ((body, distance), before) in self.bodies.iter_mut().zip(self.distances).zip(before) {
+            *body = if distance < before { number } else { *body };
         }
     }
 }

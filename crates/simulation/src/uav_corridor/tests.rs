@@ -163,7 +163,10 @@ fn sensors_have_the_faults_that_were_asked_for() {
     let dropped = near(&measure(&mut environment, "dropped_pixels", 0.05));
     let share = dropped.iter().filter(|(_, seen)| *seen == 255.0).count() as f32 / dropped.len() as f32;
     assert!((0.02..0.09).contains(&share), "{share}");
-    assert_eq!(measure(&mut environment, "range_noise", 0.02), measure(&mut environment, "range_noise", 0.02));
+    assert_eq!(
+        measure(&mut environment, "range_noise", 0.02),
+        measure(&mut environment, "range_noise", 0.02)
+    );
 }
 
 #[test]
@@ -198,7 +201,8 @@ fn dynamics_go_where_they_are_told() {
         flown.step(&action, &mut seen).unwrap();
         told.step(&action, &mut seen).unwrap();
     }
-    let away: Vec<_> = flown.position().into_iter().zip(told.position()).map(|(a, b)| (a - b).abs()).collect();
+    let away: Vec<_> =
+        flown.position().into_iter().zip(told.position()).map(|(a, b)| (a - b).abs()).collect();
     assert!(away[0] < 2.0 && away[1] < 1.5 && away[2] < 0.3, "{away:?}");
     assert!((flown.yaw() - told.yaw()).abs() < 0.25, "{} {}", flown.yaw(), told.yaw());
 }

@@ -1,8 +1,6 @@
 //! The environments that one thread steps.
 
-use opendr_engine::environment::{
-    Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader, Step,
-};
+use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions, Snapshot, StateReader, Step};
 use opendr_engine::{Error, Result, ResultExt as _};
 
 use super::{Autoreset, Batch};

@@ -230,7 +230,8 @@ fn put_new_trial(trial: &NewTrial, put: &mut impl FnMut(&str, Value) -> Option<V
         put("datetime_complete", moment(trial.ended));
     }
     let params = || trial.params.iter();
-    let distribution = |suggestion: &Suggestion| Value::from(json_from_distribution(&suggestion.distribution));
+    let distribution =
+        |suggestion: &Suggestion| Value::from(json_from_distribution(&suggestion.distribution));
     put("distributions", params().map(|(name, it)| (name.clone(), distribution(it))).collect());
     put("params", params().map(|(name, it)| (name.clone(), value_from_number(it.number))).collect());
     put("user_attrs", Value::Object(trial.user_attributes.clone()));
