@@ -9,14 +9,31 @@ import pytest
 from coco128 import Coco128
 
 PERSON = [0]
-#: Where the Debian package dataset-fashion-mnist puts it.
 #: Mean OKS over the annotated persons, and the share of MoveNet's persons found at OKS 0.5.
 OPEN_POSE_FLOOR, AGREEMENT_FLOOR = 0.5, 0.65
+#: Where the Debian package dataset-fashion-mnist puts it.
 FASHION_MNIST = Path("/usr/share/datasets/fashion-mnist")
 # COCO's 17 joints among OpenDR's 18.
 COCO_JOINTS = [0, 15, 14, 17, 16, 5, 2, 6, 3, 7, 4, 11, 8, 12, 9, 13, 10]
 # pycocotools' constants of the object keypoint similarity.
 SIGMAS = np.array([26, 25, 25, 35, 35, 79, 79, 72, 72, 62, 62, 107, 107, 87, 87, 89, 89]) / 1000
+
+
+def coco_points(pose):
+    """Where a pose of ours has COCO's joints, `[17, 2]`."""
+    return np.array([[pose["keypoints"][joint]["x"], pose["keypoints"][joint]["y"]] for joint in COCO_JOINTS])
+
+
+def oks(points, joints, area):
+    """Object keypoint similarity of `points` `[17, 2]` to true `joints` `[17, 3]`, over those that are visible."""
+    distances = ((points - joints[:, :2]) ** 2).sum(axis=1)
+    return np.exp(-distances / (2 * SIGMAS) ** 2 / area / 2)[joints[:, 2] > 0].mean()
+
+
+def similarities(truths, poses):
+    """OKS of each true person (joints `[17, 3]`, area) with the pose that fits it best; 0 where there is none."""
+    found = [coco_points(pose) for pose in poses]
+    return [max((oks(points, joints, area) for points in found), default=0.0) for joints, area in truths]
 
 
 @pytest.mark.parametrize(
@@ -42,16 +59,13 @@ def test_movenet_on_cropped_persons(opendr, shared, tmp_path):
         cv2.imwrite(str(tmp_path / f"{number:02}.png"), picture[top : top + height, left : left + width])
         corners.append((left, top))
     lines = opendr.infer("movenet/lightning", "--threshold", "0", "--keypoint-threshold", "0", tmp_path)
-    similarities = []
+    values = []
     for person, corner, line in zip(persons, corners, lines, strict=True):
         joints = np.array(person["keypoints"], dtype=float).reshape(17, 3)
-        found = line["outputs"]["poses"]["poses"][0]["keypoints"]
-        points = np.array([[found[joint]["x"], found[joint]["y"]] for joint in COCO_JOINTS]) + corner
-        distances = ((points - joints[:, :2]) ** 2).sum(axis=1)
-        similarity = np.exp(-distances / (2 * SIGMAS) ** 2 / person["area"] / 2)
-        similarities.append(similarity[joints[:, 2] > 0].mean())
-    print(f"movenet: mean OKS {np.mean(similarities):.3f} over {len(similarities)} persons")
-    assert np.mean(similarities) >= 0.75
+        points = coco_points(line["outputs"]["poses"]["poses"][0]) + corner
+        values.append(oks(points, joints, person["area"]))
+    print(f"movenet: mean OKS {np.mean(values):.3f} over {len(values)} persons")
+    assert np.mean(values) >= 0.75
 
 
 @pytest.mark.parametrize(("picture", "faces"), [("t1.jpg", 6), ("zidane.jpg", 2), ("astronaut.png", 1)])
@@ -79,12 +93,7 @@ def test_multi_person_poses_stand_on_the_persons(opendr, shared, learner):
     persons, hits = [person for person in truth["annotations"] if person["num_keypoints"] >= 10], 0
     for person in persons:
         joints = np.array(person["keypoints"], dtype=float).reshape(17, 3)
-        best = 0.0
-        for pose in poses[names[person["image_id"]]]:
-            points = np.array([[pose["keypoints"][j]["x"], pose["keypoints"][j]["y"]] for j in COCO_JOINTS])
-            distances = ((points - joints[:, :2]) ** 2).sum(axis=1)
-            similarity = np.exp(-distances / (2 * SIGMAS) ** 2 / person["area"] / 2)
-            best = max(best, similarity[joints[:, 2] > 0].mean())
+        [best] = similarities([(joints, person["area"])], poses[names[person["image_id"]]])
         hits += best >= 0.5
     print(f"{learner}: {hits} of {len(persons)} persons")
     assert hits >= 0.6 * len(persons)
@@ -103,18 +112,6 @@ def test_image_classifier_on_fashion_mnist(opendr):
     report = opendr.eval("image_classifier", FASHION_MNIST, "--split", "test", "--limit", "2000")
     print(f"image_classifier: accuracy {report['scalars']['accuracy']:.3f} on 2000 test pictures")
     assert report["scalars"]["accuracy"] >= 0.88
-
-
-def similarities(truths, poses):
-    """OKS of each true person (joints `[17, 3]`, area) with the pose that fits it best; 0 where there is none."""
-    found = [np.array([[joint["x"], joint["y"]] for joint in pose["keypoints"]])[COCO_JOINTS] for pose in poses]
-    best = []
-    for joints, area in truths:
-        visible = joints[:, 2] > 0
-        distances = [((points - joints[:, :2]) ** 2).sum(axis=1) for points in found]
-        scores = [np.exp(-distance / (2 * SIGMAS) ** 2 / area / 2)[visible].mean() for distance in distances]
-        best.append(max(scores, default=0.0))
-    return best
 
 
 def interval(values):
