@@ -128,6 +128,11 @@ struct Training<'a, O: Objective> {
     halt: Option<Halt>,
 }
 
+/// Samples of a batch: no more than there are.
+fn batch_size(params: &TrainingParams, dataset: &dyn DatasetIterator) -> usize {
+    params.batch_size.min(dataset.len())
+}
+
 impl<'a, O: Objective> Training<'a, O> {
     fn new(
         objective: &'a O,
@@ -139,7 +144,7 @@ impl<'a, O: Objective> Training<'a, O> {
         let device = training_device(job.device)?.autodiff();
         let checkpoints = Checkpoints::new(&job.output.join(CHECKPOINTS), params.checkpoints_kept)?;
         let setting = Setting { samples: dataset.len(), params: params.to_map() };
-        let batches = Self::options(params, dataset, job).1 as u64;
+        let batches = (dataset.len() / batch_size(params, dataset)) as u64;
         let per_epoch = batches.div_ceil(params.accumulate as u64);
         let all = per_epoch * params.epochs as u64;
         let steps = if params.max_steps == 0 { all } else { all.min(params.max_steps) };
@@ -172,27 +177,17 @@ impl<'a, O: Objective> Training<'a, O> {
         Ok(training)
     }
 
-    /// How the data set is gone through, and how many batches an epoch has.
-    fn options(
-        params: &TrainingParams,
-        dataset: &dyn DatasetIterator,
-        job: &FitJob<'_>,
-    ) -> (LoaderOptions, usize) {
-        let batch_size = params.batch_size.min(dataset.len());
-        let options = LoaderOptions {
-            batch_size,
-            threads: params.num_workers,
-            seed: params.seed,
+    /// How the data set is gone through.
+    fn loader_options(&self) -> LoaderOptions {
+        LoaderOptions {
+            batch_size: batch_size(self.params, self.dataset),
+            threads: self.params.num_workers,
+            seed: self.params.seed,
             // A last batch of one or two would spoil the statistics of batch normalisation.
             drop_last: true,
-            skip_broken: job.skip_broken,
+            skip_broken: self.job.skip_broken,
             ..LoaderOptions::default()
-        };
-        (options, dataset.len() / batch_size)
-    }
-
-    fn loader_options(&self) -> LoaderOptions {
-        Self::options(self.params, self.dataset, self.job).0
+        }
     }
 
     /// Goes on from the last checkpoint, where the job says so and there is one.
