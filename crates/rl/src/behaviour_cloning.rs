@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use opendr_engine::environment::{Environment, EnvironmentSpec, ResetOptions};
+use opendr_engine::environment::{Controller, Environment, EnvironmentSpec, ResetOptions};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt as _};
 use opendr_kernels::{Adam, AdamOptions, Compute};
@@ -59,12 +59,12 @@ impl Demonstrations {
         Ok(Self { observations, actions, steps })
     }
 
-    /// What `act` does in episodes that begin with these seeds.
+    /// What a controller does in episodes that begin with these seeds.
     ///
     /// # Errors
-    /// Those of the environment and of `act`.
+    /// Those of the environment and of the controller.
     pub fn record(
-        act: &mut dyn FnMut(&[f32], &mut [f32]) -> Result<()>,
+        controller: &mut dyn Controller,
         environment: &mut dyn Environment,
         seeds: impl IntoIterator<Item = u64>,
     ) -> Result<Self> {
@@ -74,8 +74,9 @@ impl Demonstrations {
         let (mut observations, mut actions) = (Vec::new(), Vec::new());
         for seed in seeds {
             environment.reset(Some(seed), &ResetOptions::new(), &mut observation)?;
+            controller.reset();
             loop {
-                act(&observation, &mut action)?;
+                controller.act(&observation, &mut action)?;
                 observations.extend_from_slice(&observation);
                 actions.extend_from_slice(&action);
                 if environment.step(&action, &mut observation)?.is_over() {

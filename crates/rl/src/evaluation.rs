@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use opendr_engine::environment::{Environment, ResetOptions, Step};
+use opendr_engine::environment::{Controller, Environment, ResetOptions, Step};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
 use opendr_kernels::Compute;
@@ -99,16 +99,16 @@ pub fn evaluate(
         policy.act(&compute, observation, acting, &mut memory, action)
     };
     let success = |step: &Step| step.info.get("success").map(|success| success > 0.5);
-    evaluate_actions(&mut act, environment, protocol, &success)
+    evaluate_controller(&mut act, environment, protocol, &success)
 }
 
-/// Measures whatever writes an action for an observation, e.g. a controller. `success` tells from the last step of an
+/// Measures a controller. `success` tells from the last step of an
 /// episode whether it reached its goal.
 ///
 /// # Errors
-/// Those of the environment and of what acts, with the seed.
-pub fn evaluate_actions(
-    act: &mut dyn FnMut(&[f32], &mut [f32]) -> Result<()>,
+/// Those of the environment and of the controller, with the seed.
+pub fn evaluate_controller(
+    controller: &mut dyn Controller,
     environment: &mut dyn Environment,
     protocol: &EvaluationProtocol,
     success: &dyn Fn(&Step) -> Option<bool>,
@@ -117,7 +117,7 @@ pub fn evaluate_actions(
     let begun = Instant::now();
     let seeds = (0..protocol.episodes).map(|index| protocol.first_seed.wrapping_add(index));
     let episodes = seeds.map(|seed| {
-        let episode = run(act, environment, protocol.max_steps, seed, success);
+        let episode = run(controller, environment, protocol.max_steps, seed, success);
         episode.context(|| format!("evaluating the episode of seed {seed}"))
     });
     let episodes = episodes.collect::<Result<Vec<_>>>()?;
@@ -137,7 +137,7 @@ pub fn evaluate_actions(
 }
 
 fn run(
-    act: &mut dyn FnMut(&[f32], &mut [f32]) -> Result<()>,
+    controller: &mut dyn Controller,
     environment: &mut dyn Environment,
     max_steps: u64,
     seed: u64,
@@ -147,8 +147,9 @@ fn run(
     let mut action = vec![0.0; environment.spec().action.len()];
     environment.reset(Some(seed), &ResetOptions::new(), &mut observation)?;
     let mut earned = 0.0;
+    controller.reset();
     for length in 1..=max_steps {
-        act(&observation, &mut action)?;
+        controller.act(&observation, &mut action)?;
         let step = environment.step(&action, &mut observation)?;
         earned += step.reward;
         if step.is_over() || length == max_steps {
@@ -220,7 +221,7 @@ mod tests {
                 Ok(())
             };
             let success = |step: &Step| Some(step.truncated);
-            evaluate_actions(&mut act, &mut *environment, &protocol, &success).unwrap()
+            evaluate_controller(&mut act, &mut *environment, &protocol, &success).unwrap()
         };
         let (first, again) = (measure(), measure());
         assert_eq!((&first.episodes, first.episodes.len()), (&again.episodes, 7));

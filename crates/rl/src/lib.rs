@@ -25,7 +25,7 @@ pub use behaviour_cloning::{BehaviourCloningConfig, Demonstrations, clone_behavi
 pub use dqn::{Dqn, DqnConfig};
 pub use episodes::{Episode, Episodes};
 pub use evaluation::{
-    EvaluatedEpisode, EvaluationProtocol, EvaluationReport, SuccessRate, evaluate, evaluate_actions,
+    EvaluatedEpisode, EvaluationProtocol, EvaluationReport, SuccessRate, evaluate, evaluate_controller,
 };
 pub use off_policy::OffPolicyConfig;
 pub use onnx::onnx_from_policy;

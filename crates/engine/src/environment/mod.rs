@@ -1,5 +1,6 @@
 //! Worlds that policies act in, with the meaning of Gymnasium 1.x.
 
+mod controller;
 mod info;
 mod snapshot;
 mod space;
@@ -8,6 +9,7 @@ mod spec;
 use crate::data::Image;
 use crate::{Error, Result};
 
+pub use controller::Controller;
 pub use info::Info;
 pub use snapshot::{Snapshot, StateReader};
 pub use space::{Dtype, Space};

@@ -61,7 +61,7 @@ impl ObservationEncoder {
             Space::Tuple(parts) => return parts.iter().for_each(|part| self.add(part)),
             Space::Discrete { n, start } => PartKind::Choices(vec![*n], *start),
             Space::MultiDiscrete(counts) => PartKind::Choices(counts.clone(), 0),
-            Space::Box { low, high, shape } => picture(low, high, shape).unwrap_or(PartKind::Numbers),
+            Space::Box { low, high, shape, .. } => picture(low, high, shape).unwrap_or(PartKind::Numbers),
             _ => PartKind::Numbers,
         };
         let (raw, encoded) = (raw..raw + space.len(), encoded..encoded + space.flat_len());

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use opendr_engine::environment::Space;
+use opendr_engine::environment::{Dtype, Space};
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
 
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum SpaceRecord {
-    Box { low: Vec<String>, high: Vec<String>, shape: Vec<usize> },
+    Box { low: Vec<String>, high: Vec<String>, shape: Vec<usize>, dtype: String },
     Discrete { n: u32, start: i32 },
     MultiDiscrete(Vec<u32>),
     MultiBinary(Vec<usize>),
@@ -24,9 +24,12 @@ const MOST_NUMBERS: usize = 1 << 24;
 impl SpaceRecord {
     pub fn of(space: &Space) -> Result<Self> {
         Ok(match space {
-            Space::Box { low, high, shape } => {
-                Self::Box { low: texts(low), high: texts(high), shape: shape.clone() }
-            }
+            Space::Box { low, high, shape, dtype } => Self::Box {
+                low: texts(low),
+                high: texts(high),
+                shape: shape.clone(),
+                dtype: dtype.name().to_owned(),
+            },
             Space::Discrete { n, start } => Self::Discrete { n: *n, start: *start },
             Space::MultiDiscrete(counts) => Self::MultiDiscrete(counts.clone()),
             Space::MultiBinary(shape) => Self::MultiBinary(shape.clone()),
@@ -48,9 +51,12 @@ impl SpaceRecord {
     /// Takes what it needs off `left`.
     fn within(&self, left: &mut usize) -> Result<Space> {
         Ok(match self {
-            Self::Box { low, high, shape } => {
+            Self::Box { low, high, shape, dtype } => {
                 let count = take(shape.iter().copied(), left)?;
+                let dtype = Dtype::from_name(dtype)
+                    .ok_or_else(|| Error::format(format!("{dtype:.40?} is no type of numbers")))?;
                 Space::bounded(numbers(low, count)?, numbers(high, count)?, shape.clone())?
+                    .with_dtype(dtype)?
             }
             Self::Discrete { n, start } => {
                 take([*n as usize], left)?;

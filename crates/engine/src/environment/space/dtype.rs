@@ -17,6 +17,9 @@ pub enum Dtype {
 }
 
 impl Dtype {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Float32, Self::Float64, Self::Uint8, Self::Int64];
+
     /// NumPy's name.
     pub const fn name(self) -> &'static str {
         match self {
@@ -25,6 +28,11 @@ impl Dtype {
             Self::Uint8 => "uint8",
             Self::Int64 => "int64",
         }
+    }
+
+    /// The type of a name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|dtype| dtype.name() == name)
     }
 
     /// Whether numbers have to be whole.
