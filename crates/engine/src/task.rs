@@ -42,6 +42,8 @@ tasks! {
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.
     SpeechRecognition = "speech_recognition";
+    /// What a robot does, learnt by acting.
+    ReinforcementLearning = "reinforcement_learning";
 }
 
 impl fmt::Display for Task {

@@ -10,8 +10,8 @@ use crate::data::{
     SkeletonSequence, Timeseries, Vector, Video,
 };
 use crate::target::{
-    BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, SpeechCommand,
-    TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
+    BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
+    SpeechCommand, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
 };
 use crate::{Error, Header, Result};
 
@@ -217,6 +217,7 @@ values! {
         BaseTranscription = "transcription",
         WhisperTranscription = "transcription",
         VoskTranscription = "transcription",
+        RlTarget = "target",
     }
 }
 

@@ -7,6 +7,7 @@ mod dqn;
 mod episodes;
 mod evaluation;
 mod interaction;
+mod learner;
 mod off_policy;
 mod onnx;
 mod policy;
@@ -18,6 +19,7 @@ mod saved_state;
 mod schedule;
 mod stable_baselines3;
 mod td3;
+mod training;
 mod twin_critics;
 
 pub use algorithm::{Algorithm, Event, Report};
@@ -26,6 +28,11 @@ pub use dqn::{Dqn, DqnConfig};
 pub use episodes::{Episode, Episodes};
 pub use evaluation::{
     EvaluatedEpisode, EvaluationProtocol, EvaluationReport, SuccessRate, evaluate, evaluate_controller,
+};
+pub use learner::{
+    DqnFitParams, DqnLearner, DqnMethod, Method, PolicyLearner, PolicyParams, PolicyState, PpoFitParams,
+    PpoLearner, PpoMethod, RlTrainingParams, SacFitParams, SacLearner, SacMethod, Td3FitParams, Td3Learner,
+    Td3Method, numbers_from_observation, observation_from_numbers,
 };
 pub use off_policy::OffPolicyConfig;
 pub use onnx::onnx_from_policy;

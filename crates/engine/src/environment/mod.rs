@@ -1,6 +1,7 @@
 //! Worlds that policies act in, with the meaning of Gymnasium 1.x.
 
 mod controller;
+mod environment_source;
 mod info;
 mod snapshot;
 mod space;
@@ -10,6 +11,7 @@ use crate::data::Image;
 use crate::{Error, Result};
 
 pub use controller::Controller;
+pub use environment_source::EnvironmentSource;
 pub use info::Info;
 pub use snapshot::{Snapshot, StateReader};
 pub use space::{Dtype, Space};

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::dataset::DatasetRef;
+use crate::environment::EnvironmentSource;
 use crate::learner::capability::{Abilities, PushFn};
 use crate::learner::{Capabilities, FitJob, Handle, Learner, Outputs, Ports, Stream};
 use crate::params::{ParamMap, ParamValue, Params};
@@ -47,6 +48,18 @@ pub trait AnyLearner: Send {
         fit_params: &ParamMap,
         dataset: DatasetRef<'_>,
         val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics>;
+
+    /// Trains in environments, and loads the result.
+    ///
+    /// # Errors
+    /// `Unsupported` when the learner is no policy that trains.
+    fn fit_in(
+        &mut self,
+        fit_params: &ParamMap,
+        env: &dyn EnvironmentSource,
+        val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics>;
 
@@ -146,8 +159,19 @@ impl<L: Learner> AnyLearner for Typed<L> {
         val_dataset: Option<DatasetRef<'_>>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let (fit, _) = self.abilities.fit.ok_or_else(|| cannot::<L>("fit"))?;
+        let (fit, _) = self.abilities.fit.ok_or_else(|| cannot::<L>("fit a data set"))?;
         fit(&mut self.handle, fit_params, dataset, val_dataset, job)
+    }
+
+    fn fit_in(
+        &mut self,
+        fit_params: &ParamMap,
+        env: &dyn EnvironmentSource,
+        val_env: Option<&dyn EnvironmentSource>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let (fit, _) = self.abilities.fit_in.ok_or_else(|| cannot::<L>("fit in an environment"))?;
+        fit(&mut self.handle, fit_params, env, val_env, job)
     }
 
     fn reset(&mut self) {

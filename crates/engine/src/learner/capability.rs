@@ -3,15 +3,18 @@
 use std::marker::PhantomData;
 
 use crate::dataset::DatasetRef;
-use crate::learner::{Fit, FitJob, Handle, Learner, Outputs, Ports, Stream, Streaming};
+use crate::environment::EnvironmentSource;
+use crate::learner::{Fit, FitJob, Handle, Learner, LearnerRl, Outputs, Ports, Stream, Streaming};
 use crate::params::{Field, ParamMap, Params};
 use crate::{Result, Statistics};
 
 /// What a learner can do besides `infer`; surfaces show it and refuse the rest as `Unsupported`.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Capabilities {
-    /// `fit` trains it.
+    /// `fit` trains it on a data set.
     pub fit: bool,
+    /// `fit` trains it in an environment.
+    pub fit_in: bool,
     /// `push` and `flush` take its input in pieces.
     pub streaming: bool,
 }
@@ -19,12 +22,20 @@ pub struct Capabilities {
 pub(crate) type PushFn<L> = fn(&mut Stream<L>, Option<&Ports<'_>>, &mut dyn FnMut(Outputs)) -> Result<()>;
 pub(crate) type FitFn<L> =
     fn(&mut Handle<L>, &ParamMap, DatasetRef<'_>, Option<DatasetRef<'_>>, &FitJob<'_>) -> Result<Statistics>;
+pub(crate) type FitInFn<L> = fn(
+    &mut Handle<L>,
+    &ParamMap,
+    &dyn EnvironmentSource,
+    Option<&dyn EnvironmentSource>,
+    &FitJob<'_>,
+) -> Result<Statistics>;
 
 /// The optional abilities of `L` as plain functions.
 #[doc(hidden)]
 pub struct Abilities<L: Learner> {
     pub(crate) push: Option<PushFn<L>>,
     pub(crate) fit: Option<(FitFn<L>, &'static [Field])>,
+    pub(crate) fit_in: Option<(FitInFn<L>, &'static [Field])>,
 }
 
 impl<L: Learner> Clone for Abilities<L> {
@@ -37,7 +48,17 @@ impl<L: Learner> Copy for Abilities<L> {}
 
 impl<L: Learner> Abilities<L> {
     pub(crate) fn capabilities(&self) -> Capabilities {
-        Capabilities { fit: self.fit.is_some(), streaming: self.push.is_some() }
+        Capabilities {
+            fit: self.fit.is_some(),
+            fit_in: self.fit_in.is_some(),
+            streaming: self.push.is_some(),
+        }
+    }
+
+    /// What a user may set of the training.
+    pub(crate) fn fit_fields(&self) -> &'static [Field] {
+        let fields = self.fit.map(|(_, fields)| fields);
+        fields.or(self.fit_in.map(|(_, fields)| fields)).unwrap_or(&[])
     }
 }
 
@@ -56,11 +77,15 @@ impl<L> Probe<L> {
     }
 
     #[allow(missing_docs)]
-    pub fn abilities(push: Option<PushFn<L>>, fit: Option<(FitFn<L>, &'static [Field])>) -> Abilities<L>
+    pub fn abilities(
+        push: Option<PushFn<L>>,
+        fit: Option<(FitFn<L>, &'static [Field])>,
+        fit_in: Option<(FitInFn<L>, &'static [Field])>,
+    ) -> Abilities<L>
     where
         L: Learner,
     {
-        Abilities { push, fit }
+        Abilities { push, fit, fit_in }
     }
 }
 
@@ -72,6 +97,10 @@ pub trait ProbeFallback<L: Learner> {
     }
 
     fn fit(&self) -> Option<(FitFn<L>, &'static [Field])> {
+        None
+    }
+
+    fn fit_in(&self) -> Option<(FitInFn<L>, &'static [Field])> {
         None
     }
 }
@@ -102,6 +131,21 @@ impl<L: Fit> ProbeFit<L> for Probe<L> {
             |handle, map, dataset, val_dataset, job| {
                 handle.fit(&L::FitParams::from_map(map)?, dataset, val_dataset, job)
             },
+            L::FitParams::FIELDS,
+        ))
+    }
+}
+
+#[doc(hidden)]
+#[allow(missing_docs)]
+pub trait ProbeFitIn<L: LearnerRl> {
+    fn fit_in(&self) -> Option<(FitInFn<L>, &'static [Field])>;
+}
+
+impl<L: LearnerRl> ProbeFitIn<L> for Probe<L> {
+    fn fit_in(&self) -> Option<(FitInFn<L>, &'static [Field])> {
+        Some((
+            |handle, map, env, val_env, job| handle.fit_in(&L::FitParams::from_map(map)?, env, val_env, job),
             L::FitParams::FIELDS,
         ))
     }

@@ -78,10 +78,15 @@ impl<L: Fit> Handle<L> {
     ) -> Result<Statistics> {
         fit_params.check()?;
         let statistics = L::fit(self.model(), self.params(), fit_params, dataset, val_dataset, job)?;
-        let model = job.model();
-        if model.exists() || !job.progress.stopped() {
-            self.load(model)?;
-        }
+        self.load_trained(job)?;
         Ok(statistics)
+    }
+}
+
+impl<L: Learner> Handle<L> {
+    /// Loads what a training wrote; a training that was stopped may have written nothing.
+    pub(super) fn load_trained(&mut self, job: &FitJob<'_>) -> Result<()> {
+        let model = job.model();
+        if model.exists() || !job.progress.stopped() { self.load(model) } else { Ok(()) }
     }
 }

@@ -36,7 +36,7 @@ impl Entry {
         Self {
             spec: L::SPEC,
             params: L::Params::FIELDS,
-            fit_params: abilities.fit.map_or(&[], |(_, fields)| fields),
+            fit_params: abilities.fit_fields(),
             ports: <L::Input<'static> as Inputs<'static>>::PORTS,
             outputs: L::Target::OUTPUTS,
             stateful: size_of::<L::State>() > 0,
@@ -130,12 +130,15 @@ impl Registry {
 macro_rules! learners {
     ($($(#[$attribute:meta])* $learner:ty),* $(,)?) => {{
         #[allow(unused_imports)]
-        use $crate::learner::{Probe, ProbeFallback as _, ProbeFit as _, ProbeStreaming as _};
+        use $crate::learner::{
+            Probe, ProbeFallback as _, ProbeFit as _, ProbeFitIn as _, ProbeStreaming as _,
+        };
         $crate::learner::Registry::new(Vec::from([$(
             $(#[$attribute])*
             $crate::learner::Entry::of::<$learner>(Probe::<$learner>::abilities(
                 (&Probe::<$learner>::new()).push(),
                 (&Probe::<$learner>::new()).fit(),
+                (&Probe::<$learner>::new()).fit_in(),
             ))
         ),*]))
     }};

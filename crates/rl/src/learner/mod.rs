@@ -1,0 +1,24 @@
+//! The learners that users hold: a policy, trained by one of the methods of this crate.
+
+mod method;
+mod observation;
+mod policy_learner;
+mod training_params;
+
+pub use method::{
+    DqnFitParams, DqnMethod, Method, PpoFitParams, PpoMethod, SacFitParams, SacMethod, Td3FitParams,
+    Td3Method,
+};
+pub use observation::{numbers_from_observation, observation_from_numbers};
+pub(crate) use policy_learner::POLICY;
+pub use policy_learner::{PolicyLearner, PolicyParams, PolicyState};
+pub use training_params::RlTrainingParams;
+
+/// Proximal policy optimisation.
+pub type PpoLearner = PolicyLearner<PpoMethod>;
+/// Soft actor-critic.
+pub type SacLearner = PolicyLearner<SacMethod>;
+/// Twin delayed deep deterministic policy gradients.
+pub type Td3Learner = PolicyLearner<Td3Method>;
+/// Deep Q-learning.
+pub type DqnLearner = PolicyLearner<DqnMethod>;

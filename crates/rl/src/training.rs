@@ -1,0 +1,255 @@
+//! The training of a policy, with its log, checkpoints and measurements: what `fit` does.
+
+use std::time::Instant;
+
+use opendr_engine::environment::{Environment, EnvironmentSource};
+use opendr_engine::learner::FitJob;
+use opendr_engine::model::{Manifest, ModelWriter};
+use opendr_engine::params::{ParamMap, Params as _};
+use opendr_engine::{Error, Result, ResultExt as _, Statistics, Unit};
+use opendr_kernels::Compute;
+use opendr_runlog::{Checkpoints, RunLog};
+use opendr_simulation::vector::{Autoreset, EnvironmentVector};
+
+use crate::algorithm::Algorithm;
+use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate};
+use crate::learner::{Method, RlTrainingParams};
+use crate::onnx::onnx_from_policy;
+use crate::policy::Policy;
+use crate::saved_state::SavedState;
+
+/// The folder of the checkpoints within the output folder.
+const CHECKPOINTS: &str = "checkpoints";
+/// The files of a checkpoint beside the state of the algorithm: the best policy so far, and what was measured.
+const BEST: &str = "best.safetensors";
+const MEASURED: &str = "measured.json";
+/// The environment that a policy is for, in the inputs of its container.
+const ENVIRONMENT: &str = "environment";
+
+/// What was measured on the way, oldest first: time steps, mean return, share of successes.
+type Measured = Vec<(u64, f64, Option<f64>)>;
+
+struct Training<'a, A> {
+    algorithm: A,
+    environments: EnvironmentVector,
+    params: &'a RlTrainingParams,
+    val_env: Box<dyn Environment>,
+    checkpoints: Checkpoints,
+    log: RunLog,
+    best: Option<Vec<u8>>,
+    measured: Measured,
+    saved_at: u64,
+    job: &'a FitJob<'a>,
+}
+
+/// Trains by the method `M` and writes the best policy that was measured.
+pub(crate) fn fit<M: Method>(
+    base: Option<&Policy>,
+    params: &ParamMap,
+    fit_params: &M::FitParams,
+    env: &dyn EnvironmentSource,
+    val_env: &dyn EnvironmentSource,
+    job: &FitJob<'_>,
+) -> Result<Statistics> {
+    let begun = Instant::now();
+    let first = env.make()?;
+    let spec = first.spec().clone();
+    let fit_params = M::for_environment(fit_params, &spec.id);
+    fit_params.check()?;
+    let training = M::training(&fit_params);
+    let further = (1..training.n_envs).map(|_| env.make());
+    let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
+    let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.threads)?;
+    let compute =
+        if training.threads > 1 { Compute::with_threads(training.threads) } else { Compute::single() };
+    let mut training = Training {
+        algorithm: M::algorithm(&fit_params, &spec, compute, base)?,
+        environments,
+        params: training,
+        val_env: val_env.make().context(|| "making the environment that the policy is measured in")?,
+        checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
+        log: RunLog::open(None, None)?,
+        best: None,
+        measured: Measured::new(),
+        saved_at: 0,
+        job,
+    };
+    let resumed = training.resume()?;
+    training.log = RunLog::open(job.logging_path, resumed)?;
+    training.run()?;
+    let policy = training.best_policy()?;
+    write_model::<M>(&policy, &spec.id, params, training.measured.last(), job)?;
+    Ok(training.statistics(begun))
+}
+
+impl<A: Algorithm> Training<'_, A> {
+    /// Goes on from the last checkpoint, where the job says so and there is one; the step of it.
+    fn resume(&mut self) -> Result<Option<u64>> {
+        let Some(checkpoint) = self.job.resume.then(|| self.checkpoints.latest()).transpose()?.flatten()
+        else {
+            return Ok(None);
+        };
+        let context = || format!("resuming from {}", checkpoint.path().display());
+        let state = SavedState::from_files(&|name| checkpoint.file(name), self.algorithm.rows());
+        state.and_then(|state| self.algorithm.restore(&state, &mut self.environments)).context(context)?;
+        let measured = serde_json::from_slice(&checkpoint.file(MEASURED)?);
+        self.measured = measured
+            .map_err(|error| Error::format("no list of measurements").with_source(error))
+            .context(context)?;
+        if checkpoint.names().any(|name| name == BEST) {
+            self.best = Some(checkpoint.file(BEST)?);
+        }
+        self.saved_at = self.algorithm.report().timesteps;
+        Ok(Some(self.saved_at))
+    }
+
+    fn run(&mut self) -> Result<()> {
+        let (total, progress) = (self.params.total_timesteps, self.job.progress);
+        let mut done = self.algorithm.report().timesteps;
+        progress.begin("training", Some(total), Unit::Steps);
+        progress.advance(done.min(total));
+        let outcome = loop {
+            if done >= total {
+                break self.measure();
+            }
+            if progress.stopped() {
+                break self.save();
+            }
+            if let Err(error) = self.step(total) {
+                break Err(error);
+            }
+            let now = self.algorithm.report().timesteps;
+            progress.advance(now.min(total) - done.min(total));
+            done = now;
+        };
+        progress.end();
+        outcome.context(|| match self.saved_at {
+            0 => format!("training at step {done}"),
+            saved => {
+                format!("training at step {done}; what was learnt until step {saved} is kept, to be resumed")
+            }
+        })?;
+        self.log.flush()
+    }
+
+    /// Acts and learns once, tells of it, and measures and saves where that is due.
+    fn step(&mut self, total: u64) -> Result<()> {
+        let before = self.algorithm.report().timesteps;
+        let report = self.algorithm.iterate(&mut self.environments, total)?;
+        let now = report.timesteps;
+        if let Some(mean) = report.mean_return {
+            self.log.scalar("return", now, mean)?;
+            let success = report.success_rate.map(|rate| format!(", success {:.1} %", 100.0 * rate));
+            self.job.progress.status(&format!("return {mean:.1}{}", success.unwrap_or_default()));
+        }
+        if let Some(length) = report.mean_length {
+            self.log.scalar("episode_length", now, length)?;
+        }
+        if let Some(rate) = report.success_rate {
+            self.log.scalar("success_rate", now, rate)?;
+        }
+        for (name, value) in report.metrics.iter() {
+            self.log.scalar(name, now, value)?;
+        }
+        let due = |every: u64| every > 0 && before / every != now / every;
+        if due(self.params.eval_freq) && now < total {
+            self.measure()?;
+        }
+        if due(self.params.checkpoint_after_iter) {
+            self.save()?;
+        }
+        Ok(())
+    }
+
+    /// Measures the policy; the best is kept, the later one of two that are as good.
+    fn measure(&mut self) -> Result<()> {
+        let now = self.algorithm.report().timesteps;
+        if self.measured.last().is_some_and(|(step, ..)| *step == now) {
+            return Ok(());
+        }
+        let episodes = self.params.n_eval_episodes;
+        let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
+        let report = evaluate(self.algorithm.policy(), &mut *self.val_env, &protocol)?;
+        let EvaluationReport { mean_return, mean_length, success, .. } = report;
+        self.log.scalar("val_return", now, mean_return)?;
+        self.log.scalar("val_episode_length", now, mean_length)?;
+        let success = success.map(|success| success.rate);
+        if let Some(rate) = success {
+            self.log.scalar("val_success_rate", now, rate)?;
+        }
+        let score = |success: Option<f64>, earned: f64| (success.unwrap_or(0.0), earned);
+        let mut earlier = self.measured.iter().map(|(_, earned, success)| score(*success, *earned));
+        if earlier.all(|earlier| earlier <= score(success, mean_return)) {
+            self.best = Some(self.algorithm.policy().to_bytes()?);
+        }
+        self.measured.push((now, mean_return, success));
+        Ok(())
+    }
+
+    fn save(&mut self) -> Result<()> {
+        let now = self.algorithm.report().timesteps;
+        if now == self.saved_at {
+            return Ok(());
+        }
+        self.log.flush()?;
+        let mut files = self.algorithm.saved_state(&self.environments)?.files()?;
+        let measured = serde_json::to_vec(&self.measured)
+            .map_err(|error| Error::internal("measurements have no JSON form").with_source(error))?;
+        files.push((MEASURED.to_owned(), measured));
+        files.extend(self.best.clone().map(|best| (BEST.to_owned(), best)));
+        let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
+        self.checkpoints.save(now, &files)?;
+        self.saved_at = now;
+        Ok(())
+    }
+
+    /// The best policy that was measured, else the one of now.
+    fn best_policy(&self) -> Result<Policy> {
+        match &self.best {
+            Some(bytes) => Policy::from_bytes(bytes),
+            None => Ok(self.algorithm.policy().clone()),
+        }
+    }
+
+    fn statistics(&self, begun: Instant) -> Statistics {
+        let mut statistics = Statistics::default();
+        let report = self.algorithm.report();
+        statistics.set("steps", report.timesteps as f64);
+        statistics.set("episodes", report.episodes as f64);
+        statistics.set("seconds", begun.elapsed().as_secs_f64());
+        if let Some(mean) = report.mean_return {
+            statistics.set("mean_return", mean);
+        }
+        for (_, earned, success) in &self.measured {
+            statistics.push("val_return", *earned);
+            if let Some(success) = success {
+                statistics.push("val_success_rate", *success);
+            }
+        }
+        statistics
+    }
+}
+
+/// Writes the container: the policy, the same as ONNX where it has that form, and what it was trained in.
+fn write_model<M: Method>(
+    policy: &Policy,
+    environment: &str,
+    params: &ParamMap,
+    measured: Option<&(u64, f64, Option<f64>)>,
+    job: &FitJob<'_>,
+) -> Result<()> {
+    let mut manifest = Manifest::new(M::SPEC.name, "");
+    manifest.task = Some(M::SPEC.task);
+    manifest.params = params.clone();
+    manifest.inputs.insert(ENVIRONMENT.to_owned(), environment.into());
+    if let Some((_, earned, success)) = measured {
+        let numbers = serde_json::json!({"val_return": earned, "val_success_rate": success});
+        manifest.metrics.insert(environment.to_owned(), numbers);
+    }
+    let mut writer = ModelWriter::new(job.model(), manifest)?;
+    writer.add(crate::learner::POLICY, &policy.to_bytes()?)?;
+    if let Ok(network) = onnx_from_policy(policy) {
+        writer.add("policy.onnx", &network)?;
+    }
+    writer.finish().map(drop)
+}
