@@ -2,10 +2,12 @@
 
 mod command;
 mod dataset_flags;
+mod environment_flags;
 mod exit;
 mod inputs;
 mod learner_flags;
 mod loading;
+mod named_value;
 mod peak_memory;
 mod port_file;
 mod progress_bar;

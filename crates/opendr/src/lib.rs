@@ -32,14 +32,18 @@
 //! ```
 
 mod by_name;
+mod eval_in;
 mod export;
 mod fit;
 mod registry;
 mod smaller;
 
 pub use by_name::{download, learner, learner_with};
+pub use eval_in::{ActingStream, eval_in};
 pub use export::export;
-pub use fit::{FitData, FitOptions, Fitted, Opening, check_fit, fit, teacher, teacher_with};
+pub use fit::{
+    FitData, FitEnvironments, FitOptions, Fitted, Opening, check_fit, fit, fit_in, teacher, teacher_with,
+};
 pub use opendr_engine::*;
 pub use opendr_perception::{
     face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
@@ -49,5 +53,6 @@ pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use {
     opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
-    opendr_metrics as metrics, opendr_optimize as optimize, opendr_vision as vision, opendr_zoo as zoo,
+    opendr_metrics as metrics, opendr_optimize as optimize, opendr_rl as rl, opendr_simulation as simulation,
+    opendr_vision as vision, opendr_zoo as zoo,
 };

@@ -120,20 +120,30 @@ pub fn evaluate_controller(
         let episode = run(controller, environment, protocol.max_steps, seed, success);
         episode.context(|| format!("evaluating the episode of seed {seed}"))
     });
-    let episodes = episodes.collect::<Result<Vec<_>>>()?;
-    let count = episodes.len() as f64;
-    let mean = |of: &dyn Fn(&EvaluatedEpisode) -> f64| episodes.iter().map(of).sum::<f64>() / count;
-    let mean_return = mean(&|episode| episode.earned);
-    let variance = mean(&|episode| (episode.earned - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
-    let told: Vec<_> = episodes.iter().filter_map(|episode| episode.success).collect();
-    Ok(EvaluationReport {
-        mean_return,
-        std_return: variance.sqrt(),
-        mean_length: mean(&|episode| episode.length as f64),
-        success: SuccessRate::of(told.iter().filter(|success| **success).count() as u64, told.len() as u64),
-        seconds: begun.elapsed().as_secs_f64(),
-        episodes,
-    })
+    Ok(EvaluationReport::of(episodes.collect::<Result<_>>()?, begun.elapsed().as_secs_f64()))
+}
+
+impl EvaluationReport {
+    /// The report of episodes that took `seconds`.
+    pub fn of(episodes: Vec<EvaluatedEpisode>, seconds: f64) -> Self {
+        let count = episodes.len() as f64;
+        let mean = |of: &dyn Fn(&EvaluatedEpisode) -> f64| episodes.iter().map(of).sum::<f64>() / count;
+        let mean_return = mean(&|episode| episode.earned);
+        let variance =
+            mean(&|episode| (episode.earned - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
+        let told: Vec<_> = episodes.iter().filter_map(|episode| episode.success).collect();
+        Self {
+            mean_return,
+            std_return: variance.sqrt(),
+            mean_length: mean(&|episode| episode.length as f64),
+            success: SuccessRate::of(
+                told.iter().filter(|success| **success).count() as u64,
+                told.len() as u64,
+            ),
+            seconds,
+            episodes,
+        }
+    }
 }
 
 fn run(

@@ -59,9 +59,12 @@ pub(crate) fn fit<M: Method>(
     let training = M::training(&fit_params);
     let further = (1..training.n_envs).map(|_| env.make());
     let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
-    let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.threads)?;
-    let compute =
-        if training.threads > 1 { Compute::with_threads(training.threads) } else { Compute::single() };
+    let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.num_workers)?;
+    let compute = if training.num_workers > 1 {
+        Compute::with_threads(training.num_workers)
+    } else {
+        Compute::single()
+    };
     let mut training = Training {
         algorithm: M::algorithm(&fit_params, &spec, compute, base)?,
         environments,

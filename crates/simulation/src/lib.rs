@@ -14,6 +14,7 @@
 mod drawing;
 mod film;
 mod numpy_random;
+mod registered_source;
 mod registry;
 mod sine_cosine;
 
@@ -25,4 +26,5 @@ pub mod wrappers;
 
 pub use film::Film;
 pub use numpy_random::NumpyRandom;
+pub use registered_source::RegisteredSource;
 pub use registry::{Registered, Registration, Registry, make, make_vec};

@@ -5,14 +5,17 @@ use std::path::PathBuf;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetIterator, DatasetRef};
 use opendr::datasets::Problems;
+use opendr::environment::EnvironmentSource as _;
 use opendr::evaluation::{EvalOptions, Outcome as Evaluated, Subject};
+use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
-use opendr::{Error, Progress, Result};
+use opendr::rl::EvaluationProtocol;
+use opendr::{ActingStream, Error, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
-use crate::{dataset_flags, learner_flags, loading, stdout};
+use crate::{dataset_flags, environment_flags, learner_flags, loading, named_value, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -20,6 +23,7 @@ Examples:
   opendr eval LEARNER VOC2012/ --limit 500 --json              one object of JSON
   opendr eval LEARNER/VARIANT labelled/ --format yolo --skip-broken
   opendr eval LEARNER coco/ --metric-param use_classes=false
+  opendr eval ppo --env CartPole-v1 --episodes 500             a policy, in an environment
 
 An evaluation with --out that was broken off goes on from there when it is called again.";
 
@@ -68,6 +72,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let bar = Bar::new(matches.get_flag("quiet"));
+    if environment_flags::is_policy(entry) {
+        return in_environment(spec, entry, matches, &bar);
+    }
     let mut options = EvalOptions {
         metric: matches.get_one("metric").cloned(),
         split: dataset_flags::split(matches),
@@ -91,25 +98,36 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     tell(&outcome, matches, &job.problems, &bar)
 }
 
+/// Measures a policy in its environment, or in the one that is named.
+fn in_environment(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+    let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
+    let source = environment_flags::source(matches, Some(learner.as_ref()))?;
+    let mut environment = source.make()?;
+    let mut acting = ActingStream::new(learner.stream()?, entry, environment.spec())?;
+    let mut protocol = EvaluationProtocol::default();
+    if let Some(episodes) = matches.get_one::<u64>("episodes") {
+        protocol.episodes = *episodes;
+    }
+    let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
+    let statistics = Statistics::from(&report);
+    if matches.get_flag("json") {
+        let json = serde_json::to_string(&statistics)
+            .map_err(|error| Error::internal("the numbers have no JSON form").with_source(error))?;
+        stdout::print(json)?;
+    } else {
+        stdout::print(format_args!("{spec} in {}", source.id()))?;
+        stdout::print(statistics.to_string().trim_end())?;
+    }
+    Ok(Outcome::Done)
+}
+
 /// The metric's parameters that the user set.
 ///
 /// # Errors
 /// `InvalidParam` for one that the metric does not have, or a wrong value.
 pub fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<ParamMap> {
     let given = matches.get_many::<String>("metric-param").into_iter().flatten();
-    given
-        .map(|text| {
-            let (name, value) = text.split_once('=').ok_or_else(|| {
-                Error::invalid_param(format!("--metric-param {text:?} should be NAME=VALUE"))
-            })?;
-            let field = metric.params.iter().find(|field| field.name == name).ok_or_else(|| {
-                let names: Vec<_> = metric.params.iter().map(|field| field.name).collect();
-                let metric = metric.name;
-                Error::invalid_param(format!("{metric} has no {name:?}; there are {}", names.join(", ")))
-            })?;
-            Ok((name.to_owned(), field.parse(value)?))
-        })
-        .collect()
+    given.map(|text| named_value::parse("metric-param", text, metric.name, metric.params)).collect()
 }
 
 /// Prints an outcome, and what was left out and written.

@@ -6,11 +6,11 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::evaluation::Teacher;
 use opendr::params::ParamMap;
-use opendr::{Error, FitData, FitOptions, Fitted, Progress, Result};
+use opendr::{Error, FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
-use crate::{dataset_flags, learner_flags, loading, stdout};
+use crate::{dataset_flags, environment_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -19,6 +19,7 @@ Examples:
   opendr fit LEARNER train/ --output runs/mine --resume        go on after Ctrl-C or a power cut
   opendr fit LEARNER/VARIANT labelled/                         from a pretrained model
   opendr fit LEARNER photos/ --teacher nanodet                 learn from the answers of another learner
+  opendr fit ppo --env CartPole-v1                             a policy learns by acting; see ppo --help
 
 Without --output everything goes to runs/LEARNER-DATE; --resume without it takes the last of these. The trained model lies in
 the output folder under model/: opendr infer LEARNER --model OUTPUT/model street.jpg";
@@ -28,7 +29,7 @@ const LOGS: &str = "log";
 
 pub fn grammar() -> Command {
     Command::new("fit")
-        .about("Train a learner on a data set")
+        .about("Train a learner on a data set, or a policy in an environment")
         .arg(loading::learner())
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
@@ -127,10 +128,17 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
     let begins_with_model =
         spec.contains('/') || matches.contains_id("model") || matches.get_flag("pretrained");
-    let mut learner = match begins_with_model && entry.capabilities.fit {
+    let fits = entry.capabilities.fit || entry.capabilities.fit_in;
+    let mut learner = match begins_with_model && fits {
         true => loading::load(spec, &params, matches, &bar)?,
         false => entry.make(&params, device)?,
     };
+    if environment_flags::is_policy(entry) {
+        let source = environment_flags::source(matches, Some(learner.as_ref()))?;
+        let environments = FitEnvironments { env: &source, val_env: None };
+        let fitted = opendr::fit_in(learner.as_mut(), entry, environments, &options, &bar)?;
+        return tell(&fitted, matches, &bar);
+    }
     let val = matches.get_one::<PathBuf>("val");
     let val = val.map(|path| ExternalDataset::new(path, word(matches, "val-format").unwrap_or_default()));
     let external = dataset_flags::external(matches);

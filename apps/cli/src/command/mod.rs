@@ -12,6 +12,7 @@ mod models;
 mod optimize;
 mod runtime;
 mod score;
+mod sim;
 
 use std::ffi::{OsStr, OsString};
 
@@ -20,7 +21,7 @@ use opendr::Result;
 use opendr::learner::Entry;
 
 use crate::exit::{CODES, Outcome};
-use crate::{learner_flags, loading};
+use crate::{environment_flags, learner_flags, loading};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +32,8 @@ Examples:
   opendr infer LEARNER --help                       its parameters
   opendr eval LEARNER coco/ --out evaluated/        how good one is
   opendr fit LEARNER coco/ --val-split val2017      train one
+  opendr fit ppo --env CartPole-v1                  train a policy in an environment
+  opendr sim view CartPole-v1 --learner ppo         film it
   opendr data check coco/                           whether a data set is sound";
 
 /// The grammar. A command that runs a learner gets the flags of the one that `arguments` name.
@@ -46,6 +49,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         optimize::grammar(),
         score::grammar(),
         data::grammar(),
+        sim::grammar(),
         models::grammar(),
         download::grammar(),
         bench::grammar(),
@@ -58,6 +62,9 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
     {
         let add = if name == "fit" { learner_flags::add_for_fit } else { learner_flags::add };
         *command = add(std::mem::take(command), entry);
+        if ["eval", "fit"].iter().any(|acting| name == acting) && environment_flags::is_policy(entry) {
+            *command = environment_flags::add(std::mem::take(command));
+        }
     }
     Ok(Command::new("opendr")
         .about("OpenDR in Rust: the open deep-learning toolkit for robotics")
@@ -83,6 +90,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "optimize" => optimize::run(matches),
         "score" => score::run(matches),
         "data" => data::run(matches),
+        "sim" => sim::run(matches),
         "models" => models::run(matches),
         "download" => download::run(matches),
         "bench" => bench::run(matches),

@@ -6,6 +6,7 @@ use crate::dataset::DatasetRef;
 use crate::environment::EnvironmentSource;
 use crate::learner::capability::{Abilities, PushFn};
 use crate::learner::{Capabilities, FitJob, Handle, Learner, Outputs, Ports, Stream};
+use crate::model::Model;
 use crate::params::{ParamMap, ParamValue, Params};
 use crate::target::Classes;
 use crate::{Device, Error, Result, Statistics};
@@ -61,7 +62,10 @@ pub trait AnyLearner: Send {
         env: &dyn EnvironmentSource,
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
-    ) -> Result<Statistics>;
+    ) -> Result<Statistics> {
+        let _ = (fit_params, env, val_env, job);
+        Err(Error::unsupported("this learner cannot fit in an environment"))
+    }
 
     /// Forgets what the own stream remembers.
     fn reset(&mut self);
@@ -71,6 +75,11 @@ pub trait AnyLearner: Send {
     /// # Errors
     /// `NotFound` when nothing is loaded.
     fn stream(&self) -> Result<Box<dyn AnyStream>>;
+
+    /// The container that is loaded.
+    fn model(&self) -> Option<&Model> {
+        None
+    }
 
     /// The parameters.
     fn params(&self) -> ParamMap;
@@ -181,6 +190,10 @@ impl<L: Learner> AnyLearner for Typed<L> {
     fn stream(&self) -> Result<Box<dyn AnyStream>> {
         let (stream, target) = (self.handle.stream()?, L::Target::default());
         Ok(Box::new(TypedStream { stream, push: self.abilities.push, target }))
+    }
+
+    fn model(&self) -> Option<&Model> {
+        self.handle.model()
     }
 
     fn params(&self) -> ParamMap {

@@ -16,7 +16,11 @@ const REPORT: &str = "report.json";
 pub struct Fitted {
     /// What was trained.
     pub learner: String,
-    /// On what.
+    /// In which environment, where it learnt by acting.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub environment: Option<String>,
+    /// On what data set; empty where it learnt by acting.
+    #[serde(skip_serializing_if = "String::is_empty")]
     pub dataset: String,
     /// How many samples were trained on.
     pub samples: usize,
@@ -54,7 +58,10 @@ impl Fitted {
 impl fmt::Display for Fitted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { learner, dataset, samples, seconds, statistics, .. } = self;
-        writeln!(f, "{learner} trained on {samples} samples of {dataset} in {seconds:.1} s")?;
+        match &self.environment {
+            Some(environment) => writeln!(f, "{learner} trained in {environment} in {seconds:.1} s")?,
+            None => writeln!(f, "{learner} trained on {samples} samples of {dataset} in {seconds:.1} s")?,
+        }
         if !self.complete {
             writeln!(f, "not complete: resume it from {}", self.output.display())?;
         }

@@ -1,6 +1,7 @@
 //! `fit` of every learner, as all surfaces have it.
 
 mod fitted;
+mod in_environment;
 mod options;
 mod run_folder;
 mod samples;
@@ -17,6 +18,7 @@ use opendr_evaluation::{Lesson, Teacher};
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
+pub use in_environment::{FitEnvironments, fit_in};
 pub use options::FitOptions;
 pub use samples::{Opening, Samples};
 
@@ -61,6 +63,12 @@ pub fn fit(
     progress: &dyn Progress,
 ) -> Result<Fitted> {
     let begun = Instant::now();
+    if entry.capabilities.fit_in {
+        let class = entry.spec.class;
+        return Err(Error::unsupported(format!(
+            "{class} learns by acting; give an environment, no data set"
+        )));
+    }
     check_fit(entry, &options.params)?;
     let output = options.output_folder(entry.spec.name)?;
     run_folder::check(&output, options.resume)?;
@@ -90,6 +98,7 @@ pub fn fit(
     };
     let fitted = Fitted {
         learner: entry.spec.name.to_owned(),
+        environment: None,
         dataset,
         samples: samples.len(),
         complete: !progress.stopped(),
@@ -101,6 +110,11 @@ pub fn fit(
         problems: problems.list(),
         output,
     };
+    finish(fitted, progress)
+}
+
+/// Writes the report, and tells of a training that was stopped.
+fn finish(fitted: Fitted, progress: &dyn Progress) -> Result<Fitted> {
     fitted.write()?;
     if !fitted.complete {
         progress.note(&format!("stopped: what was done is in {}, to be resumed", fitted.output.display()));
@@ -216,7 +230,7 @@ fn streams_at_once(device: Device) -> Result<usize> {
 /// # Errors
 /// `Unsupported`, with learners that train; `InvalidParam`.
 pub fn check_fit(entry: &Entry, params: &ParamMap) -> Result<()> {
-    if !entry.capabilities.fit {
+    if !entry.capabilities.fit && !entry.capabilities.fit_in {
         return Err(cannot_fit(entry));
     }
     params.iter().try_for_each(|(name, value)| {

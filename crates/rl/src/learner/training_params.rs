@@ -13,7 +13,7 @@ pub struct RlTrainingParams {
     pub n_envs: usize,
     /// Threads that step environments and learn; they change no bit.
     #[param(default = 1, range = 1..=256)]
-    pub threads: usize,
+    pub num_workers: usize,
     /// Steps between two measurements of the policy; 0 measures it at the end only.
     #[param(default = 10_000, range = 0..=1_000_000_000)]
     pub eval_freq: u64,

@@ -1,0 +1,196 @@
+//! `opendr sim`: the environments, looked at.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
+use opendr::simulation::{Film, RegisteredSource, Registry};
+use opendr::{ActingStream, Error, Progress, Random, Result, Unit};
+
+use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{environment_flags, loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr sim list                                               what there is
+  opendr sim list UavDepthCorridor-v1                           its spaces and parameters
+  opendr sim view CartPole-v1                                   an episode of actions by chance, as CartPole-v1.gif
+  opendr sim view CartPole-v1 --learner ppo --out cart.mp4      a policy at work (mp4 wants ffmpeg)
+  opendr sim view UavDepthCorridor-v1 --env-param max_obstacles=10 --seed 7 --out flight.png";
+
+const ID: &str = "id";
+
+pub fn grammar() -> Command {
+    let view = Command::new("view")
+        .about("Film an environment: actions by chance, or of a policy")
+        .arg(Arg::new(ID).required(true).value_name("ID").help("The environment (\"opendr sim list\")"))
+        .args([
+            Arg::new("out")
+                .long("out")
+                .short('o')
+                .value_parser(value_parser!(PathBuf))
+                .value_name("FILM")
+                .help("The file to write: .gif, .mp4, or .png for a picture a step [default: ID.gif]"),
+            Arg::new("learner")
+                .long("learner")
+                .value_name("LEARNER[/VARIANT]")
+                .help("The policy that acts; without it, chance does"),
+            Arg::new("episodes")
+                .long("episodes")
+                .default_value("1")
+                .value_parser(value_parser!(u64).range(1..=1000))
+                .value_name("N")
+                .help("How many episodes"),
+            Arg::new("seed")
+                .long("seed")
+                .default_value("0")
+                .value_parser(value_parser!(u64))
+                .value_name("N")
+                .help("What the first episode begins with"),
+            Arg::new("rate")
+                .long("rate")
+                .value_parser(value_parser!(f64))
+                .value_name("HZ")
+                .help("Pictures a second [default: as fast as the world's own time, at most 30]"),
+            environment_flags::param_flag(),
+        ])
+        .args(loading::flags());
+    Command::new("sim")
+        .about("Look at the environments in which policies learn")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([
+            Command::new("list")
+                .about("The environments that there are")
+                .arg(Arg::new(ID).value_name("ID").help("Only this one, with its spaces and parameters")),
+            view,
+        ])
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    match matches.subcommand() {
+        Some(("list", matches)) => list(matches),
+        Some(("view", matches)) => view(matches),
+        _ => Ok(Outcome::Done),
+    }
+}
+
+fn list(matches: &ArgMatches) -> Result<Outcome> {
+    let registry = Registry::builtin();
+    let Some(id) = matches.get_one::<String>(ID) else {
+        for id in registry.ids() {
+            let spec = registry.get(id)?.make(&Default::default())?.spec().clone();
+            stdout::print(format_args!("{id:28} sees {}, does {}", spec.observation, spec.action))?;
+        }
+        return Ok(Outcome::Done);
+    };
+    let registration = registry.get(id)?;
+    let spec = registration.make(&Default::default())?.spec().clone();
+    stdout::print(format_args!(
+        "{}\n  observation  {}\n  action       {}",
+        spec.id, spec.observation, spec.action
+    ))?;
+    if let Some(limit) = spec.max_episode_steps {
+        stdout::print(format_args!("  truncated    after {limit} steps"))?;
+    }
+    for field in registration.fields() {
+        let range = field.range.map(|range| {
+            let unit = if field.unit.is_empty() { String::new() } else { format!(" {}", field.unit) };
+            format!(" [{} to {}{unit}]", range.low, range.high)
+        });
+        let (name, default) = (field.name, field.default.value());
+        stdout::print(format_args!(
+            "  --env-param {name}={default}{}  {}",
+            range.unwrap_or_default(),
+            field.doc
+        ))?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn view(matches: &ArgMatches) -> Result<Outcome> {
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let id = matches.get_one::<String>(ID).map_or("", String::as_str);
+    let source = RegisteredSource::new(id, &environment_flags::params(id, matches)?)?;
+    let mut environment = source.make()?;
+    let first = matches.get_one::<u64>("seed").copied().unwrap_or(0);
+    let mut acting: Box<dyn Controller> = match matches.get_one::<String>("learner") {
+        Some(spec) => {
+            let learner = loading::load(spec, &Default::default(), matches, &bar)?;
+            Box::new(ActingStream::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
+        }
+        None => by_chance(environment.spec().action.clone(), first),
+    };
+    let default = PathBuf::from(format!("{}.gif", source.id()));
+    let out = matches.get_one::<PathBuf>("out").unwrap_or(&default);
+    let rate = matches.get_one::<f64>("rate").copied().unwrap_or(30.0);
+    let mut film = Film::create(out, rate)?;
+    let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(1);
+    bar.begin("episodes", Some(episodes), Unit::Items);
+    for seed in (first..).take(usize::try_from(episodes).unwrap_or(1)) {
+        if bar.stopped() {
+            break;
+        }
+        let told = episode(&mut *environment, &mut *acting, seed, &mut film, &bar);
+        stdout::print(told.inspect_err(|_| bar.end())?)?;
+        bar.advance(1);
+    }
+    bar.end();
+    film.finish()?;
+    bar.note(&format!("written: {}", written(out)));
+    Ok(Outcome::Done)
+}
+
+fn written(out: &Path) -> String {
+    match out.extension() {
+        Some(extension) if extension == "png" => {
+            format!("{}-00001.png and so on", out.with_extension("").display())
+        }
+        _ => out.display().to_string(),
+    }
+}
+
+fn by_chance(actions: Space, seed: u64) -> Box<dyn Controller> {
+    let mut random = Random::new(seed);
+    Box::new(move |_: &[f32], action: &mut [f32]| {
+        actions.sample_into(&mut random, action);
+        Ok(())
+    })
+}
+
+/// Films an episode; a line on it.
+fn episode(
+    environment: &mut dyn Environment,
+    acting: &mut dyn Controller,
+    seed: u64,
+    film: &mut Film,
+    bar: &Bar,
+) -> Result<String> {
+    let spec = environment.spec().clone();
+    let (mut seen, mut action) = (vec![0.0; spec.observation.len()], vec![0.0; spec.action.len()]);
+    environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
+    acting.reset();
+    let (mut earned, mut length) = (0.0, 0u64);
+    let no_pictures = || Error::unsupported(format!("{} draws no pictures", spec.id));
+    film.write(&environment.render()?.ok_or_else(no_pictures)?)?;
+    loop {
+        acting.act(&seen, &mut action)?;
+        let step = environment.step(&action, &mut seen)?;
+        film.write(&environment.render()?.ok_or_else(no_pictures)?)?;
+        (earned, length) = (earned + step.reward, length + 1);
+        if step.is_over() || bar.stopped() {
+            return Ok(format!("seed {seed}: return {earned:.2} in {length} steps, {}", ending(&step)));
+        }
+    }
+}
+
+fn ending(step: &Step) -> String {
+    let how = match (step.terminated, step.truncated) {
+        (true, _) => "terminated",
+        (_, true) => "truncated",
+        _ => "broken off",
+    };
+    step.info.iter().fold(how.to_owned(), |text, (name, value)| format!("{text}, {name} {value}"))
+}

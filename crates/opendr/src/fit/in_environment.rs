@@ -1,0 +1,94 @@
+//! `fit` of policies.
+
+use std::time::Instant;
+
+use opendr_engine::environment::EnvironmentSource;
+use opendr_engine::learner::{AnyLearner, Entry, FitJob};
+use opendr_engine::{Error, Progress, Result, Statistics};
+
+use super::{FitOptions, Fitted, check_fit, finish, run_folder};
+
+/// Where a policy is trained and measured.
+#[derive(Clone, Copy)]
+pub struct FitEnvironments<'a> {
+    /// Makes those to train in.
+    pub env: &'a dyn EnvironmentSource,
+    /// Makes those to measure in; else `env` does.
+    pub val_env: Option<&'a dyn EnvironmentSource>,
+}
+
+/// Trains a policy in environments, from its model where it has one, loads the result, and writes a report beside it.
+///
+/// When the user stops it, the model is of what was done, and [`Fitted::complete`] is false.
+///
+/// # Errors
+/// `Unsupported` when the learner does not train in environments; `InvalidParam` for a parameter that does not fit, and
+/// for options that belong to data sets; `InvalidInput` when the output folder is not empty, or the policy is for
+/// other spaces; `Io`; those of the environment, with the step.
+pub fn fit_in(
+    learner: &mut dyn AnyLearner,
+    entry: &'static Entry,
+    environments: FitEnvironments<'_>,
+    options: &FitOptions,
+    progress: &dyn Progress,
+) -> Result<Fitted> {
+    let begun = Instant::now();
+    if !entry.capabilities.fit_in {
+        let class = entry.spec.class;
+        return Err(Error::unsupported(format!("{class} learns from data sets; give one, no environment")));
+    }
+    check_fit(entry, &options.params)?;
+    check_options(options)?;
+    let output = options.output_folder(entry.spec.name)?;
+    run_folder::check(&output, options.resume)?;
+    run_folder::make(&output)?;
+    progress.note(&format!("output: {}", output.display()));
+    let FitEnvironments { env, val_env } = environments;
+    let environment = env.make()?.spec().id.clone();
+    let job = FitJob {
+        output: &output,
+        resume: options.resume,
+        logging_path: options.logging_path.as_deref(),
+        device: learner.device(),
+        skip_broken: false,
+        progress,
+    };
+    let statistics = match progress.stopped() {
+        true => Statistics::default(),
+        false => learner.fit_in(&options.params, env, val_env, &job)?,
+    };
+    let fitted = Fitted {
+        learner: entry.spec.name.to_owned(),
+        environment: Some(environment),
+        dataset: String::new(),
+        samples: 0,
+        complete: !progress.stopped(),
+        seconds: begun.elapsed().as_secs_f64(),
+        statistics,
+        model: Some(job.model()).filter(|model| model.exists()),
+        logging_path: options.logging_path.clone(),
+        skipped: 0,
+        problems: Vec::new(),
+        output,
+    };
+    finish(fitted, progress)
+}
+
+/// Options of data sets are no options of environments.
+fn check_options(options: &FitOptions) -> Result<()> {
+    let FitOptions { split, val, val_format, val_split, limit, teacher, .. } = options;
+    let given = [
+        ("split", split.is_some()),
+        ("val", val.is_some()),
+        ("val_format", val_format.is_some()),
+        ("val_split", val_split.is_some()),
+        ("limit", limit.is_some()),
+        ("teacher", teacher.is_some()),
+    ];
+    match given.into_iter().find(|(_, given)| *given) {
+        Some((name, _)) => Err(Error::invalid_param(format!(
+            "{name} belongs to data sets; leave it out where a policy learns in an environment"
+        ))),
+        None => Ok(()),
+    }
+}
