@@ -53,9 +53,7 @@ pub fn source(matches: &ArgMatches, learner: Option<&dyn AnyLearner>) -> Result<
             "a policy acts in an environment, not on a data set; give --env ID",
         ));
     }
-    let trained_in = learner.and_then(|learner| learner.model()).and_then(|model| {
-        model.manifest().inputs.get("environment").and_then(|id| id.as_str()).map(str::to_owned)
-    });
+    let trained_in = learner.and_then(opendr::trained_in).map(str::to_owned);
     let id = matches.get_one::<String>(ENV).cloned().or(trained_in).ok_or_else(|| {
         Error::invalid_param(
             "no environment; name one by --env, e.g. --env CartPole-v1 (\"opendr sim list\")",

@@ -3,8 +3,9 @@
 use std::ffi::{c_char, c_void};
 
 use opendr::dataset::{DatasetRef, ExternalDataset};
-use opendr::{Error, FitData, FitOptions, Result};
+use opendr::{Error, FitData, FitEnvironments, FitOptions, Result};
 
+use crate::environment::source_of;
 use crate::handle::Out;
 use crate::learner::{Loaded, opendr_learner};
 use crate::pointer::{optional_text, path};
@@ -55,12 +56,50 @@ unsafe fn fit(
             optional_text(options_json, "options_json")?.unwrap_or("{}"),
         )
     };
-    let options: FitOptions = serde_json::from_str(options).map_err(|error| {
-        Error::invalid_param("options_json is no JSON object of options of opendr_fit").with_source(error)
-    })?;
+    let options = options_from_json(options)?;
     let external = ExternalDataset::new(dataset, dataset_type);
     let data = FitData::from(DatasetRef::External(&external));
     let fitted = opendr::fit(loaded.lock().as_mut(), loaded.entry, data, &options, progress)?;
     out.set(Text::of_json(&fitted)?);
     Ok(())
+}
+
+fn options_from_json(json: &str) -> Result<FitOptions> {
+    serde_json::from_str(json).map_err(|error| {
+        Error::invalid_param("options_json is no JSON object of options of opendr_fit").with_source(error)
+    })
+}
+
+/// Trains a policy in environments that id names, e.g. "CartPole-v1", from its model where it has one, and loads the result.
+///
+/// env_params_json is an object of parameters of the environment; NULL takes the defaults. options_json is an object:
+/// "params" (of the training), "output", "logging_path", "resume"; NULL takes the defaults. progress and report are as
+/// those of opendr_fit.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_fit_in(
+    learner: *const opendr_learner,
+    id: *const c_char,
+    env_params_json: *const c_char,
+    options_json: *const c_char,
+    progress: opendr_progress,
+    context: *mut c_void,
+    report: *mut *mut opendr_string,
+) -> opendr_status {
+    guard(|| {
+        // SAFETY: the rules at the top of opendr.h.
+        let (listener, out, loaded, source, options) = unsafe {
+            (
+                Listener::new(progress, context),
+                Out::new(report, "report")?,
+                Loaded::of(learner)?,
+                source_of(id, env_params_json)?,
+                optional_text(options_json, "options_json")?.unwrap_or("{}"),
+            )
+        };
+        let options = options_from_json(options)?;
+        let environments = FitEnvironments { env: &source, val_env: None };
+        let fitted = opendr::fit_in(loaded.lock().as_mut(), loaded.entry, environments, &options, &listener)?;
+        out.set(Text::of_json(&fitted)?);
+        Ok(())
+    })
 }

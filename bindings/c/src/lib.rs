@@ -12,6 +12,7 @@
 mod compat;
 mod data;
 mod draw;
+mod environment;
 mod eval;
 mod fit;
 mod handle;
@@ -28,6 +29,7 @@ mod value;
 pub use compat::*;
 pub use data::*;
 pub use draw::*;
+pub use environment::*;
 pub use eval::*;
 pub use fit::*;
 pub use learner::*;

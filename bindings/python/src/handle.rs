@@ -4,10 +4,14 @@ use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use opendr::data::Pixels as Samples;
+use opendr::environment::EnvironmentSource;
 use opendr::evaluation::{EvalOptions, Teacher};
 use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
-use opendr::{Device, Error, FitData, FitOptions, Pool, Value, ValueType};
+use opendr::rl::EvaluationProtocol;
+use opendr::{
+    ActingStream, Device, Error, FitData, FitEnvironments, FitOptions, Pool, Statistics, Value, ValueType,
+};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -15,6 +19,7 @@ use pyo3::types::PyDict;
 use crate::bar::PythonBar;
 use crate::dataset::GivenDataset;
 use crate::datum::value_from_python;
+use crate::environment::GivenEnvironments;
 use crate::error::ToPython;
 use crate::param::{params_from_python, python_from_params};
 use crate::pixels::image_from_python;
@@ -123,9 +128,7 @@ impl Handle {
         let options = EvalOptions { metric, metric_params, split, limit, folder, skip_broken, name };
         PythonBar::new(!verbose).run(py, |bar| {
             let outcome = options.run(&mut lock(&self.learner), self.entry, dataset.as_ref(), bar)?;
-            let json = serde_json::to_string(&outcome);
-            let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
-            Ok((json, outcome.to_string()))
+            Ok((json_of(&outcome)?, outcome.to_string()))
         })
     }
 
@@ -140,9 +143,7 @@ impl Handle {
         options: &str,
         silent: bool,
     ) -> PyResult<(String, String)> {
-        let options = serde_json::from_str(options);
-        let options = options.map_err(|error| Error::invalid_param("no options of fit").with_source(error));
-        let mut options: FitOptions = options.to_python(py)?;
+        let mut options = options_from_json(options).to_python(py)?;
         opendr::check_fit(self.entry, &options.params).to_python(py)?;
         let given = |object| GivenDataset::from_python(object, self.entry.ports);
         let (dataset, val_dataset) = (given(dataset)?, val_dataset.map(given).transpose()?);
@@ -155,13 +156,59 @@ impl Handle {
                 teacher,
             };
             let fitted = opendr::fit(lock(&self.learner).as_mut(), self.entry, data, &options, bar)?;
-            let json = serde_json::to_string(&fitted);
-            let json = json.map_err(|error| Error::internal("no JSON form").with_source(error))?;
-            Ok((json, fitted.to_string()))
+            Ok((json_of(&fitted)?, fitted.to_string()))
         })
     }
 
     /// Makes the model smaller and loads the result; the report as JSON and as text.
+    #[pyo3(signature = (env, val_env, options, silent))]
+    fn fit_in(
+        &self,
+        py: Python<'_>,
+        env: &Bound<'_, PyAny>,
+        val_env: Option<&Bound<'_, PyAny>>,
+        options: &str,
+        silent: bool,
+    ) -> PyResult<(String, String)> {
+        let options = options_from_json(options).to_python(py)?;
+        opendr::check_fit(self.entry, &options.params).to_python(py)?;
+        let env = GivenEnvironments::from_python(env)?;
+        let val_env = val_env.map(GivenEnvironments::from_python).transpose()?;
+        PythonBar::new(silent).run(py, |bar| {
+            let val_env = val_env.as_ref().map(|val_env| val_env as &dyn EnvironmentSource);
+            let environments = FitEnvironments { env: &env, val_env };
+            let fitted =
+                opendr::fit_in(lock(&self.learner).as_mut(), self.entry, environments, &options, bar)?;
+            Ok((json_of(&fitted)?, fitted.to_string()))
+        })
+    }
+
+    /// Measures the policy on fixed episodes; the numbers as JSON.
+    fn eval_in(
+        &self,
+        py: Python<'_>,
+        env: &Bound<'_, PyAny>,
+        episodes: u64,
+        first_seed: u64,
+        verbose: bool,
+    ) -> PyResult<String> {
+        let env = GivenEnvironments::from_python(env)?;
+        PythonBar::new(!verbose).run(py, |bar| {
+            let stream = lock(&self.learner).stream()?;
+            let mut environment = env.make()?;
+            let mut acting = ActingStream::new(stream, self.entry, environment.spec())?;
+            let protocol = EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
+            let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
+            json_of(&Statistics::from(&report).scalars)
+        })
+    }
+
+    /// The environment that the loaded policy was trained in.
+    #[getter]
+    fn trained_in(&self, py: Python<'_>) -> Option<String> {
+        py.detach(|| opendr::trained_in(lock(&self.learner).as_ref()).map(str::to_owned))
+    }
+
     fn optimize(
         &self,
         py: Python<'_>,
@@ -226,6 +273,14 @@ impl Stream {
     fn reset(&self, py: Python<'_>) {
         py.detach(|| lock(&self.stream).reset());
     }
+}
+
+fn options_from_json(json: &str) -> opendr::Result<FitOptions> {
+    serde_json::from_str(json).map_err(|error| Error::invalid_param("no options of fit").with_source(error))
+}
+
+fn json_of(report: &impl serde::Serialize) -> opendr::Result<String> {
+    serde_json::to_string(report).map_err(|error| Error::internal("no JSON form").with_source(error))
 }
 
 /// The teacher that `fit` is given.

@@ -17,10 +17,11 @@ pub fn entries(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
 
 fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     let Spec { name, task, class, about, without_effect } = entry.spec;
-    let Capabilities { fit, streaming } = entry.capabilities;
+    let Capabilities { fit, fit_in, streaming } = entry.capabilities;
     let table = PyDict::new(py);
     table.set_item("name", name)?;
     table.set_item("task", task.name())?;
+    table.set_item("package", task.package())?;
     table.set_item("class_name", class)?;
     table.set_item("about", about)?;
     // What trains in this build has its effect.
@@ -34,6 +35,7 @@ fn table<'py>(py: Python<'py>, entry: &Entry) -> PyResult<Bound<'py, PyDict>> {
     table.set_item("outputs", rows(py, entry.outputs, output)?)?;
     table.set_item("stateful", entry.stateful)?;
     table.set_item("fit", fit)?;
+    table.set_item("fit_in", fit_in)?;
     table.set_item("streaming", streaming)?;
     Ok(table)
 }

@@ -30,7 +30,7 @@ def test_class(entry):
     cls = opendr.learners()[entry["name"]]
     assert issubclass(cls, Learner)
     assert cls.__name__ == entry["class_name"]
-    assert cls.__module__ == f"opendr.perception.{entry['task']}"
+    assert cls.__module__ == f"opendr.{entry['package']}.{entry['task']}"
     assert getattr(__import__(cls.__module__, fromlist=[cls.__name__]), cls.__name__) is cls
     parameters = inspect.signature(cls).parameters
     assert list(parameters)[: len(BaseLearner.__signature__.parameters)] == list(BaseLearner.__signature__.parameters)

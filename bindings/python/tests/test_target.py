@@ -24,6 +24,7 @@ from opendr.engine.target import (
     Keypoint,
     Pose,
     PoseList,
+    RlTarget,
     SpeechCommand,
     Target,
     TrackingAnnotation,
@@ -84,6 +85,7 @@ def every_target():
         Heatmap(np.array([0.5, 0.25], np.float32)),
         SpeechCommand("stop", 0.75, (0.5, 1.25)),
         SpeechCommand(3),
+        RlTarget([0.5, -1.0]),
         BaseTranscription("turn left"),
         VoskTranscription("turn", True),
         WhisperTranscription(" turn left", [{"id": 0, "start": 0.5, "end": 1.5, "text": " turn left"}]),
@@ -501,6 +503,17 @@ def test_speech():
             call()
     with pytest.raises(ValueError):
         SpeechCommand("stop", 0.5, [0.5])
+
+
+def test_rl_target_is_an_array_and_a_number():
+    target = RlTarget([0.5, -1])
+    assert (str(target), len(target), target.data.dtype) == ("[ 0.5 -1. ]", 2, np.float32)
+    assert np.array_equal(np.asarray(target), [0.5, -1])
+    assert (int(RlTarget([1])), float(RlTarget(0.5)), [10, 20][RlTarget([1])]) == (1, 0.5, 20)
+    with pytest.raises(ValueError):
+        int(target)
+    with pytest.raises(TypeError):
+        RlTarget("left")
 
 
 def test_supervision_is_missing(monkeypatch):

@@ -29,6 +29,16 @@ macro_rules! tasks {
     };
 }
 
+impl Task {
+    /// Which of OpenDR's packages its learners are in.
+    pub const fn package(self) -> &'static str {
+        match self {
+            Self::ReinforcementLearning => "control",
+            _ => "perception",
+        }
+    }
+}
+
 tasks! {
     /// Boxes with classes in a picture.
     ObjectDetection2d = "object_detection_2d";

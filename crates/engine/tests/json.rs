@@ -188,6 +188,11 @@ fn command() -> impl Strategy<Value = Value> {
     )
 }
 
+fn rl_target() -> impl Strategy<Value = Value> {
+    (header(), vec(number(), 0..5), action())
+        .prop_map(|(header, values, action)| RlTarget { header, values, action }.into())
+}
+
 fn transcription() -> impl Strategy<Value = Value> {
     let numbers = proptest::array::uniform6(number());
     let segment = (any::<i64>(), any::<i64>(), ".{0,8}", vec(any::<i64>(), 0..4), numbers).prop_map(
@@ -233,6 +238,7 @@ fn target() -> impl Strategy<Value = Value> {
         category(),
         heatmap(),
         command(),
+        rl_target(),
         transcription(),
     ]
 }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use opendr_engine::environment::{Controller, Environment, EnvironmentSpec};
-use opendr_engine::learner::{AnyStream, Entry, Ports};
+use opendr_engine::learner::{AnyLearner, AnyStream, Entry, Ports};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Progress, Result, Unit, Value, ValueType};
 use opendr_rl::{EvaluationProtocol, EvaluationReport, evaluate_controller, observation_from_numbers};
@@ -58,6 +58,11 @@ impl Controller for ActingStream {
             ))),
         }
     }
+}
+
+/// The environment that a loaded policy was trained in, where its container tells.
+pub fn trained_in(learner: &dyn AnyLearner) -> Option<&str> {
+    learner.model()?.manifest().inputs.get("environment")?.as_str()
 }
 
 /// Measures what acts on episodes that begin with fixed seeds; a stop asked for ends it with the episodes that were done.

@@ -6,7 +6,7 @@ use opendr_engine::environment::{Environment, EnvironmentSource};
 use opendr_engine::learner::FitJob;
 use opendr_engine::model::{Manifest, ModelWriter};
 use opendr_engine::params::{ParamMap, Params as _};
-use opendr_engine::{Error, Result, ResultExt as _, Statistics, Unit};
+use opendr_engine::{Error, ErrorKind, Result, ResultExt as _, Statistics, Unit};
 use opendr_kernels::Compute;
 use opendr_runlog::{Checkpoints, RunLog};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector};
@@ -33,7 +33,7 @@ struct Training<'a, A> {
     algorithm: A,
     environments: EnvironmentVector,
     params: &'a RlTrainingParams,
-    val_env: Box<dyn Environment>,
+    val_env: Option<Box<dyn Environment>>,
     checkpoints: Checkpoints,
     log: RunLog,
     best: Option<Vec<u8>>,
@@ -48,7 +48,7 @@ pub(crate) fn fit<M: Method>(
     params: &ParamMap,
     fit_params: &M::FitParams,
     env: &dyn EnvironmentSource,
-    val_env: &dyn EnvironmentSource,
+    val_env: Option<&dyn EnvironmentSource>,
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
     let begun = Instant::now();
@@ -69,7 +69,7 @@ pub(crate) fn fit<M: Method>(
         algorithm: M::algorithm(&fit_params, &spec, compute, base)?,
         environments,
         params: training,
-        val_env: val_env.make().context(|| "making the environment that the policy is measured in")?,
+        val_env: to_measure_in(env, val_env)?,
         checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
         log: RunLog::open(None, None)?,
         best: None,
@@ -83,6 +83,18 @@ pub(crate) fn fit<M: Method>(
     let policy = training.best_policy()?;
     write_model::<M>(&policy, &spec.id, params, training.measured.last(), job)?;
     Ok(training.statistics(begun))
+}
+
+/// An environment to measure in: of `val_env`, else another of `env`, if there can be one.
+fn to_measure_in(
+    env: &dyn EnvironmentSource,
+    val_env: Option<&dyn EnvironmentSource>,
+) -> Result<Option<Box<dyn Environment>>> {
+    let made = match val_env.unwrap_or(env).make() {
+        Err(error) if val_env.is_none() && error.kind() == ErrorKind::Unsupported => return Ok(None),
+        made => made,
+    };
+    made.map(Some).context(|| "making the environment that the policy is measured in")
 }
 
 impl<A: Algorithm> Training<'_, A> {
@@ -167,12 +179,13 @@ impl<A: Algorithm> Training<'_, A> {
     /// Measures the policy; the best is kept, the later one of two that are as good.
     fn measure(&mut self) -> Result<()> {
         let now = self.algorithm.report().timesteps;
+        let Some(val_env) = &mut self.val_env else { return Ok(()) };
         if self.measured.last().is_some_and(|(step, ..)| *step == now) {
             return Ok(());
         }
         let episodes = self.params.n_eval_episodes;
         let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-        let report = evaluate(self.algorithm.policy(), &mut *self.val_env, &protocol)?;
+        let report = evaluate(self.algorithm.policy(), &mut **val_env, &protocol)?;
         let EvaluationReport { mean_return, mean_length, success, .. } = report;
         self.log.scalar("val_return", now, mean_return)?;
         self.log.scalar("val_episode_length", now, mean_length)?;

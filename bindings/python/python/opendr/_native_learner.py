@@ -22,7 +22,7 @@ IN_FILES = ("Image", "Audio", "Timeseries", "PointCloud")
 OF_SEVERAL_PARTS = ("Audio", "Calibration", "ImageWithDetections", "PointCloudWithCalibration")
 
 
-class NativeLearner(Learner):
+class NativeBase(BaseLearner):
     """A learner of the registry; its class, parameters, inputs and outputs come from there.
 
     It is empty after construction. ``download()`` and ``load()`` get it a pretrained model, ``load(path)`` one of your
@@ -143,125 +143,6 @@ class NativeLearner(Learner):
         if mode == "images":
             return os.fspath(_sample(folder, verbose))
         raise ValueError(f"download has no mode {mode!r}; there are 'pretrained' and 'images'")
-
-    def eval(
-        self,
-        dataset: Dataset,
-        *,
-        metric: Optional[str] = None,
-        split: Optional[str] = None,
-        limit: Optional[int] = None,
-        folder: Optional[PathLike] = None,
-        skip_broken: bool = False,
-        verbose: bool = False,
-        **metric_params: Any,
-    ) -> dict[str, Any]:
-        """Measures the learner on a data set.
-
-        Args:
-            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
-                several inputs). Classes are matched by name; a data set of yours names its own in a list ``classes``.
-            metric: What to measure by (``opendr.metrics.names()``); by default the task's own.
-            split: The part of an ``ExternalDataset``.
-            limit: Only the first so many samples.
-            folder: Folder for the answers, ``report.json``, figures and a sheet of the worst samples; an evaluation that
-                was broken off goes on from there.
-            skip_broken: Whether what is broken is left out and listed, instead of ending it.
-            verbose: Whether to show progress and print the outcome.
-            metric_params: Parameters of the metric.
-
-        Returns:
-            The numbers by name (``"map"``, ``"map50"``, ...; docs/metrics.md), and under ``"report"`` all there is:
-            tables, figures, the worst samples, what was left out.
-
-        Raises:
-            FileNotFoundError: Nothing is loaded, or the data set is not there.
-            ValueError: Data set, learner and metric do not fit together, or a sample is broken.
-        """
-        place = None if folder is None else os.fspath(folder)
-        options = (split, limit, place, skip_broken, verbose)
-        report, text = self._handle.eval(dataset, metric, metric_params, *options)
-        if verbose:
-            print(text, end="")
-        outcome = json.loads(report)
-        return {**outcome.get("scalars", {}), "report": outcome}
-
-    def fit(
-        self,
-        dataset: Dataset,
-        val_dataset: Optional[Dataset] = None,
-        logging_path: PathLike = "",
-        silent: bool = False,
-        verbose: bool = True,
-        *,
-        output: Optional[PathLike] = None,
-        resume: bool = False,
-        split: Optional[str] = None,
-        val_split: Optional[str] = None,
-        limit: Optional[int] = None,
-        teacher: Union[None, str, Learner] = None,
-        teacher_threshold: Optional[float] = None,
-        teacher_classes: Sequence[str] = (),
-        keep_empty: bool = False,
-        skip_broken: bool = False,
-        **fit_params: Any,
-    ) -> dict[str, Any]:
-        """Trains the learner, from the loaded model where there is one, and loads the result.
-
-        Ctrl-C saves what was done and raises ``KeyboardInterrupt``; ``resume`` goes on from there.
-
-        Args:
-            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
-                several inputs); a data set of yours names its classes in a list ``classes``.
-            val_dataset: What to measure on after each epoch.
-            logging_path: Folder of TensorBoard's event files and of curves; empty: none.
-            silent: Whether to show nothing at all.
-            verbose: Whether to print the outcome.
-            output: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
-                else ``runs/NAME-DATE``.
-            resume: Whether to go on from the last checkpoint in ``output``, or in the last run of this learner.
-            split: The part of an ``ExternalDataset`` to train on; by default the one for that.
-            val_split: The part to measure on, of ``val_dataset`` or, without it, of ``dataset``.
-            limit: Only the first so many samples.
-            teacher: A loaded learner, or the name of a pretrained one (``"nanodet"``, ``"movenet/multipose"``), whose
-                answers are learned from; ``dataset`` may then be without annotations, or a folder of pictures.
-            teacher_threshold: The teacher's answers below this score are dropped; 0.5 by default.
-            teacher_classes: What is learned from the teacher; by default the classes of the data set, or the teacher's.
-            keep_empty: Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
-            skip_broken: Whether what is broken is left out and listed, instead of ending it.
-            fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
-
-        Returns:
-            The curves (a list each, e.g. ``"loss"``) and numbers by name, and under ``"report"`` all there is: where the
-            model lies, what was left out.
-
-        Raises:
-            opendr.Unsupported: This learner does not train, or this build has no training.
-            ValueError: Data set, learner and parameters do not fit together, or a sample is broken.
-            OSError: Something cannot be written.
-        """
-        place = output or self.temp_path or None
-        options = {
-            "params": self._fit_params(fit_params),
-            "split": split,
-            "val_split": val_split,
-            "limit": limit,
-            "output": None if place is None else os.fspath(place),
-            "logging_path": os.fspath(logging_path) if logging_path else None,
-            "resume": resume or self.checkpoint_load_iter > 0,
-            "teacher": teacher if isinstance(teacher, str) else None,
-            "teacher_threshold": teacher_threshold,
-            "teacher_classes": list(teacher_classes),
-            "keep_empty": keep_empty,
-            "skip_broken": skip_broken,
-        }
-        given = None if isinstance(teacher, str) else _teacher(teacher)
-        report, text = self._handle.fit(dataset, val_dataset, given, json.dumps(options), silent)
-        vars(self).update(self._handle.params())
-        if verbose and not silent:
-            print(text, end="")
-        outcome = json.loads(report)
-        return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
 
     def optimize(
         self,
@@ -431,10 +312,133 @@ class NativeLearner(Learner):
     _outputs: ClassVar[Any] = None
 
 
+class NativeLearner(NativeBase, Learner):
+    """A learner of the registry that is measured, and where it can, trained on data sets."""
+
+    def eval(
+        self,
+        dataset: Dataset,
+        *,
+        metric: Optional[str] = None,
+        split: Optional[str] = None,
+        limit: Optional[int] = None,
+        folder: Optional[PathLike] = None,
+        skip_broken: bool = False,
+        verbose: bool = False,
+        **metric_params: Any,
+    ) -> dict[str, Any]:
+        """Measures the learner on a data set.
+
+        Args:
+            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
+                several inputs). Classes are matched by name; a data set of yours names its own in a list ``classes``.
+            metric: What to measure by (``opendr.metrics.names()``); by default the task's own.
+            split: The part of an ``ExternalDataset``.
+            limit: Only the first so many samples.
+            folder: Folder for the answers, ``report.json``, figures and a sheet of the worst samples; an evaluation that
+                was broken off goes on from there.
+            skip_broken: Whether what is broken is left out and listed, instead of ending it.
+            verbose: Whether to show progress and print the outcome.
+            metric_params: Parameters of the metric.
+
+        Returns:
+            The numbers by name (``"map"``, ``"map50"``, ...; docs/metrics.md), and under ``"report"`` all there is:
+            tables, figures, the worst samples, what was left out.
+
+        Raises:
+            FileNotFoundError: Nothing is loaded, or the data set is not there.
+            ValueError: Data set, learner and metric do not fit together, or a sample is broken.
+        """
+        place = None if folder is None else os.fspath(folder)
+        options = (split, limit, place, skip_broken, verbose)
+        report, text = self._handle.eval(dataset, metric, metric_params, *options)
+        if verbose:
+            print(text, end="")
+        outcome = json.loads(report)
+        return {**outcome.get("scalars", {}), "report": outcome}
+
+    def fit(
+        self,
+        dataset: Dataset,
+        val_dataset: Optional[Dataset] = None,
+        logging_path: PathLike = "",
+        silent: bool = False,
+        verbose: bool = True,
+        *,
+        output: Optional[PathLike] = None,
+        resume: bool = False,
+        split: Optional[str] = None,
+        val_split: Optional[str] = None,
+        limit: Optional[int] = None,
+        teacher: Union[None, str, Learner] = None,
+        teacher_threshold: Optional[float] = None,
+        teacher_classes: Sequence[str] = (),
+        keep_empty: bool = False,
+        skip_broken: bool = False,
+        **fit_params: Any,
+    ) -> dict[str, Any]:
+        """Trains the learner, from the loaded model where there is one, and loads the result.
+
+        Ctrl-C saves what was done and raises ``KeyboardInterrupt``; ``resume`` goes on from there.
+
+        Args:
+            dataset: An ``ExternalDataset``, or any ``DatasetIterator`` of pairs of datum and target (a tuple of data for
+                several inputs); a data set of yours names its classes in a list ``classes``.
+            val_dataset: What to measure on after each epoch.
+            logging_path: Folder of TensorBoard's event files and of curves; empty: none.
+            silent: Whether to show nothing at all.
+            verbose: Whether to print the outcome.
+            output: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
+                else ``runs/NAME-DATE``.
+            resume: Whether to go on from the last checkpoint in ``output``, or in the last run of this learner.
+            split: The part of an ``ExternalDataset`` to train on; by default the one for that.
+            val_split: The part to measure on, of ``val_dataset`` or, without it, of ``dataset``.
+            limit: Only the first so many samples.
+            teacher: A loaded learner, or the name of a pretrained one (``"nanodet"``, ``"movenet/multipose"``), whose
+                answers are learned from; ``dataset`` may then be without annotations, or a folder of pictures.
+            teacher_threshold: The teacher's answers below this score are dropped; 0.5 by default.
+            teacher_classes: What is learned from the teacher; by default the classes of the data set, or the teacher's.
+            keep_empty: Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
+            skip_broken: Whether what is broken is left out and listed, instead of ending it.
+            fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
+
+        Returns:
+            The curves (a list each, e.g. ``"loss"``) and numbers by name, and under ``"report"`` all there is: where the
+            model lies, what was left out.
+
+        Raises:
+            opendr.Unsupported: This learner does not train, or this build has no training.
+            ValueError: Data set, learner and parameters do not fit together, or a sample is broken.
+            OSError: Something cannot be written.
+        """
+        place = output or self.temp_path or None
+        options = {
+            "params": self._fit_params(fit_params),
+            "split": split,
+            "val_split": val_split,
+            "limit": limit,
+            "output": None if place is None else os.fspath(place),
+            "logging_path": os.fspath(logging_path) if logging_path else None,
+            "resume": resume or self.checkpoint_load_iter > 0,
+            "teacher": teacher if isinstance(teacher, str) else None,
+            "teacher_threshold": teacher_threshold,
+            "teacher_classes": list(teacher_classes),
+            "keep_empty": keep_empty,
+            "skip_broken": skip_broken,
+        }
+        given = None if isinstance(teacher, str) else _teacher(teacher)
+        report, text = self._handle.fit(dataset, val_dataset, given, json.dumps(options), silent)
+        vars(self).update(self._handle.params())
+        if verbose and not silent:
+            print(text, end="")
+        outcome = json.loads(report)
+        return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
+
+
 class Stream:
     """A memory of its own over the model of a learner."""
 
-    def __init__(self, learner: NativeLearner) -> None:
+    def __init__(self, learner: NativeBase) -> None:
         self._learner = learner
         self._stream = learner._handle.stream()
 
@@ -481,7 +485,7 @@ def _teacher(teacher: Optional[Learner]) -> Any:
     """A teacher as the native half takes it."""
     if teacher is None:
         return None
-    if isinstance(teacher, NativeLearner):
+    if isinstance(teacher, NativeBase):
         return teacher._handle
     from opendr._registered import registered_name
 
@@ -507,7 +511,15 @@ def _sample(folder: Optional[str], verbose: bool) -> PathLike:
     return copy
 
 
-def native_class(entry: Table, module: str) -> type[NativeLearner]:
+def _parent(entry: Table) -> type[NativeBase]:
+    if not entry["fit_in"]:
+        return NativeLearner
+    from opendr._native_learner_rl import NativeLearnerRL
+
+    return NativeLearnerRL
+
+
+def native_class(entry: Table, module: str) -> type[NativeBase]:
     """The class of a learner of the registry."""
     from collections import namedtuple
 
@@ -525,6 +537,6 @@ def native_class(entry: Table, module: str) -> type[NativeLearner]:
         "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
         **{field["name"]: field["default"] for field in fields},
     }
-    made: Any = type(entry["class_name"], (NativeLearner,), namespace)
+    made: Any = type(entry["class_name"], (_parent(entry),), namespace)
     made.__signature__ = signature(made, by_place=BaseLearner.__signature__.parameters)
     return made  # type: ignore[no-any-return]

@@ -24,7 +24,7 @@ def task_modules(package: types.ModuleType) -> None:
     from opendr._native_learner import native_class
 
     for entry in _opendr.entries():
-        if entry["name"] in _OWN:
+        if entry["name"] in _OWN or package.__name__ != f"opendr.{entry['package']}":
             continue
         name = f"{package.__name__}.{entry['task']}"
         module = sys.modules.get(name)
@@ -42,10 +42,11 @@ def task_modules(package: types.ModuleType) -> None:
 
 def learners() -> dict[str, type[BaseLearner]]:
     """The classes of all learners, by their names in the registry; those registered from Python are there too."""
-    import opendr.perception as package
+    import importlib
 
     classes: dict[str, type[BaseLearner]] = {}
     for entry in _opendr.entries():
+        package = None if entry["name"] in _OWN else importlib.import_module(f"opendr.{entry['package']}")
         task = getattr(package, entry["task"], None)
         found = _OWN.get(entry["name"]) or getattr(task, entry["class_name"], None)
         if found is not None:

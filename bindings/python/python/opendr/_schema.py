@@ -204,6 +204,10 @@ def _write_command(command: target.SpeechCommand) -> Fields:
     return fields if command.span_s is None else {**fields, "span_s": command.span_s}
 
 
+def _write_rl(chosen: target.RlTarget) -> Fields:
+    return {"type": "RlTarget", "values": chosen.data.tolist()}
+
+
 def _write_transcription(words: target.BaseTranscription) -> Fields:
     return {"type": "BaseTranscription", "text": words.text}
 
@@ -228,6 +232,7 @@ _WRITERS: dict[type[Any], Callable[[Any], Fields]] = {
     target.WhisperTranscription: _write_whisper,
     target.VoskTranscription: _write_vosk,
     target.BaseTranscription: _write_transcription,
+    target.RlTarget: _write_rl,
 }
 
 
@@ -341,6 +346,7 @@ _READERS: dict[str, Callable[[Fields], Any]] = {
     "Category": _read_category,
     "Heatmap": _read_heatmap,
     "SpeechCommand": _read_command,
+    "RlTarget": lambda fields: target.RlTarget(fields["values"]),
     "BaseTranscription": lambda fields: target.BaseTranscription(fields["text"]),
     "VoskTranscription": lambda fields: target.VoskTranscription(fields["text"], fields["accept_waveform"]),
     "WhisperTranscription": lambda fields: target.WhisperTranscription(fields["text"], fields["segments"]),

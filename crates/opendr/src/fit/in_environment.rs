@@ -7,6 +7,7 @@ use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
 
 use super::{FitOptions, Fitted, check_fit, finish, run_folder};
+use crate::trained_in;
 
 /// Where a policy is trained and measured.
 #[derive(Clone, Copy)]
@@ -44,7 +45,6 @@ pub fn fit_in(
     run_folder::make(&output)?;
     progress.note(&format!("output: {}", output.display()));
     let FitEnvironments { env, val_env } = environments;
-    let environment = env.make()?.spec().id.clone();
     let job = FitJob {
         output: &output,
         resume: options.resume,
@@ -59,7 +59,7 @@ pub fn fit_in(
     };
     let fitted = Fitted {
         learner: entry.spec.name.to_owned(),
-        environment: Some(environment),
+        environment: Some(trained_in(learner).unwrap_or_default().to_owned()),
         dataset: String::new(),
         samples: 0,
         complete: !progress.stopped(),

@@ -103,6 +103,6 @@ impl<M: Method> LearnerRl for PolicyLearner<M> {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
-        training::fit::<M>(base.as_ref(), &params.to_map(), fit_params, env, val_env.unwrap_or(env), job)
+        training::fit::<M>(base.as_ref(), &params.to_map(), fit_params, env, val_env, job)
     }
 }

@@ -34,6 +34,7 @@ _NAMES: dict[type, str] = {
     target.BaseTranscription: "transcription",
     target.WhisperTranscription: "transcription",
     target.VoskTranscription: "transcription",
+    target.RlTarget: "target",
 }
 
 

@@ -13,6 +13,7 @@ from opendr.engine.target.coco_bounding_box import CocoBoundingBox
 from opendr.engine.target.heatmap import Heatmap
 from opendr.engine.target.keypoint import Keypoint
 from opendr.engine.target.pose import Pose, PoseList
+from opendr.engine.target.rl_target import RlTarget
 from opendr.engine.target.speech_command import SpeechCommand
 from opendr.engine.target.tracking_annotation import TrackingAnnotation, TrackingAnnotationList
 from opendr.engine.target.tracking_annotation_3d import TrackingAnnotation3D, TrackingAnnotation3DList
@@ -33,6 +34,7 @@ __all__ = [
     "Keypoint",
     "Pose",
     "PoseList",
+    "RlTarget",
     "SpeechCommand",
     "Target",
     "TrackingAnnotation",
