@@ -7,6 +7,7 @@ use opendr_kernels::Compute;
 use opendr_rl::{
     Algorithm, Dqn, DqnConfig, OffPolicyConfig, Ppo, PpoConfig, Sac, SacConfig, SavedState, Td3, Td3Config,
 };
+use opendr_runlog::Checkpoints;
 use opendr_simulation::make_vec;
 use opendr_simulation::vector::{Autoreset, VecEnvironment, VectorOptions};
 
@@ -22,6 +23,10 @@ impl Folder {
         let path = std::env::temp_dir().join(format!("opendr-rl-{name}-{}", std::process::id()));
         std::fs::remove_dir_all(&path).ok();
         Self(path)
+    }
+
+    fn checkpoints(&self) -> Checkpoints {
+        Checkpoints::new(&self.0, 2).unwrap()
     }
 }
 
@@ -51,12 +56,14 @@ fn assert_resumes<A: Algorithm>(id: &str, count: usize, iterations: usize, make:
         let mut worlds = environments(id, count, 2);
         let mut first = make(Compute::with_threads(2));
         trained(&mut first, &mut *worlds, stop).unwrap();
-        first.save(&folder.0, &*worlds).unwrap();
-        first.save(&folder.0, &*worlds).unwrap();
+        let checkpoints = folder.checkpoints();
+        first.save(&checkpoints, &*worlds).unwrap();
+        first.save(&checkpoints, &*worlds).unwrap();
     }
     let mut worlds = environments(id, count, 1);
     let mut second = make(Compute::with_threads(2));
-    second.load(&folder.0, &mut *worlds).unwrap();
+    let checkpoint = second.load(&folder.checkpoints(), &mut *worlds).unwrap().unwrap();
+    assert_eq!(checkpoint.step, second.report().timesteps);
     trained(&mut second, &mut *worlds, iterations - stop).unwrap();
     assert!(second.saved_state(&*worlds).unwrap() == wanted, "{} stopped after {stop}", whole.name());
     assert_eq!(second.report(), whole.report());
@@ -108,17 +115,18 @@ fn checkpoints_of_others_are_refused() {
     let mut ppo = Ppo::new(&config, worlds.spec()).unwrap();
     assert!(ppo.saved_state(&*worlds).is_err());
     ppo.iterate(&mut *worlds, TOTAL).unwrap();
-    ppo.save(&folder.0, &*worlds).unwrap();
+    let checkpoints = folder.checkpoints();
+    assert!(ppo.load(&checkpoints, &mut *worlds).unwrap().is_none());
+    ppo.save(&checkpoints, &*worlds).unwrap();
 
     let mut other = config.clone();
     other.network.net_arch = vec![32];
     let mut other = Ppo::new(&other, worlds.spec()).unwrap();
-    let error = other.load(&folder.0, &mut *worlds).unwrap_err();
+    let error = other.load(&checkpoints, &mut *worlds).unwrap_err();
     assert!(error.to_string().contains("numbers in policy"), "{error}");
     let mut dqn = Dqn::new(&DqnConfig::default(), worlds.spec()).unwrap();
-    assert_eq!(dqn.load(&folder.0, &mut *worlds).unwrap_err().kind(), ErrorKind::NotFound);
+    assert_eq!(dqn.load(&checkpoints, &mut *worlds).unwrap_err().kind(), ErrorKind::NotFound);
     let mut three = environments("CartPole-v1", 3, 1);
-    let error = Ppo::new(&config, three.spec()).unwrap().load(&folder.0, &mut *three).unwrap_err();
+    let error = Ppo::new(&config, three.spec()).unwrap().load(&checkpoints, &mut *three).unwrap_err();
     assert!(error.to_string().contains("2 environments, not 3"), "{error}");
-    assert_eq!(ppo.load(&folder.0.join("nothing"), &mut *worlds).unwrap_err().kind(), ErrorKind::NotFound);
 }

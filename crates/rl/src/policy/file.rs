@@ -6,6 +6,7 @@ use std::path::Path;
 use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::params::{ParamMap, Params as _};
 use opendr_engine::{Error, Result, ResultExt as _};
+use opendr_runlog::write_atomically;
 use opendr_simulation::wrappers::RunningMoments;
 use serde::{Deserialize, Serialize};
 
@@ -111,12 +112,7 @@ impl Policy {
     /// # Errors
     /// As [`Self::to_bytes`], and `Io`.
     pub fn save(&self, path: &Path) -> Result<()> {
-        let mut unfinished = path.as_os_str().to_owned();
-        unfinished.push(".unfinished");
-        let unfinished = Path::new(&unfinished);
-        let written =
-            std::fs::write(unfinished, self.to_bytes()?).and_then(|()| std::fs::rename(unfinished, path));
-        written.map_err(Error::from).context(|| path.display().to_string())
+        write_atomically(path, &self.to_bytes()?)
     }
 
     /// Reads the file of a policy.
