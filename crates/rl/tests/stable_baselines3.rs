@@ -1,6 +1,7 @@
 //! Policies that Stable-Baselines3 saved do here what they did there.
 //!
 //! `tests/rl/write_stable_baselines3.py` made what lies in `data`.
+#![allow(clippy::unwrap_used)]
 
 use opendr_kernels::Compute;
 use opendr_rl::{Acting, PolicyMemory, policy_from_stable_baselines3};

@@ -165,6 +165,10 @@ fn read(bytes: &[u8]) -> Result<Policy> {
     for (to, bytes) in policy.parameters.iter_mut().zip(parameters) {
         *to = f32::from_le_bytes(*bytes);
     }
+    if let Some(at) = policy.parameters.iter().position(|parameter| !parameter.is_finite()) {
+        let number = policy.parameters[at];
+        return Err(Error::format(format!("parameter {at} is {number}; save the policy again")));
+    }
     if let Some(normaliser) = &mut policy.encoder.normaliser {
         let numbers = |name| -> Result<Vec<f64>> {
             let chunks = tensor(name, "F64")?.as_chunks::<8>().0.iter();
@@ -184,7 +188,7 @@ fn read(bytes: &[u8]) -> Result<Policy> {
 impl HeadKind {
     fn of(head: &Head) -> Self {
         match head {
-            Head::Categorical { .. } | Head::Gaussian(_) => Self::Stochastic,
+            Head::Categorical { .. } | Head::Binary(_) | Head::Gaussian(_) => Self::Stochastic,
             Head::SquashedGaussian(_) => Self::SquashedGaussian,
             Head::Squashed(_) => Self::Squashed,
             Head::Greedy { .. } => Self::Greedy,
