@@ -15,6 +15,15 @@ import onnxruntime
 TOLERANCE = 1e-6
 
 
+def actions(session, steps):
+    """What is done step by step, with what a recurrent policy remembers."""
+    states = {each.name: numpy.zeros((32, each.shape[1]), numpy.float32) for each in session.get_inputs() if each.name == "state"}
+    for seen in steps:
+        done, *after = session.run(["action", *["next_state" for _ in states]], {"observation": seen, **states})
+        states = dict(zip(states, after))
+        yield done
+
+
 def main(folder):
     models = sorted(pathlib.Path(folder).glob("*.onnx"))
     assert models, f"no models in {folder}"
@@ -22,9 +31,9 @@ def main(folder):
         onnx.checker.check_model(onnx.load(path), full_check=True)
         answers = json.loads(path.with_suffix(".json").read_text())
         session = onnxruntime.InferenceSession(str(path), providers=["CPUExecutionProvider"])
-        wanted = numpy.array(answers["actions"], numpy.float64).reshape(32, -1)
-        seen = numpy.array(answers["observations"], numpy.float32).reshape(32, -1)
-        done = session.run(["action"], {"observation": seen})[0]
+        wanted = numpy.array(answers["actions"], numpy.float64).reshape(3, 32, -1)
+        seen = numpy.array(answers["observations"], numpy.float32).reshape(3, 32, -1)
+        done = numpy.stack(list(actions(session, seen)))
         difference = numpy.abs(done - wanted).max()
         print(f"{path.stem}: largest difference {difference:.2e}, actions {wanted.min():.3f} to {wanted.max():.3f}")
         assert done.shape == wanted.shape and difference <= TOLERANCE

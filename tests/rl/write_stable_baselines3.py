@@ -16,6 +16,17 @@ import torch
 from stable_baselines3 import DQN, PPO, SAC, TD3
 
 
+def moved_until_it_differs(model, seen):
+    """Adds noise to the parameters until the answers are not all the same; those."""
+    while True:
+        with torch.no_grad():
+            for parameter in model.policy.parameters():
+                parameter.add_(0.3 * torch.randn_like(parameter))
+        done, _ = model.predict(seen, deterministic=True)
+        if numpy.ptp(done) > 0:
+            return done
+
+
 def main(folder):
     torch.manual_seed(0)
     small = {"net_arch": [6, 5]}
@@ -29,12 +40,8 @@ def main(folder):
     }
     answers = {}
     for name, model in models.items():
-        with torch.no_grad():
-            for parameter in model.policy.parameters():
-                parameter.add_(0.3 * torch.randn_like(parameter))
-        draw = numpy.random.default_rng(7).uniform
-        seen = draw(-1, 1, (8, *model.observation_space.shape)).astype(numpy.float32)
-        done, _ = model.predict(seen, deterministic=True)
+        seen = numpy.random.default_rng(7).uniform(-1, 1, (8, *model.observation_space.shape)).astype(numpy.float32)
+        done = moved_until_it_differs(model, seen)
         answers[name] = {"observations": seen.ravel().tolist(), "actions": done.ravel().tolist()}
         whole = io.BytesIO()
         model.save(whole)

@@ -37,12 +37,13 @@ fn main() -> Result<()> {
     let parts =
         [("depth", Space::uniform(0.0, 15.0, &[64, 64, 1])?), ("target", Space::symmetric(&[5.0; 3]))];
     let seen = Space::Dict(parts.map(|(name, part)| (name.to_owned(), part)).into());
-    for (name, picture_network, action) in [
-        ("depth_small", PictureNetwork::Small, Space::symmetric(&[1.0, 1.0])),
-        ("depth_nature", PictureNetwork::Nature, Space::MultiDiscrete(vec![3, 4])),
+    for (name, picture_network, gru_size, action) in [
+        ("depth_small", PictureNetwork::Small, None, Space::symmetric(&[1.0, 1.0])),
+        ("depth_nature", PictureNetwork::Nature, None, Space::MultiDiscrete(vec![3, 4])),
+        ("depth_memory", PictureNetwork::Small, Some(24), Space::MultiBinary(vec![3])),
     ] {
         let spec = EnvironmentSpec::new(name, seen.clone(), action);
-        let config = NetworkConfig { picture_network, ..NetworkConfig::default() };
+        let config = NetworkConfig { picture_network, gru_size, ..NetworkConfig::default() };
         let mut policy = Policy::new(&spec, Head::stochastic(&spec.action)?, &config, Some(10.0))?;
         policy.initialise(Beginning::Orthogonal(1.0), 0.0, &mut Random::new(5));
         export(&folder, name, &policy)?;
@@ -50,15 +51,18 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Writes the model, and actions for some observations by chance.
+/// Writes the model, and actions for some observations by chance, in three steps of 32 rows.
 fn export(folder: &Path, name: &str, policy: &Policy) -> Result<()> {
     std::fs::write(folder.join(format!("{name}.onnx")), onnx_from_policy(policy)?)?;
-    let (mut random, rows) = (Random::new(3), 32);
+    let (mut random, rows) = (Random::new(3), 3 * 32);
     let observations: Vec<f32> = (0..rows).flat_map(|_| policy.observation().sample(&mut random)).collect();
     let observations: Vec<f32> = observations.iter().map(|number| number.clamp(-50.0, 50.0)).collect();
     let mut actions = vec![0.0; rows * policy.action().len()];
     let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
-    policy.act(&compute, &observations, Acting::Deterministic, &mut memory, &mut actions)?;
+    let steps = observations.chunks_exact(observations.len() / 3);
+    for (seen, done) in steps.zip(actions.chunks_exact_mut(32 * policy.action().len())) {
+        policy.act(&compute, seen, Acting::Deterministic, &mut memory, done)?;
+    }
     let answers = BTreeMap::from([("observations", observations), ("actions", actions)]);
     let json = serde_json::to_vec(&answers).map_err(|error| Error::internal("no JSON").with_source(error))?;
     Ok(std::fs::write(folder.join(format!("{name}.json")), json)?)

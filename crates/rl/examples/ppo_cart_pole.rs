@@ -3,9 +3,9 @@
 use std::ops::ControlFlow;
 
 use opendr_engine::Result;
-use opendr_rl::{Algorithm as _, Ppo, PpoConfig};
-use opendr_simulation::make_vec;
+use opendr_rl::{Algorithm as _, EvaluationProtocol, Ppo, PpoConfig, evaluate};
 use opendr_simulation::vector::{Autoreset, VectorOptions};
+use opendr_simulation::{make, make_vec};
 
 fn main() -> Result<()> {
     let seed = std::env::args().nth(1).and_then(|seed| seed.parse().ok()).unwrap_or(0);
@@ -27,6 +27,12 @@ fn main() -> Result<()> {
     let rate = steps as f64 / seconds;
     println!("seed {seed}: {steps} steps in {seconds:.2} CPU-seconds, {rate:.0} a second");
     println!("mean return of the last 100 episodes {mean:.1}; 475 first at step {solved:?}");
+    let judged = evaluate(ppo.policy(), &mut *make("CartPole-v1")?, &EvaluationProtocol::default())?;
+    println!(
+        "mean return of the most likely actions in {} episodes {:.1}",
+        judged.episodes.len(),
+        judged.mean_return
+    );
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! SAC learns to swing a pendulum up: `cargo run --release -p opendr-rl --example sac_pendulum [SEED] [THREADS]`.
+//! SAC learns to swing a pendulum up: `cargo run --release -p opendr-rl --example sac_pendulum -- [SEED] [THREADS] [THOUSANDS]`.
 
 use std::time::Instant;
 
@@ -11,6 +11,7 @@ use opendr_simulation::{make, make_vec};
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1).filter_map(|argument| argument.parse().ok());
     let (seed, threads) = (arguments.next().unwrap_or(0), arguments.next().unwrap_or(1));
+    let thousands = arguments.next().unwrap_or(10);
     let Some(mut preset) = SacConfig::preset("Pendulum-v1") else { return Ok(()) };
     preset.config.off_policy.seed = seed;
     let options = VectorOptions { autoreset: Autoreset::SameStep, ..VectorOptions::new(1) };
@@ -19,7 +20,7 @@ fn main() -> Result<()> {
     let mut sac = Sac::new(&preset.config, pendulum.spec())?.with_compute(compute);
     let protocol = EvaluationProtocol { episodes: 20, ..EvaluationProtocol::default() };
     let (mut judge, begun) = (make("Pendulum-v1")?, Instant::now());
-    for thousand in 1..=10 {
+    for thousand in 1..=thousands {
         while sac.report().timesteps < 1000 * thousand {
             sac.iterate(&mut *pendulum, preset.timesteps)?;
         }

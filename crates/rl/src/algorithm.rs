@@ -1,10 +1,11 @@
 //! What all learners of this crate have in common.
 
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::PathBuf;
 
 use opendr_engine::environment::{Info, Snapshot};
 use opendr_engine::{Error, Result};
+use opendr_runlog::{Checkpoint, Checkpoints};
 use opendr_simulation::vector::VecEnvironment;
 
 use crate::episodes::Episodes;
@@ -75,21 +76,29 @@ pub trait Algorithm {
     /// The long rows of numbers in its state.
     fn rows(&self) -> &'static [&'static str];
 
-    /// Saves a checkpoint as a folder, which appears whole or not at all.
+    /// Saves a checkpoint of this step, and gives its folder.
     ///
     /// # Errors
-    /// As [`Self::saved_state`], and `Io`.
-    fn save(&self, folder: &Path, environments: &dyn VecEnvironment) -> Result<()> {
-        self.saved_state(environments)?.save(folder)
+    /// As [`Self::saved_state`], and `Io` when the disk is full: the other checkpoints are untouched then.
+    fn save(&self, checkpoints: &Checkpoints, environments: &dyn VecEnvironment) -> Result<PathBuf> {
+        let files = self.saved_state(environments)?.files()?;
+        let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
+        checkpoints.save(self.report().timesteps, &files)
     }
 
-    /// Goes on from a checkpoint.
+    /// Goes on from the newest checkpoint that is whole, and gives it; none where there is none.
     ///
     /// # Errors
-    /// `NotFound` where there is none of this learner, and as [`Self::restore`].
-    fn load(&mut self, folder: &Path, environments: &mut dyn VecEnvironment) -> Result<()> {
-        let state = SavedState::load(folder, self.rows())?;
-        self.restore(&state, environments)
+    /// `NotFound` for the checkpoints of another learner, `Integrity` where all are broken, and as [`Self::restore`].
+    fn load(
+        &mut self,
+        checkpoints: &Checkpoints,
+        environments: &mut dyn VecEnvironment,
+    ) -> Result<Option<Checkpoint>> {
+        let Some(checkpoint) = checkpoints.latest()? else { return Ok(None) };
+        let state = SavedState::from_files(&|name| checkpoint.file(name), self.rows())?;
+        self.restore(&state, environments)?;
+        Ok(Some(checkpoint))
     }
 
     /// Trains until `total_timesteps` steps were taken, or `observer`, asked after each iteration, breaks off. A

@@ -110,7 +110,7 @@ struct Memory {
 /// loss of each epoch and may break off; the mean losses of all epochs are the result.
 ///
 /// # Errors
-/// `InvalidInput` when demonstrations are of another kind, `Unsupported` for policies of values, `Internal` when learning
+/// `InvalidInput` when demonstrations are of another kind, `Unsupported` for policies of values or with memory, `Internal` when learning
 /// diverges.
 pub fn clone_behaviour(
     policy: &mut Policy,
@@ -120,6 +120,7 @@ pub fn clone_behaviour(
     observer: &mut dyn FnMut(usize, f64) -> ControlFlow<()>,
 ) -> Result<Vec<f64>> {
     config.check()?;
+    policy.config.check_no_memory("cloning of behaviour")?;
     if let Head::Greedy { .. } = policy.head {
         return Err(Error::unsupported("values of choices cannot be cloned; make a policy of ppo"));
     }
@@ -172,8 +173,7 @@ impl Memory {
 
     /// The loss, with its gradients.
     fn pass(&mut self, policy: &Policy, compute: &Compute, ent_weight: f32) -> f32 {
-        let PolicyMemory { extractor, tape, .. } = &mut self.policy;
-        let outputs = policy.forward(compute, &self.observations, extractor, tape);
+        let outputs = policy.forward(compute, &self.observations, &mut self.policy);
         let rows = outputs.len() / policy.head.outputs();
         let scale = 1.0 / rows as f32;
         self.gradients.clear();

@@ -111,10 +111,12 @@ impl Dqn {
     /// `InvalidParam` for settings out of range, `Unsupported` where actions are not one choice.
     pub fn new(config: &DqnConfig, spec: &EnvironmentSpec) -> Result<Self> {
         config.check()?;
+        config.network.check_no_memory(NAME)?;
         let Space::Discrete { n, start } = spec.action else {
             return Err(Error::unsupported(format!("actions are {}; dqn makes one choice", spec.action)));
         };
-        let mut policy = Policy::new(spec, Head::Greedy { count: n, start }, &config.network, None)?;
+        let clip = config.off_policy.clip();
+        let mut policy = Policy::new(spec, Head::Greedy { count: n, start }, &config.network, clip)?;
         let mut random = Random::at([config.off_policy.seed, 0]);
         policy.initialise(Beginning::Uniform, 0.0, &mut random);
         Ok(Self {
@@ -155,7 +157,7 @@ impl Dqn {
         let share = self.exploration(timesteps, total_timesteps);
         let memory = &mut self.memory.now;
         let encoded = &experience.interaction.encoded;
-        let outputs = self.policy.forward(&self.compute, encoded, &mut memory.extractor, &mut memory.tape);
+        let outputs = self.policy.forward(&self.compute, encoded, memory);
         let width = self.policy.head.outputs();
         for (action, outputs) in experience.actions.iter_mut().zip(outputs.chunks_exact(width)) {
             let explores = self.random.chance(share);
@@ -172,10 +174,9 @@ impl Dqn {
         let timesteps = experience.interaction.timesteps;
         let Memory { drawn, now, next, doutputs, gradients } = &mut self.memory;
         let (compute, width) = (&self.compute, self.policy.head.outputs());
-        experience.buffer.sample(config.batch_size, &mut self.random, drawn);
-        let next_values =
-            self.target.forward(compute, &drawn.next_observations, &mut next.extractor, &mut next.tape);
-        let values = self.policy.forward(compute, &drawn.observations, &mut now.extractor, &mut now.tape);
+        experience.draw(&self.policy, config.batch_size, &mut self.random, drawn)?;
+        let next_values = self.target.forward(compute, &drawn.next_observations, next);
+        let values = self.policy.forward(compute, &drawn.observations, now);
         doutputs.clear();
         doutputs.resize(values.len(), 0.0);
         let (scale, mut loss) = (1.0 / config.batch_size as f32, 0.0);
@@ -260,7 +261,7 @@ impl Algorithm for Dqn {
         state.add(ROWS[1], &self.target.parameters);
         state.add_adam([ROWS[2], ROWS[3]], &self.adam);
         state.words.push(self.updates);
-        experience.save(&mut state, &self.random);
+        experience.save(&mut state, &self.policy, &self.random);
         Ok(state)
     }
 
@@ -271,7 +272,8 @@ impl Algorithm for Dqn {
         state.fill_adam([ROWS[2], ROWS[3]], &mut self.adam, &mut words)?;
         self.updates = words.word()?;
         let config = &self.config.off_policy;
-        let (experience, random) = Experience::load(state, &mut words, environments, &self.policy, config)?;
+        let (experience, random) =
+            Experience::load(state, &mut words, environments, &mut self.policy, config)?;
         words.finish()?;
         environments.restore(state.environments())?;
         self.random = random;

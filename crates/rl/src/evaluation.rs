@@ -89,17 +89,34 @@ pub fn evaluate(
             policy.action()
         )));
     }
-    let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
-    let mut random = Random::at([protocol.first_seed, 1]);
-    let mut act = |observation: &[f32], action: &mut [f32]| {
-        let acting = match protocol.deterministic {
-            true => Acting::Deterministic,
-            false => Acting::Sampled(&mut random),
-        };
-        policy.act(&compute, observation, acting, &mut memory, action)
+    let mut player = Player {
+        policy,
+        compute: Compute::single(),
+        memory: PolicyMemory::default(),
+        random: (!protocol.deterministic).then(|| Random::at([protocol.first_seed, 1])),
     };
     let success = |step: &Step| step.info.get("success").map(|success| success > 0.5);
-    evaluate_controller(&mut act, environment, protocol, &success)
+    evaluate_controller(&mut player, environment, protocol, &success)
+}
+
+/// A policy in one environment.
+struct Player<'a> {
+    policy: &'a Policy,
+    compute: Compute,
+    memory: PolicyMemory,
+    /// None where it takes its most likely actions.
+    random: Option<Random>,
+}
+
+impl Controller for Player<'_> {
+    fn reset(&mut self) {
+        self.memory.reset(0);
+    }
+
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        let acting = self.random.as_mut().map_or(Acting::Deterministic, Acting::Sampled);
+        self.policy.act(&self.compute, observation, acting, &mut self.memory, action)
+    }
 }
 
 /// Measures a controller. `success` tells from the last step of an

@@ -65,6 +65,10 @@ impl Interaction {
                 self.batch.rewards[index]
             )));
         }
+        for index in (0..self.count()).filter(|&index| self.ended(index)) {
+            let last = check_finite(self.final_observation(index), self.size);
+            last.context(|| format!("at time step {at}, where environment {index} ended an episode"))?;
+        }
         self.episodes.add(&self.batch);
         self.see(encoder)
     }
@@ -78,6 +82,11 @@ impl Interaction {
                 encoder.encode(&self.batch.observations, &mut self.encoded)
             })
             .context(|| format!("at time step {at}"))
+    }
+
+    /// Whether the last step ended an episode in environment `index`.
+    pub fn ended(&self, index: usize) -> bool {
+        self.batch.terminated[index] || self.batch.truncated[index]
     }
 
     /// The last observation of an episode that ended in environment `index`.

@@ -46,4 +46,4 @@ pub use sac::{Sac, SacConfig};
 pub use saved_state::SavedState;
 pub use schedule::Schedule;
 pub use stable_baselines3::policy_from_stable_baselines3;
-pub use td3::{Td3, Td3Config};
+pub use td3::{ActionNoise, Td3, Td3Config};

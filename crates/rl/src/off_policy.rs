@@ -2,12 +2,12 @@
 
 use opendr_engine::environment::{Space, StateReader};
 use opendr_engine::params::Params;
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Random, Result};
 use opendr_simulation::vector::VecEnvironment;
 
 use crate::interaction::Interaction;
 use crate::policy::Policy;
-use crate::replay_buffer::{ReplayBuffer, Transition};
+use crate::replay_buffer::{ReplayBuffer, Transition, Transitions};
 use crate::saved_state::{SavedState, push_random, read_random};
 
 /// Settings that SAC, TD3 and DQN share. Names are those of Stable-Baselines3, and so is what each makes the default.
@@ -37,6 +37,12 @@ pub struct OffPolicyConfig {
     /// Gradient steps of an update; none is one for each step that was taken.
     #[param(default = Some(1), range = 1..=1_000_000)]
     pub gradient_steps: Option<usize>,
+    /// Whether observations are normalised by what training saw.
+    #[param(default = false)]
+    pub norm_obs: bool,
+    /// Normalised observations lie within plus and minus this.
+    #[param(default = 10.0, range = 0.0..=1e9)]
+    pub clip_obs: f32,
     /// What fixes everything random.
     #[param(default = 0)]
     pub seed: u64,
@@ -51,7 +57,13 @@ pub(crate) struct Experience {
     pub actions: Vec<f32>,
     pub kept: Vec<f32>,
     before: Vec<f32>,
-    last: Vec<f32>,
+}
+
+impl OffPolicyConfig {
+    /// The bound of normalised observations, where they are normalised.
+    pub(crate) fn clip(&self) -> Option<f32> {
+        self.norm_obs.then_some(self.clip_obs)
+    }
 }
 
 impl Experience {
@@ -65,33 +77,29 @@ impl Experience {
     }
 
     fn around(interaction: Interaction, policy: &Policy, config: &OffPolicyConfig) -> Result<Self> {
-        let (encoded, action) = (policy.encoder.encoded_len(), policy.head.action_len());
+        let (seen, action) = (policy.encoder.raw_len(), policy.head.action_len());
         let actions = vec![0.0; interaction.count() * action];
         Ok(Self {
-            buffer: ReplayBuffer::new(config.buffer_size, encoded, action)?,
+            buffer: ReplayBuffer::new(config.buffer_size, seen, action)?,
             kept: actions.clone(),
             actions,
-            before: vec![0.0; interaction.encoded.len()],
-            last: vec![0.0; encoded],
+            before: vec![0.0; interaction.batch.observations.len()],
             interaction,
         })
     }
 
     /// Takes `actions` in all environments and keeps what came of it, with `kept` as the actions.
     pub fn step(&mut self, environments: &mut dyn VecEnvironment, policy: &mut Policy) -> Result<()> {
-        let Self { interaction, buffer, actions, kept, before, last } = self;
-        before.copy_from_slice(&interaction.encoded);
+        let Self { interaction, buffer, actions, kept, before } = self;
+        before.copy_from_slice(&interaction.batch.observations);
         interaction.step(environments, &mut policy.encoder, actions)?;
-        let (size, width) = (last.len(), kept.len() / interaction.count());
+        let (size, width) = (policy.encoder.raw_len(), kept.len() / interaction.count());
         for index in 0..interaction.count() {
             let (batch, row) = (&interaction.batch, index * size..(index + 1) * size);
             // Where an episode ended, the next one is seen already.
-            let next_observation = match batch.terminated[index] || batch.truncated[index] {
-                true => {
-                    policy.encoder.encode(interaction.final_observation(index), last)?;
-                    &last[..]
-                }
-                false => &interaction.encoded[row.clone()],
+            let next_observation = match interaction.ended(index) {
+                true => interaction.final_observation(index),
+                false => &batch.observations[row.clone()],
             };
             buffer.add(Transition {
                 observation: &before[row],
@@ -102,6 +110,18 @@ impl Experience {
             });
         }
         Ok(())
+    }
+
+    /// Draws `count` steps, and encodes what was seen.
+    pub fn draw(
+        &self,
+        policy: &Policy,
+        count: usize,
+        random: &mut Random,
+        drawn: &mut Transitions,
+    ) -> Result<()> {
+        self.buffer.sample(count, random, drawn);
+        drawn.encode(&policy.encoder)
     }
 
     /// Writes actions by chance from the whole space.
@@ -120,8 +140,11 @@ impl Experience {
         config.gradient_steps.unwrap_or(config.train_freq * self.interaction.count())
     }
 
-    pub fn save(&self, state: &mut SavedState, random: &Random) {
+    pub fn save(&self, state: &mut SavedState, policy: &Policy, random: &Random) {
         push_random(&mut state.words, random);
+        if let Some(normaliser) = &policy.encoder.normaliser {
+            normaliser.moments.save(&mut state.words);
+        }
         self.interaction.save(&mut state.words);
         self.buffer.save(state);
     }
@@ -131,24 +154,16 @@ impl Experience {
         state: &SavedState,
         words: &mut StateReader<'_>,
         environments: &dyn VecEnvironment,
-        policy: &Policy,
+        policy: &mut Policy,
         config: &OffPolicyConfig,
     ) -> Result<(Self, Random)> {
         let random = read_random(words)?;
+        if let Some(normaliser) = &mut policy.encoder.normaliser {
+            normaliser.moments.load(words)?;
+        }
         let interaction = Interaction::load(words, environments, &policy.encoder)?;
         let mut experience = Self::around(interaction, policy, config)?;
         experience.buffer.load(state, words)?;
         Ok((experience, random))
-    }
-}
-
-/// Learners whose values take an action beside the observation see no pictures.
-pub(crate) fn check_no_pictures(policy: &Policy) -> Result<()> {
-    match policy.extractor.is_identity() {
-        true => Ok(()),
-        false => Err(Error::unsupported(format!(
-            "{} has pictures; use ppo or dqn, or picture_network = flat for small ones",
-            policy.observation()
-        ))),
     }
 }

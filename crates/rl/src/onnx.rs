@@ -1,7 +1,7 @@
 //! Policies as ONNX models, for runtimes that know nothing of learning.
 
 use opendr_engine::{Error, Result};
-use opendr_kernels::{Activation, Layer, Network};
+use opendr_kernels::{Activation, Gru, Layer, Network};
 use opendr_onnx::{Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, model_from_graph};
 
 use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind, Policy};
@@ -10,8 +10,9 @@ use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind
 /// normaliser, pictures to [0, 1], the largest score, bounds of actions.
 ///
 /// Its input `observation` is `[batch, numbers]`, as the environment gives them. Its output `action` is `[batch, numbers]`, as the
-/// environment takes them (int64 for choices); its output `network` is what the network gave: scores of choices, means before they
-/// are squashed or clipped.
+/// environment takes them (int64 for choices and digits); its output `network` is what the network gave: scores, or means before
+/// they are squashed or clipped. A recurrent policy has the input `state`, `[batch, numbers]`, 0 where an episode begins, and the
+/// output `next_state`.
 ///
 /// # Errors
 /// `Unsupported` for observations with choices, or policies with layer normalisation.
@@ -19,12 +20,18 @@ pub fn onnx_from_policy(policy: &Policy) -> Result<Vec<u8>> {
     let mut graph = Graph { builder: Builder::default() };
     graph.builder.reserve("action");
     graph.builder.reserve("network");
+    graph.builder.reserve("next_state");
     let raw = policy.encoder.raw_len();
     let observation = graph.builder.input("observation", Kind::Float, vec![None, Some(raw)], &["batch", ""]);
     let features = graph.features(policy, &observation)?;
     let first = policy.extractor.parameters();
-    let parameters = &policy.parameters[first..first + policy.network.parameters()];
-    let outputs = graph.network(&policy.network, parameters, features)?;
+    let parameters = &policy.parameters[first..first + policy.trunk.parameters()];
+    let (of_gru, of_network) = parameters.split_at(policy.trunk.recurrent_parameters());
+    let features = match policy.trunk.gru() {
+        None => features,
+        Some(gru) => graph.remembered(gru, of_gru, &features)?,
+    };
+    let outputs = graph.network(policy.trunk.network(), of_network, features)?;
     graph.builder.output("network", &outputs, "what the network gives", &["batch", ""])?;
     let action = graph.action(&policy.head, &outputs)?;
     graph.builder.output("action", &action, "the most likely action", &["batch", ""])?;
@@ -104,6 +111,45 @@ impl Graph {
         let scaled = self.add(Operator::new("Div"), &[&shifted, &deviation], width)?;
         let clip = normaliser.clip;
         self.add(Operator::new("Clip"), &[&scaled, &Wire::scalar(-clip), &Wire::scalar(clip)], width)
+    }
+
+    /// What a recurrent unit makes of features and `state`, as [`Gru`] has it.
+    fn remembered(&mut self, gru: &Gru, parameters: &[f32], features: &Wire) -> Result<Wire> {
+        let (inputs, size) = (gru.inputs(), gru.size());
+        let state = self.builder.input("state", Kind::Float, vec![None, Some(size)], &["batch", ""]);
+        let (weights, rest) = parameters.split_at(3 * size * inputs);
+        let (recurrent, biases) = rest.split_at(3 * size * size);
+        let mut sums = |x: &Wire, weights: &[f32], biases: &[f32]| {
+            let weights = constant(vec![weights.len() / (3 * size), 3 * size], weights)?;
+            let biases = constant(vec![3 * size], biases)?;
+            self.add(Operator::new("Gemm"), &[x, &weights, &biases], 3 * size)
+        };
+        let of_features = sums(features, weights, &biases[..3 * size])?;
+        let of_state = sums(&state, recurrent, &biases[3 * size..])?;
+        let mut gates = Vec::new();
+        for gate in 0..3 {
+            let ends = [gate, gate + 1].map(|end| Wire::ints([(end * size) as i64]));
+            let mut own = |of: &Wire| {
+                let inputs = [of, &ends[0], &ends[1], &Wire::ints([1])];
+                self.add(Operator::new("Slice"), &inputs, size)
+            };
+            let (of_features, mut of_state) = (own(&of_features)?, own(&of_state)?);
+            if let [reset, _] = &gates[..] {
+                of_state = self.add(Operator::new("Mul"), &[reset, &of_state], size)?;
+            }
+            let sum = self.add(Operator::new("Add"), &[&of_features, &of_state], size)?;
+            let activation = if gate == 2 { Activation::Tanh } else { Activation::Sigmoid };
+            gates.push(self.activation(activation, sum)?);
+        }
+        let [_, kept, candidate] = &gates[..] else {
+            return Err(Error::internal("a recurrent unit has three gates"));
+        };
+        // (1 - z) n + z h is n + z (h - n).
+        let change = self.add(Operator::new("Sub"), &[&state, candidate], size)?;
+        let change = self.add(Operator::new("Mul"), &[kept, &change], size)?;
+        let next = self.add(Operator::new("Add"), &[candidate, &change], size)?;
+        self.builder.output("next_state", &next, "what is remembered", &["batch", ""])?;
+        Ok(next)
     }
 
     /// A picture through convolutions, and flat again.
@@ -204,6 +250,13 @@ impl Graph {
                 }
             }
             Head::Greedy { start, .. } => self.largest(outputs, *start),
+            Head::Binary(_) => {
+                let dims = vec![None, Some(axes)];
+                let (above, zero) = (Operator::new("Greater"), Wire::scalar(0.0));
+                let digits = self.builder.add("", above, &[outputs, &zero], Kind::Bool, dims.clone())?;
+                let cast = Operator::new("Cast").int("to", Kind::Int.data_type() as i64);
+                self.builder.add("", cast, &[&digits], Kind::Int, dims)
+            }
             Head::Gaussian(bounds) => self.clipped(outputs, bounds),
             Head::Squashed(bounds) => {
                 let squashed = self.activation(Activation::Tanh, outputs.clone())?;

@@ -3,9 +3,10 @@
 use opendr_engine::environment::StateReader;
 use opendr_engine::{Error, Random, Result};
 
+use crate::policy::ObservationEncoder;
 use crate::saved_state::SavedState;
 
-/// Steps of the past, of which the oldest make way.
+/// Steps of the past, of which the oldest make way; observations are kept as they were shown.
 #[derive(Debug, Clone)]
 pub(crate) struct ReplayBuffer {
     capacity: usize,
@@ -23,8 +24,10 @@ pub(crate) struct ReplayBuffer {
 /// Steps that were drawn; memory that is used again.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Transitions {
+    /// As networks take them, once they are [encoded](Self::encode).
     pub observations: Vec<f32>,
     pub next_observations: Vec<f32>,
+    raw: [Vec<f32>; 2],
     pub actions: Vec<f32>,
     pub rewards: Vec<f32>,
     pub continues: Vec<f32>,
@@ -98,8 +101,8 @@ impl ReplayBuffer {
         for _ in 0..count {
             let at = random.below(self.len);
             let row = at * observation..(at + 1) * observation;
-            drawn.observations.extend_from_slice(&self.observations[row.clone()]);
-            drawn.next_observations.extend_from_slice(&self.next_observations[row]);
+            drawn.raw[0].extend_from_slice(&self.observations[row.clone()]);
+            drawn.raw[1].extend_from_slice(&self.next_observations[row]);
             drawn.actions.extend_from_slice(&self.actions[at * action..(at + 1) * action]);
             drawn.rewards.push(self.rewards[at]);
             drawn.continues.push(self.continues[at]);
@@ -130,12 +133,22 @@ impl ReplayBuffer {
 }
 
 impl Transitions {
+    /// Encodes what was drawn, with the normaliser as it is now.
+    pub fn encode(&mut self, encoder: &ObservationEncoder) -> Result<()> {
+        let Self { observations, next_observations, raw, rewards, .. } = self;
+        for (raw, encoded) in raw.iter().zip([observations, next_observations]) {
+            encoded.resize(rewards.len() * encoder.encoded_len(), 0.0);
+            encoder.encode(raw, encoded)?;
+        }
+        Ok(())
+    }
+
     fn clear(&mut self) {
         self.rows().into_iter().for_each(Vec::clear);
     }
 
     fn rows(&mut self) -> [&mut Vec<f32>; 5] {
-        let Self { observations, next_observations, actions, rewards, continues } = self;
+        let Self { raw: [observations, next_observations], actions, rewards, continues, .. } = self;
         [observations, next_observations, actions, rewards, continues]
     }
 }
@@ -167,9 +180,9 @@ mod tests {
         buffer.sample(500, &mut random, &mut drawn);
         let mut seen = [0; 7];
         for at in 0..500 {
-            let number = drawn.observations[2 * at];
+            let number = drawn.raw[0][2 * at];
             seen[number as usize] += 1;
-            assert_eq!(drawn.next_observations[2 * at], number + 1.0);
+            assert_eq!(drawn.raw[1][2 * at], number + 1.0);
             assert_eq!((drawn.actions[at], drawn.rewards[at]), (10.0 * number, 100.0 * number));
             assert_eq!(drawn.continues[at], number % 2.0);
         }

@@ -1,11 +1,7 @@
 //! What a learner writes to go on later, bit for bit.
 
-use std::fs;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
-
 use opendr_engine::environment::{Snapshot, StateReader};
-use opendr_engine::{Error, Random, Result, ResultExt as _};
+use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Adam;
 use serde::{Deserialize, Serialize};
 
@@ -107,56 +103,6 @@ impl SavedState {
         let arrays = names.iter().map(array).collect::<Result<_>>()?;
         Ok(Self { words, arrays, environments })
     }
-
-    /// Saves it as a folder, which appears whole or not at all; an older one makes way.
-    ///
-    /// # Errors
-    /// `Io` when the disk is full or the place cannot be written; the older one is then untouched.
-    pub fn save(&self, folder: &Path) -> Result<()> {
-        let files = self.files()?;
-        let (unfinished, replaced) = (beside(folder, "unfinished"), beside(folder, "replaced"));
-        let write = || -> std::io::Result<()> {
-            remove(&unfinished)?;
-            remove(&replaced)?;
-            fs::create_dir_all(&unfinished)?;
-            for (name, bytes) in &files {
-                let mut file = fs::File::create(unfinished.join(name))?;
-                file.write_all(bytes)?;
-                file.sync_all()?;
-            }
-            if folder.exists() {
-                fs::rename(folder, &replaced)?;
-            }
-            fs::rename(&unfinished, folder)?;
-            remove(&replaced)
-        };
-        write().map_err(Error::from).context(|| format!("saving {}", folder.display()))
-    }
-
-    /// Loads the folder that [`Self::save`] wrote, or that it was about to replace when it was killed.
-    ///
-    /// # Errors
-    /// `NotFound` when there is none, and as [`Self::from_files`].
-    pub fn load(folder: &Path, names: &[&'static str]) -> Result<Self> {
-        let replaced = beside(folder, "replaced");
-        let there = if folder.exists() { folder } else { &replaced };
-        let read = |name: &str| {
-            let path = there.join(name);
-            fs::read(&path).context(|| path.display().to_string())
-        };
-        Self::from_files(&read, names)
-    }
-}
-
-/// A folder beside another.
-fn beside(folder: &Path, what: &str) -> PathBuf {
-    let mut name = folder.as_os_str().to_owned();
-    name.push(format!(".{what}"));
-    name.into()
-}
-
-fn remove(folder: &Path) -> std::io::Result<()> {
-    if folder.exists() { fs::remove_dir_all(folder) } else { Ok(()) }
 }
 
 fn file_of(name: &str) -> String {

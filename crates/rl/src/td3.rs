@@ -7,13 +7,24 @@ use opendr_kernels::{Adam, AdamOptions, Compute, move_towards, tanh_in_place};
 use opendr_simulation::vector::VecEnvironment;
 
 use crate::algorithm::{Algorithm, Report, diverged, not_begun, snapshot_of};
-use crate::off_policy::{Experience, OffPolicyConfig, check_no_pictures};
+use crate::off_policy::{Experience, OffPolicyConfig};
 use crate::policy::{Beginning, Bounds, Head, NetworkConfig, Policy, PolicyMemory};
+use crate::preset::Preset;
 use crate::replay_buffer::{self, Transitions};
 use crate::saved_state::SavedState;
 use crate::twin_critics::{self, TwinCritics};
 
-/// Settings of [`Td3`]. Names and defaults are those of Stable-Baselines3, but for `action_noise_std`.
+opendr_engine::choices! {
+    /// How the noise on actions goes on from step to step.
+    pub enum ActionNoise {
+        /// Each step has its own.
+        Normal = "normal",
+        /// It wanders (Uhlenbeck and Ornstein, 1930), so that what it pushes is pushed for a while.
+        OrnsteinUhlenbeck = "ornstein_uhlenbeck",
+    }
+}
+
+/// Settings of [`Td3`]. Names and defaults are those of Stable-Baselines3, but for those of the noise.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct Td3Config {
     /// What off-policy learners share.
@@ -25,6 +36,8 @@ pub struct Td3Config {
     /// Deviation of the noise on actions while exploring, where actions span [-1, 1]: rl-zoo's, Stable-Baselines3 has none.
     #[param(default = 0.1, range = 0.0..=2.0)]
     pub action_noise_std: f32,
+    /// How that noise goes on.
+    pub action_noise: ActionNoise,
     /// Updates of the values between two of the policy.
     #[param(default = 2, range = 1..=1_000_000)]
     pub policy_delay: u64,
@@ -47,6 +60,8 @@ pub struct Td3 {
     critics: TwinCritics,
     experience: Option<Experience>,
     memory: Memory,
+    /// The noise on the actions of each environment.
+    noise: Vec<f32>,
     updates: u64,
     report: Report,
 }
@@ -64,6 +79,10 @@ struct Memory {
 
 const NAME: &str = "td3";
 
+/// The time step of wandering noise, and how fast it returns to 0: those of Stable-Baselines3.
+const STEP: f32 = 1e-2;
+const RETURN: f32 = 0.15;
+
 /// The rows of its state.
 const ROWS: &[&str] = &[
     "policy",
@@ -78,6 +97,10 @@ const ROWS: &[&str] = &[
     twin_critics::ROWS[1][1],
     twin_critics::ROWS[1][2],
     twin_critics::ROWS[1][3],
+    twin_critics::ROWS[2][0],
+    twin_critics::ROWS[2][1],
+    twin_critics::ROWS[2][2],
+    twin_critics::ROWS[2][3],
     replay_buffer::ROWS[0],
     replay_buffer::ROWS[1],
     replay_buffer::ROWS[2],
@@ -85,30 +108,45 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[4],
 ];
 
+impl Td3Config {
+    /// The settings of rl-zoo for an environment, where it has some.
+    pub fn preset(id: &str) -> Option<Preset<Self>> {
+        let (timesteps, learning_starts, action_noise_std, action_noise) = match id {
+            "Pendulum-v1" => (20_000, 10_000, 0.1, ActionNoise::Normal),
+            "MountainCarContinuous-v0" => (50_000, 100, 0.5, ActionNoise::OrnsteinUhlenbeck),
+            _ => return None,
+        };
+        let mut config = Self { action_noise_std, action_noise, ..Self::default() };
+        config.off_policy.learning_starts = learning_starts;
+        Some(Preset { environments: 1, timesteps, config })
+    }
+}
+
 impl Td3 {
     /// A learner for environments of this kind, on one thread.
     ///
     /// # Errors
-    /// `InvalidParam` for settings out of range, `Unsupported` for actions that are no bounded box, and for pictures.
+    /// `InvalidParam` for settings out of range, `Unsupported` for actions that are no bounded box, and for memory.
     pub fn new(config: &Td3Config, spec: &EnvironmentSpec) -> Result<Self> {
         config.check()?;
+        config.network.check_no_memory(NAME)?;
+        let clip = config.off_policy.clip();
         let bounds = Bounds::of(&spec.action, true)?;
         let axes = bounds.low.len();
-        let mut policy = Policy::new(spec, Head::Squashed(bounds), &config.network, None)?;
-        check_no_pictures(&policy)?;
+        let mut policy = Policy::new(spec, Head::Squashed(bounds), &config.network, clip)?;
         let mut random = Random::at([config.off_policy.seed, 0]);
         policy.initialise(Beginning::Uniform, 0.0, &mut random);
-        let seen = policy.encoder.encoded_len();
         Ok(Self {
             config: config.clone(),
             compute: Compute::single(),
-            critics: TwinCritics::new(seen, axes, &config.network, &mut random)?,
+            critics: TwinCritics::new(&policy.encoder, axes, &config.network, &mut random)?,
             random,
             actor_adam: Adam::new(policy.parameters.len(), AdamOptions::default()),
             target: policy.clone(),
             policy,
             experience: None,
             memory: Memory::default(),
+            noise: Vec::new(),
             updates: 0,
             report: Report::default(),
         })
@@ -127,14 +165,30 @@ impl Td3 {
         }
         let memory = &mut self.memory.now;
         let encoded = &experience.interaction.encoded;
-        let outputs = self.policy.forward(&self.compute, encoded, &mut memory.extractor, &mut memory.tape);
+        let outputs = self.policy.forward(&self.compute, encoded, memory);
         experience.kept.copy_from_slice(outputs);
         tanh_in_place(self.compute.isa(), &mut experience.kept);
-        for action in &mut experience.kept {
-            *action += self.config.action_noise_std * self.random.normal() as f32;
-            *action = action.clamp(-1.0, 1.0);
+        let deviation = self.config.action_noise_std;
+        self.noise.resize(experience.kept.len(), 0.0);
+        for (action, noise) in experience.kept.iter_mut().zip(&mut self.noise) {
+            let chance = deviation * self.random.normal() as f32;
+            *noise = match self.config.action_noise {
+                ActionNoise::Normal => chance,
+                ActionNoise::OrnsteinUhlenbeck => *noise + STEP * (chance / STEP.sqrt() - RETURN * *noise),
+            };
+            *action = (*action + *noise).clamp(-1.0, 1.0);
         }
         self.policy.head.environment_actions(&experience.kept, &mut experience.actions);
+    }
+
+    /// Noise does not wander from one episode into the next.
+    fn calm(&mut self, experience: &Experience) {
+        let axes = self.policy.head.action_len();
+        for (index, noise) in self.noise.chunks_exact_mut(axes).enumerate() {
+            if experience.interaction.ended(index) {
+                noise.fill(0.0);
+            }
+        }
     }
 
     fn learn(&mut self, experience: &Experience) -> Result<()> {
@@ -142,9 +196,8 @@ impl Td3 {
         let (rate, timesteps) = (config.learning_rate, experience.interaction.timesteps);
         let Memory { drawn, next, actions, wanted, .. } = &mut self.memory;
         let (compute, rows) = (&self.compute, config.batch_size);
-        experience.buffer.sample(rows, &mut self.random, drawn);
-        let outputs =
-            self.target.forward(compute, &drawn.next_observations, &mut next.extractor, &mut next.tape);
+        experience.draw(&self.policy, rows, &mut self.random, drawn)?;
+        let outputs = self.target.forward(compute, &drawn.next_observations, next);
         actions.clear();
         actions.extend_from_slice(outputs);
         tanh_in_place(compute.isa(), actions);
@@ -175,7 +228,7 @@ impl Td3 {
     fn learn_policy(&mut self, learning_rate: f32, timesteps: u64) -> Result<()> {
         let Memory { drawn, now, actions, doutputs, gradients, .. } = &mut self.memory;
         let (compute, rows) = (&self.compute, drawn.rewards.len());
-        let outputs = self.policy.forward(compute, &drawn.observations, &mut now.extractor, &mut now.tape);
+        let outputs = self.policy.forward(compute, &drawn.observations, now);
         actions.clear();
         actions.extend_from_slice(outputs);
         tanh_in_place(compute.isa(), actions);
@@ -201,6 +254,7 @@ impl Td3 {
         for _ in 0..self.config.off_policy.train_freq {
             self.act(experience);
             experience.step(environments, &mut self.policy)?;
+            self.calm(experience);
         }
         for _ in 0..experience.gradient_steps(&self.config.off_policy) {
             self.learn(experience)?;
@@ -242,7 +296,9 @@ impl Algorithm for Td3 {
         state.add_adam([ROWS[2], ROWS[3]], &self.actor_adam);
         self.critics.save(&mut state);
         state.words.push(self.updates);
-        experience.save(&mut state, &self.random);
+        state.words.push(self.noise.len() as u64);
+        state.words.extend_numbers(self.noise.iter().map(|&noise| noise.into()));
+        experience.save(&mut state, &self.policy, &self.random);
         Ok(state)
     }
 
@@ -253,8 +309,13 @@ impl Algorithm for Td3 {
         state.fill_adam([ROWS[2], ROWS[3]], &mut self.actor_adam, &mut words)?;
         self.critics.load(state, &mut words)?;
         self.updates = words.word()?;
+        self.noise.resize(words.count(environments.count() * self.policy.head.action_len())?, 0.0);
+        for noise in &mut self.noise {
+            *noise = words.finite()? as f32;
+        }
         let config = &self.config.off_policy;
-        let (experience, random) = Experience::load(state, &mut words, environments, &self.policy, config)?;
+        let (experience, random) =
+            Experience::load(state, &mut words, environments, &mut self.policy, config)?;
         words.finish()?;
         environments.restore(state.environments())?;
         self.random = random;

@@ -4,13 +4,14 @@ use opendr_engine::environment::StateReader;
 use opendr_engine::{Random, Result};
 use opendr_kernels::{Adam, AdamOptions, Compute, Network, Tape, move_towards};
 
-use crate::policy::{Beginning, NetworkConfig};
+use crate::policy::{Beginning, Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder};
 use crate::saved_state::SavedState;
 
-/// The rows of saved critics: parameters, targets and moments of each.
-pub(crate) const ROWS: [[&str; 4]; 2] = [
+/// The rows of saved critics and of what they see through: parameters, targets and moments of each.
+pub(crate) const ROWS: [[&str; 4]; 3] = [
     ["critic_1", "critic_1_target", "critic_1_adam_first", "critic_1_adam_second"],
     ["critic_2", "critic_2_target", "critic_2_adam_first", "critic_2_adam_second"],
+    ["critic_sight", "critic_sight_target", "critic_sight_adam_first", "critic_sight_adam_second"],
 ];
 
 /// Both critics, with memory that is used again.
@@ -18,11 +19,31 @@ pub(crate) const ROWS: [[&str; 4]; 2] = [
 pub(crate) struct TwinCritics {
     network: Network,
     critics: [Critic; 2],
-    /// Observations and actions, side by side.
+    sight: Sight,
+    /// Features and actions, side by side.
     inputs: Vec<f32>,
     /// The lower of both values of each row.
     lowest: Vec<f32>,
     daction: Vec<f32>,
+}
+
+/// The networks of pictures, which both critics share, as in Stable-Baselines3; without pictures nothing.
+#[derive(Debug, Clone)]
+struct Sight {
+    extractor: Extractor,
+    parameters: Vec<f32>,
+    target: Vec<f32>,
+    adam: Adam,
+    memory: ExtractorMemory,
+    gradients: Vec<f32>,
+    dfeatures: Vec<f32>,
+}
+
+/// Whose parameters answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Version {
+    Learnt,
+    Target,
 }
 
 #[derive(Debug, Clone)]
@@ -39,12 +60,13 @@ struct Critic {
 
 impl TwinCritics {
     pub fn new(
-        observation: usize,
+        encoder: &ObservationEncoder,
         action: usize,
         config: &NetworkConfig,
         random: &mut Random,
     ) -> Result<Self> {
-        let network = config.network(observation + action, 1)?;
+        let sight = Sight::new(encoder, config, random)?;
+        let network = config.network(sight.extractor.outputs() + action, 1)?;
         let count = network.parameters();
         let critics = [(); 2].map(|()| {
             let mut parameters = vec![0.0; count];
@@ -60,7 +82,7 @@ impl TwinCritics {
                 loss: 0.0,
             }
         });
-        Ok(Self { network, critics, inputs: Vec::new(), lowest: Vec::new(), daction: Vec::new() })
+        Ok(Self { network, critics, sight, inputs: Vec::new(), lowest: Vec::new(), daction: Vec::new() })
     }
 
     /// What the targets think that actions are worth: the lower of both.
@@ -71,7 +93,7 @@ impl TwinCritics {
         actions: &[f32],
         rows: usize,
     ) -> &[f32] {
-        self.set_inputs(observations, actions, rows);
+        self.set_inputs(compute, observations, actions, rows, Version::Target);
         let Self { network, critics: [first, second], inputs, lowest, .. } = self;
         compute.pool().join(
             || {
@@ -96,13 +118,18 @@ impl TwinCritics {
         weight: f32,
         learning_rate: f32,
     ) -> f32 {
-        self.set_inputs(observations, actions, wanted.len());
-        let Self { network, critics: [first, second], inputs, .. } = self;
+        self.set_inputs(compute, observations, actions, wanted.len(), Version::Learnt);
+        let Self { network, critics: [first, second], sight, inputs, .. } = self;
+        let goal = Goal { wanted, weight, learning_rate, wants_input: !sight.extractor.is_identity() };
         compute.pool().join(
-            || first.learn(compute, network, inputs, wanted, weight, learning_rate),
-            || second.learn(compute, network, inputs, wanted, weight, learning_rate),
+            || first.learn(compute, network, inputs, goal),
+            || second.learn(compute, network, inputs, goal),
         );
-        first.loss + second.loss
+        let loss = first.loss + second.loss;
+        if goal.wants_input && loss.is_finite() {
+            sight.learn(compute, [&first.dinputs, &second.dinputs], network.inputs(), learning_rate);
+        }
+        loss
     }
 
     /// The mean, over rows, of the lower of both values, and the gradient of minus that mean by the actions.
@@ -113,7 +140,7 @@ impl TwinCritics {
         actions: &[f32],
         rows: usize,
     ) -> (f32, &[f32]) {
-        self.set_inputs(observations, actions, rows);
+        self.set_inputs(compute, observations, actions, rows, Version::Learnt);
         let Self { network, critics: [first, second], inputs, daction, .. } = self;
         compute.pool().join(
             || {
@@ -152,7 +179,7 @@ impl TwinCritics {
         actions: &[f32],
         rows: usize,
     ) -> (f32, &[f32]) {
-        self.set_inputs(observations, actions, rows);
+        self.set_inputs(compute, observations, actions, rows, Version::Learnt);
         let Self { network, critics: [first, _], inputs, daction, .. } = self;
         let values = network.forward(compute, &first.parameters, inputs, &mut first.tape);
         let scale = 1.0 / rows as f32;
@@ -173,14 +200,24 @@ impl TwinCritics {
         for critic in &mut self.critics {
             move_towards(&mut critic.target, &critic.parameters, tau);
         }
+        move_towards(&mut self.sight.target, &self.sight.parameters, tau);
     }
 
-    fn set_inputs(&mut self, observations: &[f32], actions: &[f32], rows: usize) {
-        let (observation, action) = (observations.len() / rows, actions.len() / rows);
+    fn set_inputs(
+        &mut self,
+        compute: &Compute,
+        observations: &[f32],
+        actions: &[f32],
+        rows: usize,
+        version: Version,
+    ) {
+        let Sight { extractor, parameters, target, memory, .. } = &mut self.sight;
+        let parameters = if version == Version::Target { target } else { parameters };
+        let features = extractor.forward(compute, parameters, observations, memory);
+        let (width, action) = (features.len() / rows, actions.len() / rows);
         self.inputs.clear();
-        for (observation, action) in observations.chunks_exact(observation).zip(actions.chunks_exact(action))
-        {
-            self.inputs.extend_from_slice(observation);
+        for (features, action) in features.chunks_exact(width).zip(actions.chunks_exact(action)) {
+            self.inputs.extend_from_slice(features);
             self.inputs.extend_from_slice(action);
         }
     }
@@ -191,6 +228,10 @@ impl TwinCritics {
             state.add(target, &critic.target);
             state.add_adam([first, second], &critic.adam);
         }
+        let (sight, [parameters, target, first, second]) = (&self.sight, ROWS[2]);
+        state.add(parameters, &sight.parameters);
+        state.add(target, &sight.target);
+        state.add_adam([first, second], &sight.adam);
     }
 
     pub fn load(&mut self, state: &SavedState, words: &mut StateReader<'_>) -> Result<()> {
@@ -199,20 +240,56 @@ impl TwinCritics {
             state.fill(target, &mut critic.target)?;
             state.fill_adam([first, second], &mut critic.adam, words)?;
         }
-        Ok(())
+        let (sight, [parameters, target, first, second]) = (&mut self.sight, ROWS[2]);
+        state.fill(parameters, &mut sight.parameters)?;
+        state.fill(target, &mut sight.target)?;
+        state.fill_adam([first, second], &mut sight.adam, words)
     }
 }
 
+impl Sight {
+    fn new(encoder: &ObservationEncoder, config: &NetworkConfig, random: &mut Random) -> Result<Self> {
+        let extractor = Extractor::new(encoder, config.picture_network)?;
+        let count = extractor.parameters();
+        let mut parameters = vec![0.0; count];
+        extractor.initialise(Beginning::Uniform, random, &mut parameters);
+        Ok(Self {
+            extractor,
+            target: parameters.clone(),
+            parameters,
+            adam: Adam::new(count, AdamOptions::default()),
+            memory: ExtractorMemory::default(),
+            gradients: vec![0.0; count],
+            dfeatures: Vec::new(),
+        })
+    }
+
+    /// Takes a step from the gradients of the inputs of both critics, rows of `width`.
+    fn learn(&mut self, compute: &Compute, [first, second]: [&[f32]; 2], width: usize, learning_rate: f32) {
+        let Self { extractor, parameters, adam, memory, gradients, dfeatures, .. } = self;
+        dfeatures.clear();
+        for (one, other) in first.chunks_exact(width).zip(second.chunks_exact(width)) {
+            let both = one.iter().zip(other).take(extractor.outputs());
+            dfeatures.extend(both.map(|(one, other)| one + other));
+        }
+        gradients.fill(0.0);
+        extractor.backward(compute, parameters, dfeatures, memory, gradients);
+        adam.step(compute, learning_rate, parameters, gradients);
+    }
+}
+
+/// What a step of learning is to come to.
+#[derive(Debug, Clone, Copy)]
+struct Goal<'a> {
+    wanted: &'a [f32],
+    weight: f32,
+    learning_rate: f32,
+    wants_input: bool,
+}
+
 impl Critic {
-    fn learn(
-        &mut self,
-        compute: &Compute,
-        network: &Network,
-        inputs: &[f32],
-        wanted: &[f32],
-        weight: f32,
-        learning_rate: f32,
-    ) {
+    fn learn(&mut self, compute: &Compute, network: &Network, inputs: &[f32], goal: Goal<'_>) {
+        let Goal { wanted, weight, learning_rate, wants_input } = goal;
         let values = network.forward(compute, &self.parameters, inputs, &mut self.tape);
         let scale = weight / wanted.len() as f32;
         self.loss = 0.0;
@@ -227,7 +304,10 @@ impl Critic {
         }
         self.gradients.fill(0.0);
         let gradients = Some(&mut self.gradients[..]);
-        network.backward(compute, &self.parameters, &self.dvalues, &mut self.tape, gradients, false);
+        let (parameters, tape) = (&self.parameters, &mut self.tape);
+        let dinputs = network.backward(compute, parameters, &self.dvalues, tape, gradients, wants_input);
+        self.dinputs.clear();
+        self.dinputs.extend_from_slice(dinputs);
         self.adam.step(compute, learning_rate, &mut self.parameters, &self.gradients);
     }
 
@@ -241,15 +321,21 @@ impl Critic {
 
 #[cfg(test)]
 mod tests {
+    use opendr_engine::environment::Space;
+
     use super::*;
+
+    fn numbers(count: usize) -> ObservationEncoder {
+        ObservationEncoder::new(&Space::symmetric(&vec![1.0; count]), None).unwrap()
+    }
 
     #[test]
     fn actions_have_the_gradient_of_the_lower_value() {
         let (compute, mut random) = (Compute::with_threads(2), Random::new(4));
         let config = NetworkConfig { net_arch: vec![16], ..NetworkConfig::default() };
-        let mut critics = TwinCritics::new(3, 2, &config, &mut random).unwrap();
-        let mut numbers = |count: usize| (0..count).map(|_| random.uniform(-1.0, 1.0)).collect::<Vec<_>>();
-        let (observations, actions) = (numbers(6), numbers(4));
+        let mut critics = TwinCritics::new(&numbers(3), 2, &config, &mut random).unwrap();
+        let mut drawn = |count: usize| (0..count).map(|_| random.uniform(-1.0, 1.0)).collect::<Vec<_>>();
+        let (observations, actions) = (drawn(6), drawn(4));
         let gradient = critics.gradient_by_actions(&compute, &observations, &actions, 2).1.to_vec();
         let first = critics.gradient_by_actions_of_first(&compute, &observations, &actions, 2).1.to_vec();
         for at in 0..4 {
@@ -271,7 +357,7 @@ mod tests {
     #[test]
     fn values_come_to_what_is_wanted_and_targets_follow() {
         let (compute, mut random) = (Compute::single(), Random::new(4));
-        let mut critics = TwinCritics::new(1, 1, &NetworkConfig::default(), &mut random).unwrap();
+        let mut critics = TwinCritics::new(&numbers(1), 1, &NetworkConfig::default(), &mut random).unwrap();
         let (observations, actions, wanted) = ([0.5, -0.5], [1.0, -1.0], [2.0, -3.0]);
         let losses: Vec<_> = (0..300)
             .map(|_| critics.learn(&compute, [&observations, &actions], &wanted, 0.5, 0.01))

@@ -1,4 +1,5 @@
 //! What is learnt is right.
+#![allow(clippy::unwrap_used)]
 
 use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOptions, Space, Step};
 use opendr_engine::{ErrorKind, Result};

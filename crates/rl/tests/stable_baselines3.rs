@@ -1,6 +1,7 @@
 //! Policies that Stable-Baselines3 saved do here what they did there.
 //!
 //! `tests/rl/write_stable_baselines3.py` made what lies in `data`.
+#![allow(clippy::unwrap_used)]
 
 use opendr_kernels::Compute;
 use opendr_rl::{Acting, PolicyMemory, policy_from_stable_baselines3};
@@ -30,9 +31,7 @@ fn actions_are_those_of_stable_baselines3() {
         for (action, wanted) in actions.iter().zip(&wanted) {
             assert!((action - wanted).abs() < 1e-6, "{name}: {actions:?} {wanted:?}");
         }
-        // The network of values as it stands in the file prefers one push everywhere.
-        let differs = wanted.iter().any(|action| *action != wanted[0]);
-        assert!(differs || name == "dqn_cart_pole", "{name} always does the same");
+        assert!(wanted.iter().any(|action| *action != wanted[0]), "{name} always does the same");
     }
 }
 

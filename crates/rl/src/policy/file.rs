@@ -6,6 +6,7 @@ use std::path::Path;
 use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::params::{ParamMap, Params as _};
 use opendr_engine::{Error, Result, ResultExt as _};
+use opendr_runlog::write_atomically;
 use opendr_simulation::wrappers::RunningMoments;
 use serde::{Deserialize, Serialize};
 
@@ -111,12 +112,7 @@ impl Policy {
     /// # Errors
     /// As [`Self::to_bytes`], and `Io`.
     pub fn save(&self, path: &Path) -> Result<()> {
-        let mut unfinished = path.as_os_str().to_owned();
-        unfinished.push(".unfinished");
-        let unfinished = Path::new(&unfinished);
-        let written =
-            std::fs::write(unfinished, self.to_bytes()?).and_then(|()| std::fs::rename(unfinished, path));
-        written.map_err(Error::from).context(|| path.display().to_string())
+        write_atomically(path, &self.to_bytes()?)
     }
 
     /// Reads the file of a policy.
@@ -169,6 +165,10 @@ fn read(bytes: &[u8]) -> Result<Policy> {
     for (to, bytes) in policy.parameters.iter_mut().zip(parameters) {
         *to = f32::from_le_bytes(*bytes);
     }
+    if let Some(at) = policy.parameters.iter().position(|parameter| !parameter.is_finite()) {
+        let number = policy.parameters[at];
+        return Err(Error::format(format!("parameter {at} is {number}; save the policy again")));
+    }
     if let Some(normaliser) = &mut policy.encoder.normaliser {
         let numbers = |name| -> Result<Vec<f64>> {
             let chunks = tensor(name, "F64")?.as_chunks::<8>().0.iter();
@@ -188,7 +188,7 @@ fn read(bytes: &[u8]) -> Result<Policy> {
 impl HeadKind {
     fn of(head: &Head) -> Self {
         match head {
-            Head::Categorical { .. } | Head::Gaussian(_) => Self::Stochastic,
+            Head::Categorical { .. } | Head::Binary(_) | Head::Gaussian(_) => Self::Stochastic,
             Head::SquashedGaussian(_) => Self::SquashedGaussian,
             Head::Squashed(_) => Self::Squashed,
             Head::Greedy { .. } => Self::Greedy,

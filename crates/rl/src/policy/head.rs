@@ -25,6 +25,8 @@ pub enum Head {
         /// The number of the first.
         start: i32,
     },
+    /// Scores of so many binary digits, each 1 as often as the logistic function of its score says.
+    Binary(usize),
     /// Means of a normal distribution; logarithms of its deviations are parameters of the policy. Actions are clipped.
     Gaussian(Bounds),
     /// Means, then logarithms of deviations, of a normal distribution whose tanh is stretched to the bounds.
@@ -73,14 +75,15 @@ impl Head {
     /// The distribution that on-policy learners use over actions of `space`.
     ///
     /// # Errors
-    /// `Unsupported` for dictionaries, tuples and binary digits.
+    /// `Unsupported` for dictionaries and tuples.
     pub fn stochastic(space: &Space) -> Result<Self> {
         match space {
             Space::Discrete { n, start } => Ok(Self::Categorical { counts: vec![*n], start: *start }),
             Space::MultiDiscrete(counts) => Ok(Self::Categorical { counts: counts.clone(), start: 0 }),
+            Space::MultiBinary(_) => Ok(Self::Binary(space.len())),
             Space::Box { .. } => Bounds::of(space, false).map(Self::Gaussian),
             _ => Err(Error::unsupported(format!(
-                "a policy cannot act in {space}; use choices or a box of numbers"
+                "a policy cannot act in {space}; use choices, digits or a box of numbers"
             ))),
         }
     }
@@ -91,6 +94,7 @@ impl Head {
             Self::Categorical { counts, .. } => counts.iter().map(|count| *count as usize).sum(),
             Self::Gaussian(bounds) | Self::Squashed(bounds) => bounds.low.len(),
             Self::SquashedGaussian(bounds) => 2 * bounds.low.len(),
+            Self::Binary(count) => *count,
             Self::Greedy { count, .. } => *count as usize,
         }
     }
@@ -102,6 +106,7 @@ impl Head {
             Self::Gaussian(bounds) | Self::Squashed(bounds) | Self::SquashedGaussian(bounds) => {
                 bounds.low.len()
             }
+            Self::Binary(count) => *count,
             Self::Greedy { .. } => 1,
         }
     }
@@ -128,6 +133,11 @@ impl Head {
                     }
                 }
                 Self::Greedy { start, .. } => actions[0] = choice(largest(outputs), *start),
+                Self::Binary(_) => {
+                    for (action, score) in actions.iter_mut().zip(outputs) {
+                        *action = f32::from(*score > 0.0);
+                    }
+                }
                 Self::Gaussian(bounds) => {
                     for (axis, (action, mean)) in actions.iter_mut().zip(outputs).enumerate() {
                         *action = mean.clamp(bounds.low[axis], bounds.high[axis]);
@@ -153,7 +163,7 @@ impl Head {
         actions: &mut [f32],
     ) {
         match self {
-            Self::Categorical { .. } | Self::Gaussian(_) => {
+            Self::Categorical { .. } | Self::Binary(_) | Self::Gaussian(_) => {
                 likelihood.sample(isa, self, outputs, log_std, random);
                 self.environment_actions(&likelihood.actions, actions);
             }
@@ -178,7 +188,7 @@ impl Head {
     pub(crate) fn environment_actions(&self, actions: &[f32], taken: &mut [f32]) {
         taken.copy_from_slice(actions);
         match self {
-            Self::Categorical { start: 0, .. } => (),
+            Self::Categorical { start: 0, .. } | Self::Binary(_) => (),
             Self::Categorical { start, .. } | Self::Greedy { start, .. } => {
                 taken.iter_mut().for_each(|action| *action = choice(*action as usize, *start));
             }
@@ -207,7 +217,7 @@ impl Head {
                 let start = f64::from(*start);
                 actions.iter_mut().for_each(|action| *action = (f64::from(*action) - start) as f32);
             }
-            Self::Gaussian(_) => (),
+            Self::Gaussian(_) | Self::Binary(_) => (),
             Self::Squashed(bounds) | Self::SquashedGaussian(bounds) => {
                 for actions in actions.chunks_exact_mut(bounds.low.len()) {
                     for (axis, action) in actions.iter_mut().enumerate() {
@@ -252,6 +262,9 @@ mod tests {
         let mut back = [9.0; 2];
         head.distribution_actions(&actions, &mut back);
         assert_eq!(back, [1.0, 0.0]);
-        assert!(Head::stochastic(&Space::MultiBinary(vec![2])).is_err());
+        let digits = Head::stochastic(&Space::MultiBinary(vec![1, 2])).unwrap();
+        digits.most_likely(&[0.5, -0.5], &mut actions);
+        assert_eq!(actions, [1.0, 0.0]);
+        assert!(Head::stochastic(&Space::Tuple(vec![Space::discrete(2)])).is_err());
     }
 }

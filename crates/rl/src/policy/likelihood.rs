@@ -25,7 +25,7 @@ pub(crate) struct Likelihood {
 }
 
 impl Likelihood {
-    /// Samples an action for every row of `outputs`, with its log-probability. Only heads that are categorical or Gaussian.
+    /// Samples an action for every row of `outputs`, with its log-probability. Only heads that are categorical, binary or Gaussian.
     pub fn sample(&mut self, isa: Isa, head: &Head, outputs: &[f32], log_std: &[f32], random: &mut Random) {
         let rows = outputs.len() / head.outputs();
         self.actions.resize(rows * head.action_len(), 0.0);
@@ -37,6 +37,11 @@ impl Likelihood {
                     let (own, behind) = rest.split_at(*count as usize);
                     *action = chosen(own, random.unit()) as f32;
                     rest = behind;
+                }
+            }
+            Head::Binary(_) => {
+                for (action, score) in self.actions.iter_mut().zip(outputs) {
+                    *action = f32::from(random.unit() < f64::from(share(*score)));
                 }
             }
             _ => {
@@ -95,6 +100,17 @@ impl Likelihood {
                     self.entropies.push(spread);
                 }
             }
+            Head::Binary(_) => {
+                for (scores, actions) in rows {
+                    let (mut log, mut spread) = (0.0, 0.0);
+                    for (score, action) in scores.iter().zip(actions) {
+                        log += action * score - softplus(*score);
+                        spread += softplus(*score) - score * share(*score);
+                    }
+                    self.log_probabilities.push(log);
+                    self.entropies.push(spread);
+                }
+            }
             Head::SquashedGaussian(bounds) => {
                 for (outputs, actions) in rows {
                     let (means, log_stds) = outputs.split_at(bounds.low.len());
@@ -143,6 +159,14 @@ impl Likelihood {
                     }
                 }
             }
+            Head::Binary(_) => {
+                let scores = outputs.iter().zip(actions).zip(&mut self.doutputs);
+                for (at, ((score, action), doutput)) in scores.enumerate() {
+                    let share = share(*score);
+                    *doutput =
+                        dlogs[at / width] * (action - share) - dentropy * score * share * (1.0 - share);
+                }
+            }
             Head::SquashedGaussian(_) => {
                 let rows = outputs.chunks_exact(width).zip(actions.chunks_exact(width / 2));
                 for ((outputs, actions), (dlog, doutputs)) in
@@ -176,6 +200,16 @@ fn chosen(probabilities: &[f32], number: f64) -> usize {
     }
     // Rounding left the sum below 1; what is never chosen otherwise is not chosen here.
     probabilities.iter().rposition(|probability| *probability > 0.0).unwrap_or(0)
+}
+
+/// How often a digit of this score is 1.
+fn share(score: f32) -> f32 {
+    1.0 / (1.0 + (-score).exp())
+}
+
+/// ln(1 + e^x), which does not overflow.
+fn softplus(x: f32) -> f32 {
+    x.max(0.0) + (-x.abs()).exp().ln_1p()
 }
 
 /// Numbers of demonstrations beyond these have no inverse tanh.
@@ -264,6 +298,7 @@ mod tests {
         assert_gradients(&mixed, &outputs, &[], &[1.0, 2.0, 0.0, 0.0]);
         let even = Head::Categorical { counts: vec![5], start: 0 };
         assert_gradients(&even, &outputs, &[], &[3.0, 0.0]);
+        assert_gradients(&Head::Binary(3), &outputs[..6], &[], &[1.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
         let gaussian = Head::Gaussian(bounds(2));
         assert_gradients(&gaussian, &outputs[..4], &[-0.3, 0.2], &[0.5, -1.0, 0.1, 0.7]);
         let squashed = Head::SquashedGaussian(bounds(2));

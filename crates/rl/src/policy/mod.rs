@@ -8,10 +8,11 @@ mod network_config;
 mod observation_encoder;
 mod observation_normaliser;
 mod space_record;
+mod trunk;
 
 use opendr_engine::environment::{EnvironmentSpec, Space};
 use opendr_engine::{Error, Random, Result};
-use opendr_kernels::{Compute, Network, Tape};
+use opendr_kernels::Compute;
 
 pub(crate) use extractor::{Extractor, ExtractorMemory};
 pub(crate) use head::LOG_STD_BOUNDS;
@@ -22,28 +23,32 @@ pub use observation_encoder::ObservationEncoder;
 pub(crate) use observation_encoder::{Part, PartKind, check_finite};
 pub(crate) use observation_normaliser::EPSILON;
 pub use observation_normaliser::ObservationNormaliser;
+pub(crate) use trunk::{Sequences, Trunk, TrunkMemory};
 
 /// A policy: what it sees, networks, what it does, and its parameters, all that is needed to act.
 ///
-/// Parameters are one slice: the networks of pictures, the network behind them, logarithms of deviations.
+/// Parameters are one slice: the networks of pictures, what remembers and decides behind them, logarithms of deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Policy {
     action: Space,
     pub(crate) config: NetworkConfig,
     pub(crate) encoder: ObservationEncoder,
     pub(crate) extractor: Extractor,
-    pub(crate) network: Network,
+    pub(crate) trunk: Trunk,
     pub(crate) head: Head,
     pub(crate) parameters: Vec<f32>,
 }
 
-/// Memory that a policy acts in: used again, so that only the first actions allocate.
+/// Memory that a policy acts in: used again, so that only the first actions allocate. What a recurrent policy knows of the
+/// episodes that it acts in is here too, row by row.
 #[derive(Debug, Clone, Default)]
 pub struct PolicyMemory {
     encoded: Vec<f32>,
     pub(crate) extractor: ExtractorMemory,
-    pub(crate) tape: Tape,
+    pub(crate) trunk: TrunkMemory,
     likelihood: Likelihood,
+    rows: usize,
+    states: Vec<f32>,
 }
 
 /// How an action is taken from a distribution.
@@ -68,18 +73,18 @@ impl Policy {
     ) -> Result<Self> {
         let encoder = ObservationEncoder::new(&spec.observation, clip)?;
         let extractor = Extractor::new(&encoder, config.picture_network)?;
-        let network = config.network(extractor.outputs(), head.outputs())?;
-        let parameters = vec![0.0; extractor.parameters() + network.parameters() + head.parameters()];
+        let trunk = config.trunk(extractor.outputs(), head.outputs())?;
+        let parameters = vec![0.0; extractor.parameters() + trunk.parameters() + head.parameters()];
         let (action, config) = (spec.action.clone(), config.clone());
-        Ok(Self { action, config, encoder, extractor, network, head, parameters })
+        Ok(Self { action, config, encoder, extractor, trunk, head, parameters })
     }
 
     /// Writes first parameters; logarithms of deviations begin with `log_std`.
     pub fn initialise(&mut self, beginning: Beginning, log_std: f32, random: &mut Random) {
         let (extractor, rest) = self.parameters.split_at_mut(self.extractor.parameters());
-        let (network, deviations) = rest.split_at_mut(self.network.parameters());
+        let (trunk, deviations) = rest.split_at_mut(self.trunk.parameters());
         self.extractor.initialise(beginning, random, extractor);
-        self.network.initialise(beginning.of_output(), random, network);
+        self.trunk.initialise(beginning.of_output(), random, trunk);
         deviations.fill(log_std);
     }
 
@@ -115,7 +120,7 @@ impl Policy {
 
     /// Logarithms of the deviations of a Gaussian policy; else none.
     pub fn log_std(&self) -> &[f32] {
-        &self.parameters[self.extractor.parameters() + self.network.parameters()..]
+        &self.parameters[self.extractor.parameters() + self.trunk.parameters()..]
     }
 
     /// Whether another sees, acts and is made alike, but for its parameters and what its normaliser saw.
@@ -125,10 +130,17 @@ impl Policy {
             && self.encoder.normaliser.is_some() == other.encoder.normaliser.is_some()
     }
 
-    /// Acts: `observations` are those of the environment, one or more in a row, and so are `actions`.
+    /// Whether it remembers its episode. Its memory is then to be [`reset`](PolicyMemory::reset) where one begins.
+    pub fn is_recurrent(&self) -> bool {
+        self.trunk.gru().is_some()
+    }
+
+    /// Acts: `observations` are those of the environment, one or more in a row, and so are `actions`. A recurrent policy
+    /// goes on with what `memory` holds of each row; another number of rows begins anew.
     ///
     /// # Errors
-    /// `InvalidInput` when lengths do not fit, and for observations that are not finite.
+    /// `InvalidInput` when lengths do not fit, and for observations that are not finite; `Internal` for actions that are not,
+    /// from parameters that are not.
     pub fn act(
         &self,
         compute: &Compute,
@@ -149,8 +161,10 @@ impl Policy {
         encoded.resize(rows * self.encoder.encoded_len(), 0.0);
         let outcome = self.encoder.encode(observations, &mut encoded);
         if outcome.is_ok() {
-            let PolicyMemory { extractor, tape, likelihood, .. } = memory;
-            let outputs = self.forward(compute, &encoded, extractor, tape);
+            memory.provide(rows, self.trunk.state_len());
+            self.advance(compute, &encoded, memory);
+            let PolicyMemory { trunk, likelihood, .. } = memory;
+            let outputs = trunk.output();
             match acting {
                 Acting::Deterministic => self.head.most_likely(outputs, actions),
                 Acting::Sampled(random) => {
@@ -160,20 +174,35 @@ impl Policy {
             }
         }
         memory.encoded = encoded;
-        outcome
+        outcome?;
+        match actions.iter().find(|action| !action.is_finite()) {
+            None => Ok(()),
+            Some(action) => Err(Error::internal(format!(
+                "the policy gives the action {action}: its parameters are damaged; load or train it again"
+            ))),
+        }
     }
 
-    /// What the network gives for what was encoded.
-    pub(crate) fn forward<'t>(
+    /// One step of every row of `memory`.
+    fn advance(&self, compute: &Compute, encoded: &[f32], memory: &mut PolicyMemory) {
+        let PolicyMemory { extractor, trunk, states, .. } = memory;
+        let (of_pictures, rest) = self.parameters.split_at(self.extractor.parameters());
+        let features = self.extractor.forward(compute, of_pictures, encoded, extractor);
+        self.trunk.step(compute, &rest[..self.trunk.parameters()], features, states, trunk);
+    }
+
+    /// What the network gives for what was encoded; only policies without memory.
+    pub(crate) fn forward<'m>(
         &self,
         compute: &Compute,
         encoded: &[f32],
-        extractor: &mut ExtractorMemory,
-        tape: &'t mut Tape,
-    ) -> &'t [f32] {
+        memory: &'m mut PolicyMemory,
+    ) -> &'m [f32] {
+        let PolicyMemory { extractor, trunk, .. } = memory;
         let (of_pictures, rest) = self.parameters.split_at(self.extractor.parameters());
         let features = self.extractor.forward(compute, of_pictures, encoded, extractor);
-        self.network.forward(compute, &rest[..self.network.parameters()], features, tape)
+        let own = &rest[..self.trunk.parameters()];
+        self.trunk.forward(compute, own, features, Sequences::default(), trunk)
     }
 
     /// Adds to `gradients` from the gradient of what the last [`Self::forward`] gave.
@@ -186,13 +215,37 @@ impl Policy {
     ) {
         let (of_pictures, rest) = self.parameters.split_at(self.extractor.parameters());
         let (dpictures, drest) = gradients.split_at_mut(self.extractor.parameters());
-        let count = self.network.parameters();
+        let count = self.trunk.parameters();
         let wants_input = !self.extractor.is_identity();
-        let own = Some(&mut drest[..count]);
+        let (parameters, own) = (&rest[..count], &mut drest[..count]);
         let dfeatures =
-            self.network.backward(compute, &rest[..count], doutputs, &mut memory.tape, own, wants_input);
+            self.trunk.backward(compute, parameters, doutputs, &[], &mut memory.trunk, own, wants_input);
         if wants_input {
             self.extractor.backward(compute, of_pictures, dfeatures, &mut memory.extractor, dpictures);
+        }
+    }
+}
+
+impl PolicyMemory {
+    /// Forgets what a recurrent policy knows of a row, because another episode begins there.
+    pub fn reset(&mut self, row: usize) {
+        let size = self.states.len().checked_div(self.rows).unwrap_or(0);
+        if let Some(state) = self.states.get_mut(row * size..(row + 1) * size) {
+            state.fill(0.0);
+        }
+    }
+
+    /// What a recurrent policy knows, row after row; empty for others.
+    pub fn states(&self) -> &[f32] {
+        &self.states
+    }
+
+    /// Room for the states of so many rows; others than before know nothing.
+    fn provide(&mut self, rows: usize, size: usize) {
+        if self.rows != rows || self.states.len() != rows * size {
+            self.rows = rows;
+            self.states.clear();
+            self.states.resize(rows * size, 0.0);
         }
     }
 }

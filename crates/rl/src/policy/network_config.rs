@@ -1,8 +1,10 @@
 //! What networks a policy has.
 
-use opendr_engine::Result;
 use opendr_engine::params::Params;
-use opendr_kernels::{Activation, Initialisation, Network};
+use opendr_engine::{Error, Result};
+use opendr_kernels::{Activation, Gru, Initialisation, Network};
+
+use super::Trunk;
 
 opendr_engine::choices! {
     /// What stands behind every hidden layer.
@@ -36,6 +38,9 @@ pub struct NetworkConfig {
     pub activation_fn: Hidden,
     /// What pictures go through before the hidden layers.
     pub picture_network: PictureNetwork,
+    /// Neurons of a gated recurrent unit before the hidden layers, with which a policy remembers its episode; none is no memory.
+    #[param(range = 1..=4096)]
+    pub gru_size: Option<usize>,
 }
 
 impl Hidden {
@@ -52,6 +57,22 @@ impl NetworkConfig {
     pub(crate) fn network(&self, inputs: usize, outputs: usize) -> Result<Network> {
         let sizes = [&[inputs], &self.net_arch[..], &[outputs]].concat();
         Network::dense(&sizes, self.activation_fn.activation())
+    }
+
+    /// The same, behind the recurrent unit where there is one.
+    pub(crate) fn trunk(&self, inputs: usize, outputs: usize) -> Result<Trunk> {
+        let gru = self.gru_size.map(|size| Gru::new(inputs, size)).transpose()?;
+        Ok(Trunk::new(gru, self.network(self.gru_size.unwrap_or(inputs), outputs)?))
+    }
+
+    /// Refuses memory for a learner that learns from steps which do not follow each other.
+    pub(crate) fn check_no_memory(&self, learner: &str) -> Result<()> {
+        match self.gru_size {
+            None => Ok(()),
+            Some(size) => Err(Error::unsupported(format!(
+                "gru_size = {size}: {learner} learns from single steps; leave gru_size out, or use ppo"
+            ))),
+        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a user may set of PPO.
 
 use opendr_engine::params::Params;
+use opendr_engine::{Error, Result};
 
 use crate::policy::NetworkConfig;
 use crate::preset::Preset;
@@ -56,6 +57,10 @@ pub struct PpoConfig {
     /// The networks of the policy.
     #[param(flatten)]
     pub network: NetworkConfig,
+    /// Steps of an environment that a recurrent policy learns from in one go, all in one minibatch; none is as many as fit into a
+    /// minibatch. Others learn from single steps.
+    #[param(range = 1..=1_000_000)]
+    pub sequence_length: Option<usize>,
     /// Neurons of the hidden layers of the values, where they are not those of the policy.
     #[param(range = 1..=4096)]
     pub net_arch_vf: Option<Vec<usize>>,
@@ -83,7 +88,24 @@ pub struct PpoConfig {
 }
 
 impl PpoConfig {
-    /// The settings of rl-zoo for an environment, where it has some that need nothing but PPO.
+    /// Steps of an environment that are learnt from in one go: a divisor of `n_steps`, 1 where nothing is remembered.
+    pub(super) fn steps_of_sequence(&self) -> Result<usize> {
+        let longest = match (self.network.gru_size, self.sequence_length) {
+            (None, _) => 1,
+            (Some(_), None) => self.batch_size.min(self.n_steps),
+            (Some(_), Some(length)) if self.n_steps.is_multiple_of(length) => length,
+            (Some(_), Some(length)) => {
+                return Err(Error::invalid_param(format!(
+                    "sequence_length = {length} does not divide n_steps = {}; make n_steps a multiple of it",
+                    self.n_steps
+                )));
+            }
+        };
+        let divides = |length: &usize| self.n_steps.is_multiple_of(*length);
+        Ok((1..=longest).rev().find(divides).unwrap_or(1))
+    }
+
+    /// The settings of rl-zoo for an environment, where it has some that need nothing but PPO; a pendulum has twice as many steps.
     pub fn preset(id: &str) -> Option<Preset<Self>> {
         let base = Self::default();
         let (environments, timesteps, config) = match id {
@@ -101,6 +123,11 @@ impl PpoConfig {
                     clip_range_schedule: Schedule::Linear,
                     ..base
                 },
+            ),
+            "Pendulum-v1" => (
+                4,
+                200_000,
+                Self { n_steps: 1024, gamma: 0.9, learning_rate: 1e-3, norm_reward: false, ..base },
             ),
             "Acrobot-v1" => (
                 16,
@@ -150,5 +177,17 @@ mod tests {
         assert_eq!(PpoConfig::from_map(&config.to_map()).unwrap(), config);
         assert!(PpoConfig::preset("Nothing-v0").is_none());
         PpoConfig::preset("CartPole-v1").unwrap().config.check().unwrap();
+    }
+
+    #[test]
+    fn sequences_divide_the_steps() {
+        let mut config = PpoConfig { n_steps: 48, batch_size: 20, ..PpoConfig::default() };
+        assert_eq!(config.steps_of_sequence().unwrap(), 1);
+        config.network.gru_size = Some(8);
+        assert_eq!(config.steps_of_sequence().unwrap(), 16);
+        config.sequence_length = Some(12);
+        assert_eq!(config.steps_of_sequence().unwrap(), 12);
+        config.sequence_length = Some(10);
+        assert!(config.steps_of_sequence().unwrap_err().to_string().contains("n_steps = 48"));
     }
 }

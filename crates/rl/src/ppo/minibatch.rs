@@ -1,9 +1,9 @@
 //! The loss of some steps, and its gradients.
 
-use opendr_kernels::{Compute, Network, Tape};
+use opendr_kernels::Compute;
 
 use super::rollout::Rollout;
-use crate::policy::{Head, Likelihood, Policy};
+use crate::policy::{Head, Likelihood, Policy, Sequences, Trunk, TrunkMemory};
 
 /// Steps that are learnt from at once.
 #[derive(Debug, Clone, Default)]
@@ -14,32 +14,61 @@ pub(super) struct Minibatch {
     advantages: Vec<f32>,
     values: Vec<f32>,
     returns: Vec<f32>,
+    /// What policy and values remember where the sequences begin.
+    states: [Vec<f32>; 2],
+    /// Where episodes start, of policies with memory.
+    starts: Vec<bool>,
+    rows: Vec<usize>,
 }
 
 impl Minibatch {
-    /// Copies the steps numbered `places`, with their advantages at mean 0 and deviation 1 where `normalise`.
+    /// Copies the sequences numbered `places`, their first steps first, with the advantages at mean 0 and deviation 1 where
+    /// `normalise`.
     pub fn gather(&mut self, rollout: &Rollout, places: &[usize], normalise: bool) {
         let total = rollout.values.len();
-        let rows = |from: &[f32], to: &mut Vec<f32>| {
-            let width = from.len() / total;
-            to.clear();
-            for &place in places {
-                to.extend_from_slice(&from[place * width..(place + 1) * width]);
-            }
-        };
+        self.rows.clear();
+        for step in 0..rollout.length {
+            self.rows.extend(places.iter().map(|&place| rollout.row(place, step)));
+        }
+        self.gather_memory(rollout, places, total);
+        let rows = |from: &[f32], to: &mut Vec<f32>| copy_rows(from, from.len() / total, &self.rows, to);
         rows(&rollout.observations, &mut self.observations);
         rows(&rollout.actions, &mut self.actions);
         rows(&rollout.log_probabilities, &mut self.log_probabilities);
         rows(&rollout.advantages, &mut self.advantages);
         rows(&rollout.values, &mut self.values);
         rows(&rollout.returns, &mut self.returns);
-        if normalise && places.len() > 1 {
-            let count = places.len() as f32;
+        if normalise && self.rows.len() > 1 {
+            let count = self.rows.len() as f32;
             let mean = self.advantages.iter().sum::<f32>() / count;
             let squares = self.advantages.iter().map(|advantage| (advantage - mean).powi(2)).sum::<f32>();
             let deviation = (squares / (count - 1.0)).sqrt() + 1e-8;
             self.advantages.iter_mut().for_each(|advantage| *advantage = (*advantage - mean) / deviation);
         }
+    }
+
+    /// States where the sequences begin, and where episodes start in them.
+    fn gather_memory(&mut self, rollout: &Rollout, places: &[usize], total: usize) {
+        let sequences = total / rollout.length;
+        for (states, kept) in self.states.iter_mut().zip(&rollout.states) {
+            copy_rows(kept, kept.len() / sequences, places, states);
+        }
+        self.starts.clear();
+        // Before the first step of a sequence nothing is remembered of an episode that is over.
+        self.starts.resize(places.len(), false);
+        let later = self.rows.get(places.len()..).unwrap_or_default();
+        self.starts.extend(later.iter().map(|&row| rollout.ends[row - rollout.count]));
+    }
+
+    fn sequences(&self, of: usize) -> Sequences<'_> {
+        Sequences { states: &self.states[of], starts: &self.starts }
+    }
+}
+
+fn copy_rows(from: &[f32], width: usize, rows: &[usize], to: &mut Vec<f32>) {
+    to.clear();
+    for &row in rows {
+        to.extend_from_slice(&from[row * width..(row + 1) * width]);
     }
 }
 
@@ -64,7 +93,7 @@ pub(super) struct ActorLoss {
 /// The pass of a policy, with memory that is used again.
 #[derive(Debug, Clone, Default)]
 pub(super) struct ActorPass {
-    pub tape: Tape,
+    pub trunk: TrunkMemory,
     pub likelihood: Likelihood,
     dlogs: Vec<f32>,
     /// Of all parameters of the policy.
@@ -88,11 +117,12 @@ impl ActorPass {
         self.gradients.clear();
         self.gradients.resize(policy.parameters.len(), 0.0);
         let from = policy.extractor.parameters();
-        let to = from + policy.network.parameters();
-        let (network, log_std) = (&policy.parameters[from..to], policy.log_std());
-        let outputs = policy.network.forward(compute, network, features, &mut self.tape);
+        let to = from + policy.trunk.parameters();
+        let (own, log_std) = (&policy.parameters[from..to], policy.log_std());
+        let sequences = steps.sequences(0);
+        let outputs = policy.trunk.forward(compute, own, features, sequences, &mut self.trunk);
         self.likelihood.evaluate(compute.isa(), &policy.head, outputs, log_std, &steps.actions);
-        let (dnetwork, dlog_std) = self.gradients[from..].split_at_mut(to - from);
+        let (down, dlog_std) = self.gradients[from..].split_at_mut(to - from);
         self.loss = self.likelihood.clipped_loss(steps, weights.clip_range, &mut self.dlogs);
         let dentropy = -weights.entropy / steps.advantages.len() as f32;
         let head: &Head = &policy.head;
@@ -104,9 +134,9 @@ impl ActorPass {
             [&mut self.dlogs, dlog_std],
             dentropy,
         );
-        let doutputs = &self.likelihood.doutputs;
+        let (doutputs, starts) = (&self.likelihood.doutputs, sequences.starts);
         let dfeatures =
-            policy.network.backward(compute, network, doutputs, &mut self.tape, Some(dnetwork), wants_input);
+            policy.trunk.backward(compute, own, doutputs, starts, &mut self.trunk, down, wants_input);
         self.dfeatures.clear();
         self.dfeatures.extend_from_slice(dfeatures);
     }
@@ -141,7 +171,7 @@ impl Likelihood {
 /// The pass of the values, with memory that is used again.
 #[derive(Debug, Clone, Default)]
 pub(super) struct CriticPass {
-    pub tape: Tape,
+    pub trunk: TrunkMemory,
     dvalues: Vec<f32>,
     pub gradients: Vec<f32>,
     pub dfeatures: Vec<f32>,
@@ -155,7 +185,7 @@ impl CriticPass {
     pub fn run(
         &mut self,
         compute: &Compute,
-        network: &Network,
+        trunk: &Trunk,
         parameters: &[f32],
         features: &[f32],
         steps: &Minibatch,
@@ -164,7 +194,8 @@ impl CriticPass {
     ) {
         self.gradients.clear();
         self.gradients.resize(parameters.len(), 0.0);
-        let values = network.forward(compute, parameters, features, &mut self.tape);
+        let sequences = steps.sequences(1);
+        let values = trunk.forward(compute, parameters, features, sequences, &mut self.trunk);
         let scale = 1.0 / values.len() as f32;
         self.loss = 0.0;
         self.dvalues.clear();
@@ -178,9 +209,9 @@ impl CriticPass {
             self.dvalues.push(slope * error);
         }
         self.loss *= scale;
-        let gradients = Some(&mut self.gradients[..]);
-        let dfeatures =
-            network.backward(compute, parameters, &self.dvalues, &mut self.tape, gradients, wants_input);
+        let (dvalues, starts) = (&self.dvalues, sequences.starts);
+        let (memory, gradients) = (&mut self.trunk, &mut self.gradients[..]);
+        let dfeatures = trunk.backward(compute, parameters, dvalues, starts, memory, gradients, wants_input);
         self.dfeatures.clear();
         self.dfeatures.extend_from_slice(dfeatures);
     }

@@ -11,7 +11,7 @@ mod update;
 use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Random, Result};
-use opendr_kernels::{Adam, AdamOptions, Compute, Network};
+use opendr_kernels::{Adam, AdamOptions, Compute};
 use opendr_simulation::vector::VecEnvironment;
 
 pub use advantage::{Trajectory, generalised_advantages};
@@ -22,7 +22,7 @@ use rollout::Rollout;
 
 use crate::algorithm::Report;
 use crate::interaction::Interaction;
-use crate::policy::{Beginning, ExtractorMemory, Head, Policy};
+use crate::policy::{Beginning, ExtractorMemory, Head, Policy, Trunk};
 use crate::schedule::remaining;
 
 /// PPO: acts for some steps, then goes over them several times, and keeps the policy near the one that acted.
@@ -46,12 +46,14 @@ pub struct Ppo {
     compute: Compute,
     random: Random,
     policy: Policy,
-    critic: Network,
+    critic: Trunk,
     critic_parameters: Vec<f32>,
     actor_adam: Adam,
     critic_adam: Adam,
     interaction: Option<Interaction>,
     reward_normaliser: Option<RewardNormaliser>,
+    /// What policy and values remember of the episodes that run.
+    states: [Vec<f32>; 2],
     rollout: Rollout,
     memory: Memory,
     updates: u64,
@@ -71,6 +73,8 @@ struct Memory {
     /// Last observations of truncated episodes, encoded, and where those episodes were.
     final_encoded: Vec<f32>,
     truncated: Vec<usize>,
+    /// What the values remember where a look ahead must leave no trace.
+    states: Vec<f32>,
 }
 
 /// Adam's epsilon in Stable-Baselines3's on-policy learners.
@@ -83,12 +87,13 @@ impl Ppo {
     /// `InvalidParam` for settings out of range, `Unsupported` for spaces that no policy of this crate has.
     pub fn new(config: &PpoConfig, spec: &EnvironmentSpec) -> Result<Self> {
         config.check()?;
+        config.steps_of_sequence()?;
         let head = Head::stochastic(&spec.action)?;
         let clip = config.norm_obs.then_some(config.clip_obs);
         let mut policy = Policy::new(spec, head, &config.network, clip)?;
         let of_values = config.net_arch_vf.clone().unwrap_or_else(|| config.network.net_arch.clone());
         let of_values = crate::policy::NetworkConfig { net_arch: of_values, ..config.network.clone() };
-        let critic = of_values.network(policy.extractor.outputs(), 1)?;
+        let critic = of_values.trunk(policy.extractor.outputs(), 1)?;
         let mut random = Random::at([config.seed, 0]);
         let beginning =
             |output| if config.ortho_init { Beginning::Orthogonal(output) } else { Beginning::Uniform };
@@ -107,6 +112,7 @@ impl Ppo {
             critic_parameters,
             interaction: None,
             reward_normaliser: None,
+            states: Default::default(),
             rollout: Rollout::default(),
             memory: Memory::default(),
             updates: 0,
@@ -136,17 +142,17 @@ impl Ppo {
         Ok(())
     }
 
-    /// What observations are worth, `encoded` as networks take them.
+    /// What observations are worth, `encoded` as networks take them, where the values remember `memory.states`.
     fn values(&mut self, encoded: &[f32]) -> &[f32] {
-        let policy = &self.policy;
+        let Self { policy, compute, critic, critic_parameters, memory, .. } = self;
+        let Memory { extractor, critic: pass, states, .. } = memory;
         let of_pictures = &policy.parameters[..policy.extractor.parameters()];
-        let features =
-            policy.extractor.forward(&self.compute, of_pictures, encoded, &mut self.memory.extractor);
-        self.critic.forward(&self.compute, &self.critic_parameters, features, &mut self.memory.critic.tape)
+        let features = policy.extractor.forward(compute, of_pictures, encoded, extractor);
+        critic.step(compute, critic_parameters, features, states, &mut pass.trunk)
     }
 
     /// What the learner thinks that observations, one or more in a row, are worth: the discounted sum of what will be
-    /// earned, normalised where rewards are.
+    /// earned, normalised where rewards are. Values with memory take each for the first of an episode.
     ///
     /// # Errors
     /// `InvalidInput` when the length does not fit, and for numbers that are not finite.
@@ -155,26 +161,30 @@ impl Ppo {
         let rows = observations.len() / encoder.raw_len();
         let mut encoded = vec![0.0; rows * encoder.encoded_len()];
         encoder.encode(observations, &mut encoded)?;
+        self.memory.states.clear();
+        self.memory.states.resize(rows * self.critic.state_len(), 0.0);
         Ok(self.values(&encoded).to_vec())
     }
 
     fn begin(&mut self, environments: &mut dyn VecEnvironment) -> Result<()> {
         let encoder = &mut self.policy.encoder;
         let interaction = Interaction::begin(environments, encoder, self.config.seed)?;
-        self.prepare(interaction.count());
+        self.prepare(interaction.count())?;
         self.interaction = Some(interaction);
         Ok(())
     }
 
     /// Room for what this many environments answer.
-    fn prepare(&mut self, environments: usize) {
-        let steps = self.config.n_steps * environments;
-        let action = self.policy.head.action_len();
-        self.rollout = Rollout::new(steps, self.policy.encoder.encoded_len(), action);
+    fn prepare(&mut self, environments: usize) -> Result<()> {
+        let (action, state) = (self.policy.head.action_len(), self.critic.state_len());
+        let steps = [self.config.n_steps, environments, self.config.steps_of_sequence()?];
+        self.rollout = Rollout::new(steps, [self.policy.encoder.encoded_len(), action, state]);
+        self.states = [(); 2].map(|()| vec![0.0; environments * state]);
         self.memory.actions.resize(environments * action, 0.0);
         let (gamma, clip) = (self.config.gamma, self.config.clip_reward);
         self.reward_normaliser =
             self.config.norm_reward.then(|| RewardNormaliser::new(environments, gamma, clip));
+        Ok(())
     }
 
     /// Acts for `n_steps` in every environment.
@@ -187,8 +197,10 @@ impl Ppo {
             self.act(interaction, step);
             interaction.step(environments, &mut self.policy.encoder, &self.memory.actions)?;
             self.earn(interaction, step)?;
+            self.forget(step);
         }
         let mut last_values = std::mem::take(&mut self.memory.values);
+        self.memory.states.clone_from(&self.states[1]);
         last_values.clear();
         last_values.extend_from_slice(self.values(&interaction.encoded));
         self.rollout.finish(&last_values, self.config.gamma, self.config.gae_lambda);
@@ -198,16 +210,19 @@ impl Ppo {
 
     /// Writes actions for what is seen, and what is thought of them.
     fn act(&mut self, interaction: &Interaction, step: usize) {
-        let Self { policy, compute, critic, memory, rollout, random, .. } = self;
+        let Self { policy, compute, critic, memory, rollout, random, states, .. } = self;
+        rollout.remember(step, [&states[0], &states[1]]);
+        let [policy_states, critic_states] = states;
         let (count, encoded) = (interaction.count(), &interaction.encoded[..]);
         let rows = step * count..(step + 1) * count;
         let (of_pictures, rest) = policy.parameters.split_at(policy.extractor.parameters());
         let features = policy.extractor.forward(compute, of_pictures, encoded, &mut memory.extractor);
-        let values = critic.forward(compute, &self.critic_parameters, features, &mut memory.critic.tape);
+        let (parameters, pass) = (&self.critic_parameters, &mut memory.critic.trunk);
+        let values = critic.step(compute, parameters, features, critic_states, pass);
         rollout.values[rows.clone()].copy_from_slice(values);
-        let own = &rest[..policy.network.parameters()];
-        let outputs = policy.network.forward(compute, own, features, &mut memory.actor.tape);
-        let likelihood = &mut memory.actor.likelihood;
+        let own = &rest[..policy.trunk.parameters()];
+        let ActorPass { trunk, likelihood, .. } = &mut memory.actor;
+        let outputs = policy.trunk.step(compute, own, features, policy_states, trunk);
         likelihood.sample(compute.isa(), &policy.head, outputs, policy.log_std(), random);
         policy.head.environment_actions(&likelihood.actions, &mut memory.actions);
         rollout.log_probabilities[rows.clone()].copy_from_slice(&likelihood.log_probabilities);
@@ -222,11 +237,7 @@ impl Ppo {
         let (count, batch) = (interaction.count(), &interaction.batch);
         let rows = step * count..(step + 1) * count;
         let ends = &mut self.rollout.ends[rows.clone()];
-        for (end, (terminated, truncated)) in
-            ends.iter_mut().zip(batch.terminated.iter().zip(&batch.truncated))
-        {
-            *end = *terminated || *truncated;
-        }
+        ends.iter_mut().enumerate().for_each(|(index, end)| *end = interaction.ended(index));
         let rewards = &mut self.rollout.rewards[rows.clone()];
         match &mut self.reward_normaliser {
             Some(normaliser) => normaliser.normalise(&batch.rewards, ends, rewards),
@@ -244,13 +255,27 @@ impl Ppo {
         for (&index, encoded) in self.memory.truncated.iter().zip(encoded.chunks_exact_mut(size)) {
             self.policy.encoder.encode(interaction.final_observation(index), encoded)?;
         }
+        let size = self.critic.state_len();
+        self.memory.states.clear();
+        for &index in &self.memory.truncated {
+            self.memory.states.extend_from_slice(&self.states[1][index * size..(index + 1) * size]);
+        }
         self.values(&encoded);
-        let values = self.memory.critic.tape.output();
+        let values = self.memory.critic.trunk.output();
         for (&index, value) in self.memory.truncated.iter().zip(values) {
             self.rollout.rewards[rows.start + index] += self.config.gamma * value;
         }
         self.memory.final_encoded = encoded;
         Ok(())
+    }
+
+    /// Nothing is remembered of episodes that ended.
+    fn forget(&mut self, step: usize) {
+        let (size, count) = (self.critic.state_len(), self.rollout.count);
+        let ends = &self.rollout.ends[step * count..(step + 1) * count];
+        for (index, _) in ends.iter().enumerate().filter(|(_, end)| **end) {
+            self.states.iter_mut().for_each(|states| states[index * size..(index + 1) * size].fill(0.0));
+        }
     }
 
     fn schedules(&self, timesteps: u64, total: u64) -> (f32, f32) {

@@ -13,13 +13,21 @@ pub(super) struct Rollout {
     pub ends: Vec<bool>,
     pub advantages: Vec<f32>,
     pub returns: Vec<f32>,
-    /// The order in which an epoch takes steps.
+    /// What policy and values remembered where each sequence begins.
+    pub states: [Vec<f32>; 2],
+    /// The order in which an epoch takes sequences.
     pub order: Vec<usize>,
+    /// Steps of a sequence.
+    pub length: usize,
+    /// Environments.
+    pub count: usize,
 }
 
 impl Rollout {
-    /// Room for `steps` of all environments, each with so many numbers of observations and actions.
-    pub fn new(steps: usize, observation: usize, action: usize) -> Self {
+    /// Room for `steps` of each of `count` environments, with so many numbers of observations, actions and states; they are
+    /// learnt from in sequences of `length`.
+    pub fn new([steps, count, length]: [usize; 3], [observation, action, state]: [usize; 3]) -> Self {
+        let steps = steps * count;
         let zeros = |width: usize| vec![0.0; steps * width];
         Self {
             observations: zeros(observation),
@@ -30,8 +38,26 @@ impl Rollout {
             ends: vec![false; steps],
             advantages: zeros(1),
             returns: zeros(1),
-            order: (0..steps).collect(),
+            states: [(); 2].map(|()| vec![0.0; steps / length * state]),
+            order: (0..steps / length).collect(),
+            length,
+            count,
         }
+    }
+
+    /// Keeps what is remembered before a step, where a sequence begins.
+    pub fn remember(&mut self, step: usize, states: [&[f32]; 2]) {
+        if step.is_multiple_of(self.length) {
+            for (kept, states) in self.states.iter_mut().zip(states) {
+                let from = step / self.length * states.len();
+                kept[from..from + states.len()].copy_from_slice(states);
+            }
+        }
+    }
+
+    /// The row of a step of a sequence. Those that begin together follow each other, environment after environment.
+    pub fn row(&self, sequence: usize, step: usize) -> usize {
+        (sequence / self.count * self.length + step) * self.count + sequence % self.count
     }
 
     /// Computes advantages and returns; `last_values` are those behind the last step.

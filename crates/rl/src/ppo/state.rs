@@ -64,6 +64,7 @@ impl Algorithm for Ppo {
         if let Some(normaliser) = &self.reward_normaliser {
             normaliser.save(&mut state.words);
         }
+        state.words.extend_numbers(self.states.iter().flatten().map(|&number| number.into()));
         Ok(state)
     }
 
@@ -79,9 +80,12 @@ impl Algorithm for Ppo {
             normaliser.moments.load(&mut words)?;
         }
         let interaction = Interaction::load(&mut words, environments, &self.policy.encoder)?;
-        self.prepare(interaction.count());
+        self.prepare(interaction.count())?;
         if let Some(normaliser) = &mut self.reward_normaliser {
             normaliser.load(&mut words)?;
+        }
+        for number in self.states.iter_mut().flatten() {
+            *number = words.finite()? as f32;
         }
         words.finish()?;
         environments.restore(state.environments())?;

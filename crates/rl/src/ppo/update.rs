@@ -36,10 +36,11 @@ impl Ppo {
         let mut sums = Sums::default();
         let mut order = std::mem::take(&mut self.rollout.order);
         let mut outcome = Ok(());
+        let sequences = (self.config.batch_size / self.rollout.length).max(1);
         'epochs: for _ in 0..self.config.n_epochs {
             sums.approx_kl = [0.0; 2];
             self.random.shuffle(&mut order);
-            for places in order.chunks(self.config.batch_size) {
+            for places in order.chunks(sequences) {
                 outcome = self.pass(places, weights, timesteps);
                 let (actor, critic) = (self.memory.actor.loss, self.memory.critic.loss);
                 sums.add(actor, critic);
@@ -61,7 +62,7 @@ impl Ppo {
         Ok(())
     }
 
-    /// Losses and gradients of the steps numbered `places`.
+    /// Losses and gradients of the sequences numbered `places`.
     fn pass(&mut self, places: &[usize], weights: Weights, timesteps: u64) -> Result<()> {
         let Self { policy, compute, critic, critic_parameters, memory, rollout, .. } = self;
         let steps = &mut memory.minibatch;
@@ -77,7 +78,7 @@ impl Ppo {
         let mut critic = || {
             critic_pass.run(compute, critic, critic_parameters, features, steps, weights, wants_input);
         };
-        if places.len() < PARALLEL_FROM {
+        if places.len() * rollout.length < PARALLEL_FROM {
             actor();
             critic();
         } else {

@@ -11,7 +11,7 @@ use opendr_simulation::vector::VecEnvironment;
 use squashed::Squashed;
 
 use crate::algorithm::{Algorithm, Report, diverged, not_begun, snapshot_of};
-use crate::off_policy::{Experience, OffPolicyConfig, check_no_pictures};
+use crate::off_policy::{Experience, OffPolicyConfig};
 use crate::policy::{Beginning, Bounds, Head, NetworkConfig, Policy, PolicyMemory};
 use crate::preset::Preset;
 use crate::replay_buffer::{self, Transitions};
@@ -88,6 +88,10 @@ const ROWS: &[&str] = &[
     twin_critics::ROWS[1][1],
     twin_critics::ROWS[1][2],
     twin_critics::ROWS[1][3],
+    twin_critics::ROWS[2][0],
+    twin_critics::ROWS[2][1],
+    twin_critics::ROWS[2][2],
+    twin_critics::ROWS[2][3],
     replay_buffer::ROWS[0],
     replay_buffer::ROWS[1],
     replay_buffer::ROWS[2],
@@ -113,20 +117,20 @@ impl Sac {
     /// A learner for environments of this kind, on one thread.
     ///
     /// # Errors
-    /// `InvalidParam` for settings out of range, `Unsupported` for actions that are no bounded box, and for pictures.
+    /// `InvalidParam` for settings out of range, `Unsupported` for actions that are no bounded box, and for memory.
     pub fn new(config: &SacConfig, spec: &EnvironmentSpec) -> Result<Self> {
         config.check()?;
+        config.network.check_no_memory(NAME)?;
+        let clip = config.off_policy.clip();
         let bounds = Bounds::of(&spec.action, true)?;
         let axes = bounds.low.len();
-        let mut policy = Policy::new(spec, Head::SquashedGaussian(bounds), &config.network, None)?;
-        check_no_pictures(&policy)?;
+        let mut policy = Policy::new(spec, Head::SquashedGaussian(bounds), &config.network, clip)?;
         let mut random = Random::at([config.off_policy.seed, 0]);
         policy.initialise(Beginning::Uniform, 0.0, &mut random);
-        let seen = policy.encoder.encoded_len();
         Ok(Self {
             config: config.clone(),
             compute: Compute::single(),
-            critics: TwinCritics::new(seen, axes, &config.network, &mut random)?,
+            critics: TwinCritics::new(&policy.encoder, axes, &config.network, &mut random)?,
             random,
             actor_adam: Adam::new(policy.parameters.len(), AdamOptions::default()),
             log_ent_coef: [config.ent_coef.unwrap_or(config.ent_coef_init).ln()],
@@ -169,7 +173,7 @@ impl Sac {
         }
         let Memory { now, sampled, .. } = &mut self.memory;
         let encoded = &experience.interaction.encoded;
-        let outputs = self.policy.forward(&self.compute, encoded, &mut now.extractor, &mut now.tape);
+        let outputs = self.policy.forward(&self.compute, encoded, now);
         let axes = self.policy.head.action_len();
         sampled.sample(self.compute.isa(), outputs, axes, &mut self.random);
         experience.kept.copy_from_slice(&sampled.actions);
@@ -182,15 +186,15 @@ impl Sac {
         let (rate, timesteps) = (config.learning_rate, experience.interaction.timesteps);
         let Memory { drawn, now, next, sampled, sampled_next, wanted, .. } = &mut self.memory;
         let (compute, policy, axes) = (&self.compute, &self.policy, self.policy.head.action_len());
-        experience.buffer.sample(config.batch_size, &mut self.random, drawn);
-        let outputs = policy.forward(compute, &drawn.observations, &mut now.extractor, &mut now.tape);
+        experience.draw(policy, config.batch_size, &mut self.random, drawn)?;
+        let outputs = policy.forward(compute, &drawn.observations, now);
         sampled.sample(compute.isa(), outputs, axes, &mut self.random);
         let weight = self.log_ent_coef[0].exp();
         if self.config.ent_coef.is_none() {
             let slope = -(sampled.mean_log_probability() + self.target_entropy);
             self.ent_adam.step(compute, rate, &mut self.log_ent_coef, &[slope]);
         }
-        let outputs = policy.forward(compute, &drawn.next_observations, &mut next.extractor, &mut next.tape);
+        let outputs = policy.forward(compute, &drawn.next_observations, next);
         sampled_next.sample(compute.isa(), outputs, axes, &mut self.random);
         let rows = config.batch_size;
         let values =
@@ -230,7 +234,7 @@ impl Sac {
             self.critics.gradient_by_actions(&self.compute, &drawn.observations, &sampled.actions, rows);
         let loss = weight * sampled.mean_log_probability() - value;
         if loss.is_finite() {
-            sampled.backward(now.tape.output(), weight / rows as f32, dactions);
+            sampled.backward(now.trunk.output(), weight / rows as f32, dactions);
             gradients.clear();
             gradients.resize(self.policy.parameters.len(), 0.0);
             self.policy.backward(&self.compute, &sampled.doutputs, now, gradients);
@@ -285,7 +289,7 @@ impl Algorithm for Sac {
         state.add_adam([ROWS[4], ROWS[5]], &self.ent_adam);
         self.critics.save(&mut state);
         state.words.push(self.updates);
-        experience.save(&mut state, &self.random);
+        experience.save(&mut state, &self.policy, &self.random);
         Ok(state)
     }
 
@@ -298,7 +302,8 @@ impl Algorithm for Sac {
         self.critics.load(state, &mut words)?;
         self.updates = words.word()?;
         let config = &self.config.off_policy;
-        let (experience, random) = Experience::load(state, &mut words, environments, &self.policy, config)?;
+        let (experience, random) =
+            Experience::load(state, &mut words, environments, &mut self.policy, config)?;
         words.finish()?;
         environments.restore(state.environments())?;
         self.random = random;

@@ -89,12 +89,13 @@ fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
         net_arch: sizes.map(|layer| layer.outputs()).collect(),
         activation_fn: family.activation_of(&settings.policy_kwargs)?,
         picture_network: PictureNetwork::Flat,
+        gru_size: None,
     };
     let mut policy = Policy::new(spec, family.head(spec)?, &config, None)?;
     fill(&mut policy, &layers)?;
     if let Head::Gaussian(_) = policy.head {
         let log_std = tensors.get("log_std").map_or(&[][..], |tensor| &tensor.numbers);
-        let first = policy.network.parameters();
+        let first = policy.trunk.parameters();
         copy(&mut policy.parameters[first..], log_std, "log_std")?;
     }
     Ok(policy)
@@ -160,7 +161,7 @@ impl Family {
 
 /// Copies layers into the parameters of a policy; PyTorch's weights are the transposes of ours.
 fn fill(policy: &mut Policy, layers: &[DenseLayer<'_>]) -> Result<()> {
-    let network: &Network = &policy.network;
+    let network: &Network = policy.trunk.network();
     for (index, (own, layer)) in network.layers().iter().zip(layers).enumerate() {
         let Layer::Dense(dense) = own else { continue };
         let (inputs, outputs) = (dense.inputs(), dense.outputs());

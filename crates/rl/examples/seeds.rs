@@ -1,0 +1,112 @@
+//! How well learners do, over several seeds, as a table in Markdown:
+//! `cargo run --release -p opendr-rl --example seeds -- [--seeds 10] [TASK ...]`, tasks as `ppo/CartPole-v1`; all without.
+//!
+//! A policy counts by the mean return of its most likely actions in 100 episodes that no training saw, at the end of the
+//! training.
+
+use opendr_engine::{Error, Result};
+use opendr_rl::{
+    Algorithm, Dqn, DqnConfig, EvaluationProtocol, Ppo, PpoConfig, Sac, SacConfig, SuccessRate, Td3,
+    Td3Config, evaluate,
+};
+use opendr_simulation::vector::{Autoreset, VecEnvironment, VectorOptions};
+use opendr_simulation::{make, make_vec};
+
+/// Learner, environment, the mean return to reach, and the steps of a training where they are not those of the preset.
+const TASKS: &[(&str, &str, f64, Option<u64>)] = &[
+    ("ppo", "CartPole-v1", 475.0, None),
+    ("dqn", "CartPole-v1", 475.0, None),
+    ("ppo", "Pendulum-v1", -200.0, None),
+    ("sac", "Pendulum-v1", -200.0, Some(10_000)),
+    ("ppo", "Acrobot-v1", -100.0, Some(300_000)),
+    ("td3", "MountainCarContinuous-v0", 90.0, None),
+];
+
+fn main() -> Result<()> {
+    let (mut seeds, mut chosen) = (10, Vec::new());
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--seeds" => {
+                let number = arguments.next().and_then(|number| number.parse().ok());
+                seeds = number.ok_or_else(|| Error::invalid_param("give --seeds a number"))?;
+            }
+            _ => chosen.push(argument),
+        }
+    }
+    println!(
+        "| learner, environment | steps | goal | median | min | max | reached, 95 % interval | CPU-seconds |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for &(learner, id, goal, timesteps) in TASKS {
+        let name = format!("{learner}/{id}");
+        if chosen.is_empty() || chosen.contains(&name) {
+            row(learner, id, goal, timesteps, seeds)?;
+        }
+    }
+    Ok(())
+}
+
+fn row(learner: &str, id: &str, goal: f64, timesteps: Option<u64>, seeds: u64) -> Result<()> {
+    let (mut returns, mut seconds, mut steps) = (Vec::new(), Vec::new(), 0);
+    for seed in 0..seeds {
+        let begun = cpu_seconds();
+        let mut training = begin(learner, id, seed)?;
+        let total = timesteps.unwrap_or(training.timesteps);
+        while training.learner.report().timesteps < total {
+            steps = training.learner.iterate(&mut *training.environments, total)?.timesteps;
+        }
+        seconds.push(cpu_seconds() - begun);
+        let policy = training.learner.policy();
+        returns.push(evaluate(policy, &mut *make(id)?, &EvaluationProtocol::default())?.mean_return);
+    }
+    returns.sort_by(f64::total_cmp);
+    seconds.sort_by(f64::total_cmp);
+    let reached = returns.iter().filter(|mean| **mean >= goal).count() as u64;
+    let (Some(rate), [lowest, .., highest]) = (SuccessRate::of(reached, seeds), &returns[..]) else {
+        return Err(Error::invalid_param(format!("{seeds} seeds; give at least 2")));
+    };
+    let ([low, high], median) = (rate.interval, |sorted: &[f64]| sorted[sorted.len() / 2]);
+    println!(
+        "| {learner}, {id} | {steps} | {goal} | {:.1} | {lowest:.1} | {highest:.1} | {reached} of {seeds}, {:.0} to {:.0} % | {:.1} |",
+        median(&returns),
+        100.0 * low,
+        100.0 * high,
+        median(&seconds)
+    );
+    Ok(())
+}
+
+struct Training {
+    learner: Box<dyn Algorithm>,
+    environments: Box<dyn VecEnvironment>,
+    timesteps: u64,
+}
+
+fn begin(learner: &str, id: &str, seed: u64) -> Result<Training> {
+    let unknown = || Error::not_found(format!("no settings of {learner} for {id}"));
+    let worlds =
+        |count| make_vec(id, VectorOptions { autoreset: Autoreset::SameStep, ..VectorOptions::new(count) });
+    macro_rules! preset {
+        ($learner:ident, $config:ident, $($seed:ident).+) => {{
+            let mut preset = $config::preset(id).ok_or_else(unknown)?;
+            preset.config.$($seed).+ = seed;
+            let environments = worlds(preset.environments)?;
+            let learner = Box::new($learner::new(&preset.config, environments.spec())?);
+            Ok(Training { learner, environments, timesteps: preset.timesteps })
+        }};
+    }
+    match learner {
+        "ppo" => preset!(Ppo, PpoConfig, seed),
+        "sac" => preset!(Sac, SacConfig, off_policy.seed),
+        "td3" => preset!(Td3, Td3Config, off_policy.seed),
+        "dqn" => preset!(Dqn, DqnConfig, off_policy.seed),
+        _ => Err(unknown()),
+    }
+}
+
+/// Seconds that this thread has spent on a processor, where the system tells; else 0.
+fn cpu_seconds() -> f64 {
+    let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    text.split(' ').next().and_then(|time| time.parse::<f64>().ok()).map_or(0.0, |time| time * 1e-9)
+}

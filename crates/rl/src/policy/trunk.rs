@@ -1,0 +1,208 @@
+//! What stands behind the features of a policy or of its values: memory, where there is some, and hidden layers.
+
+use opendr_engine::Random;
+use opendr_kernels::{Compute, Gru, GruTape, Initialisation, Network, Tape};
+
+/// Hidden layers and an output, behind a gated recurrent unit where there is one. Its parameters lie before theirs.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Trunk {
+    gru: Option<Gru>,
+    network: Network,
+}
+
+/// Rows that follow each other, `[steps, sequences]`; of no meaning to what remembers nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Sequences<'a> {
+    /// What is remembered before the first step, `[sequences, size]`.
+    pub states: &'a [f32],
+    /// Where an episode starts, `[steps, sequences]`: nothing is remembered there.
+    pub starts: &'a [bool],
+}
+
+/// Memory of a pass forward and back, used again.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TrunkMemory {
+    tape: Tape,
+    gru: GruTape,
+    /// No row starts an episode.
+    no_starts: Vec<bool>,
+    dfeatures: Vec<f32>,
+}
+
+impl Trunk {
+    pub fn new(gru: Option<Gru>, network: Network) -> Self {
+        Self { gru, network }
+    }
+
+    pub fn gru(&self) -> Option<&Gru> {
+        self.gru.as_ref()
+    }
+
+    pub fn network(&self) -> &Network {
+        &self.network
+    }
+
+    /// Numbers that are remembered of a row.
+    pub fn state_len(&self) -> usize {
+        self.gru.map_or(0, |gru| gru.size())
+    }
+
+    pub fn parameters(&self) -> usize {
+        self.recurrent_parameters() + self.network.parameters()
+    }
+
+    /// Those of the recurrent unit, which come first.
+    pub fn recurrent_parameters(&self) -> usize {
+        self.gru.map_or(0, |gru| gru.parameters())
+    }
+
+    /// Writes first parameters; those of a recurrent unit are PyTorch's, as in Stable-Baselines3.
+    pub fn initialise(&self, how: Initialisation, random: &mut Random, parameters: &mut [f32]) {
+        let (of_gru, of_network) = parameters.split_at_mut(self.recurrent_parameters());
+        let bound = 1.0 / (self.state_len().max(1) as f32).sqrt();
+        of_gru.iter_mut().for_each(|parameter| *parameter = random.uniform(-bound, bound));
+        self.network.initialise(how, random, of_network);
+    }
+
+    /// What the last layer gives for the features of every step.
+    pub fn forward<'m>(
+        &self,
+        compute: &Compute,
+        parameters: &[f32],
+        features: &[f32],
+        sequences: Sequences<'_>,
+        memory: &'m mut TrunkMemory,
+    ) -> &'m [f32] {
+        let (of_gru, of_network) = parameters.split_at(self.recurrent_parameters());
+        let TrunkMemory { tape, gru: gru_tape, .. } = memory;
+        let features = match &self.gru {
+            None => features,
+            Some(gru) => gru.forward(compute, of_gru, features, sequences.states, sequences.starts, gru_tape),
+        };
+        self.network.forward(compute, of_network, features, tape)
+    }
+
+    /// One step of every row, from `states` and into them.
+    pub fn step<'m>(
+        &self,
+        compute: &Compute,
+        parameters: &[f32],
+        features: &[f32],
+        states: &mut [f32],
+        memory: &'m mut TrunkMemory,
+    ) -> &'m [f32] {
+        let (of_gru, of_network) = parameters.split_at(self.recurrent_parameters());
+        let TrunkMemory { tape, gru: gru_tape, no_starts, .. } = memory;
+        let Some(gru) = &self.gru else {
+            return self.network.forward(compute, of_network, features, tape);
+        };
+        no_starts.resize(states.len() / gru.size(), false);
+        let after = gru.forward(compute, of_gru, features, states, no_starts, gru_tape);
+        states.copy_from_slice(after);
+        self.network.forward(compute, of_network, after, tape)
+    }
+
+    /// Adds to `gradients` from the gradient of what the last [`Self::forward`] gave, and gives that of the features
+    /// where `wants_input`, else nothing.
+    #[expect(clippy::too_many_arguments, reason = "what goes in and out of a backward pass")]
+    pub fn backward<'m>(
+        &self,
+        compute: &Compute,
+        parameters: &[f32],
+        doutputs: &[f32],
+        starts: &[bool],
+        memory: &'m mut TrunkMemory,
+        gradients: &mut [f32],
+        wants_input: bool,
+    ) -> &'m [f32] {
+        let (of_gru, of_network) = parameters.split_at(self.recurrent_parameters());
+        let (dgru, dnetwork) = gradients.split_at_mut(of_gru.len());
+        let TrunkMemory { tape, gru: gru_tape, dfeatures, .. } = memory;
+        let Some(gru) = &self.gru else {
+            return self.network.backward(compute, of_network, doutputs, tape, Some(dnetwork), wants_input);
+        };
+        let dstates = self.network.backward(compute, of_network, doutputs, tape, Some(dnetwork), true);
+        let wanted = if wants_input { starts.len() * gru.inputs() } else { 0 };
+        dfeatures.resize(wanted, 0.0);
+        let dx = wants_input.then_some(&mut dfeatures[..]);
+        gru.backward(compute, of_gru, starts, dstates, gru_tape, dgru, dx, None);
+        dfeatures
+    }
+}
+
+impl TrunkMemory {
+    /// What the last pass forward gave.
+    pub fn output(&self) -> &[f32] {
+        self.tape.output()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::policy::NetworkConfig;
+
+    const STARTS: [bool; 6] = [false, false, true, false, false, true];
+
+    fn trunk() -> (Trunk, Vec<f32>, Vec<f32>, Vec<f32>) {
+        let config = NetworkConfig { net_arch: vec![5], gru_size: Some(4), ..NetworkConfig::default() };
+        let (trunk, mut random) = (config.trunk(3, 2).unwrap(), Random::new(8));
+        let mut parameters = vec![0.0; trunk.parameters()];
+        trunk.initialise(Initialisation::Uniform, &mut random, &mut parameters);
+        let mut numbers = |count: usize| (0..count).map(|_| random.uniform(-1.0, 1.0)).collect::<Vec<_>>();
+        let (features, states) = (numbers(6 * 3), numbers(2 * 4));
+        (trunk, parameters, features, states)
+    }
+
+    #[test]
+    fn gradients_are_differences() {
+        let (trunk, parameters, features, states) = trunk();
+        let (compute, mut memory) = (Compute::single(), TrunkMemory::default());
+        let weights: Vec<f32> = (0..12).map(|at| (at as f32 - 5.0) / 4.0).collect();
+        let sequences = Sequences { states: &states, starts: &STARTS };
+        let mut loss = |parameters: &[f32], features: &[f32]| {
+            let outputs = trunk.forward(&compute, parameters, features, sequences, &mut memory);
+            outputs.iter().zip(&weights).map(|(output, weight)| output * weight).sum::<f32>()
+        };
+        let moved = |values: &[f32], at: usize, by: f32| {
+            let mut values = values.to_vec();
+            values[at] += by;
+            values
+        };
+        let step = 1.0 / 128.0;
+        let by_parameters: Vec<f32> = (0..parameters.len())
+            .map(|at| [step, -step].map(|by| loss(&moved(&parameters, at, by), &features)))
+            .map(|[up, down]| (up - down) / (2.0 * step))
+            .collect();
+        let by_features: Vec<f32> = (0..features.len())
+            .map(|at| [step, -step].map(|by| loss(&parameters, &moved(&features, at, by))))
+            .map(|[up, down]| (up - down) / (2.0 * step))
+            .collect();
+        loss(&parameters, &features);
+        let mut gradients = vec![0.0; parameters.len()];
+        let dfeatures =
+            trunk.backward(&compute, &parameters, &weights, &STARTS, &mut memory, &mut gradients, true);
+        for (got, wanted) in [(&gradients[..], by_parameters), (dfeatures, by_features)] {
+            for (at, (got, wanted)) in got.iter().zip(&wanted).enumerate() {
+                assert!((got - wanted).abs() < 2e-3, "{at}: {got} {wanted}");
+            }
+        }
+    }
+
+    /// Steps that are taken one by one, forgetting where episodes start, give what a sequence gives.
+    #[test]
+    fn a_sequence_is_its_steps() {
+        let (trunk, parameters, features, mut states) = trunk();
+        let (compute, mut memory) = (Compute::single(), TrunkMemory::default());
+        let sequences = Sequences { states: &states, starts: &STARTS };
+        let whole = trunk.forward(&compute, &parameters, &features, sequences, &mut memory).to_vec();
+        for (step, (features, wanted)) in features.chunks_exact(6).zip(whole.chunks_exact(4)).enumerate() {
+            for (row, state) in states.chunks_exact_mut(4).enumerate() {
+                if STARTS[2 * step + row] {
+                    state.fill(0.0);
+                }
+            }
+            assert_eq!(trunk.step(&compute, &parameters, features, &mut states, &mut memory), wanted);
+        }
+    }
+}
