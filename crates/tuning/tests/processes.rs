@@ -1,5 +1,7 @@
 //! Processes that share a study by its journal, one of which is killed.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
