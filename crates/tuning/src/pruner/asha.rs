@@ -32,7 +32,7 @@ impl Asha {
     }
 
     /// The same with the first `rungs` left out.
-    pub(crate) fn from_rung(self, rungs: u32) -> Self {
+    pub(crate) fn without_rungs(self, rungs: u32) -> Self {
         Self { first: self.rung(rungs), factor: self.factor }
     }
 

@@ -34,7 +34,7 @@ impl Hyperband {
             let later = count - 1 - bracket;
             (u64::from(count) * (factor as u64).saturating_pow(later)).div_ceil(u64::from(later) + 1) as usize
         };
-        let brackets = (0..count).map(|bracket| asha.from_rung(bracket)).collect();
+        let brackets = (0..count).map(|bracket| asha.without_rungs(bracket)).collect();
         Ok(Self { brackets, shares: (0..count).map(share).collect() })
     }
 

@@ -52,8 +52,9 @@ fn scrambled_halton(seed: u64, index: usize, dimension: usize) -> f64 {
 
 /// Prime number `index`, from 2.
 fn prime(index: usize) -> usize {
-    let is_prime =
-        |number: &usize| (2..).take_while(|part| part * part <= *number).all(|part| number % part != 0);
+    let is_prime = |number: &usize| {
+        (2..).take_while(|part| part * part <= *number).all(|part| !number.is_multiple_of(part))
+    };
     (2..).filter(is_prime).nth(index).unwrap_or(2)
 }
 

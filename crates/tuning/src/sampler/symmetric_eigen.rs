@@ -59,11 +59,11 @@ mod tests {
             let matrix: Vec<f64> =
                 (0..size * size).map(|at| half[at] + half[at % size * size + at / size]).collect();
             let (values, vectors) = eigen_from_symmetric(matrix.clone(), size);
-            for at in 0..size * size {
+            for (at, wanted) in matrix.iter().enumerate() {
                 let (row, column) = (at / size, at % size);
                 let made: f64 =
                     (0..size).map(|k| vectors[row * size + k] * values[k] * vectors[column * size + k]).sum();
-                assert!((made - matrix[at]).abs() < 1e-12, "{size}: {made} {}", matrix[at]);
+                assert!((made - wanted).abs() < 1e-12, "{size}: {made} {wanted}");
             }
         }
     }

@@ -7,18 +7,22 @@ use serde_json::{Value, json};
 use crate::Distribution;
 use crate::storage::python_json::{text_from_value, value_from_text};
 
-/// The classes of Optuna; those after the third are from before its version 3.
+/// The classes of Optuna; the aliases and those after the third are from before its version 3.
 #[derive(Deserialize)]
 #[serde(tag = "name", content = "attributes")]
 enum Stored {
-    FloatDistribution(Range<f64>),
-    IntDistribution(Range<i64>),
-    CategoricalDistribution { choices: Vec<Value> },
-    UniformDistribution(Range<f64>),
-    LogUniformDistribution(Range<f64>),
-    DiscreteUniformDistribution { low: f64, high: f64, q: f64 },
-    IntUniformDistribution(Range<i64>),
-    IntLogUniformDistribution(Range<i64>),
+    #[serde(rename = "FloatDistribution", alias = "UniformDistribution")]
+    Float(Range<f64>),
+    #[serde(rename = "IntDistribution", alias = "IntUniformDistribution")]
+    Int(Range<i64>),
+    #[serde(rename = "CategoricalDistribution")]
+    Categorical { choices: Vec<Value> },
+    #[serde(rename = "LogUniformDistribution")]
+    LogFloat(Range<f64>),
+    #[serde(rename = "DiscreteUniformDistribution")]
+    SteppedFloat { low: f64, high: f64, q: f64 },
+    #[serde(rename = "IntLogUniformDistribution")]
+    LogInt(Range<i64>),
 }
 
 #[derive(Deserialize)]
@@ -48,15 +52,13 @@ pub fn distribution_from_json(text: &str) -> Result<Distribution> {
         step: step.unwrap_or(1),
     };
     let distribution = match stored {
-        Stored::FloatDistribution(range) | Stored::UniformDistribution(range) => float(range),
-        Stored::LogUniformDistribution(range) => float(Range { log: true, ..range }),
-        Stored::DiscreteUniformDistribution { low, high, q } => {
-            float(Range { low, high, log: false, step: Some(q) })
-        }
-        Stored::IntDistribution(range) | Stored::IntUniformDistribution(range) => int(range),
+        Stored::Float(range) => float(range),
+        Stored::LogFloat(range) => float(Range { log: true, ..range }),
+        Stored::SteppedFloat { low, high, q } => float(Range { low, high, log: false, step: Some(q) }),
+        Stored::Int(range) => int(range),
         // Optuna wrote a step there that had no effect.
-        Stored::IntLogUniformDistribution(range) => int(Range { log: true, step: Some(1), ..range }),
-        Stored::CategoricalDistribution { choices } => Distribution::Categorical { choices },
+        Stored::LogInt(range) => int(Range { log: true, step: Some(1), ..range }),
+        Stored::Categorical { choices } => Distribution::Categorical { choices },
     };
     distribution.checked().map_err(|error| Error::format(error.message()).context(what()))
 }

@@ -1,5 +1,9 @@
+use serde_json::json;
+
 use crate::sampler::tpe::sort_by_rank;
-use crate::{Budget, Direction, Distribution, Outcome, Progress, SearchSpace, Storage, Study, Trial};
+use crate::{
+    Budget, Direction, Distribution, Outcome, Progress, Sampler, SearchSpace, Storage, Study, Tpe, Trial,
+};
 
 /// Studies of the function on which an earlier version settled on a wrong choice with a quarter of the seeds.
 #[test]
@@ -23,7 +27,7 @@ fn no_seed_is_locked_in_a_wrong_choice() {
     };
     let run = |seed| {
         let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
-        let study = study.with_sampler(super::Tpe::new(seed));
+        let study = study.with_sampler(Tpe::new(seed));
         study.optimize(&space, &Budget::more(100), objective, |_, _| Progress::Continue).unwrap();
         study.best().unwrap().value().unwrap()
     };
@@ -47,4 +51,32 @@ fn ranks_go_by_domination_and_then_by_distance() {
     assert!(order[..2].contains(&1) && order[..2].contains(&4), "the ends come first: {order:?}");
     let front: Vec<usize> = record.pareto_front().iter().map(|trial| trial.number).collect();
     assert_eq!(front, [1, 2, 3, 4]);
+}
+
+#[test]
+fn running_trials_keep_others_away() {
+    let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
+    let wanted: Vec<_> = space.parameters().iter().collect();
+    let draws_near_the_best = |running: usize| {
+        let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
+        let begin = |x: f64| {
+            study.enqueue(&[("x".to_owned(), json!(x))].into()).unwrap();
+            study.ask(&space).unwrap()
+        };
+        for at in 0..40 {
+            let x = f64::from(at) / 39.0;
+            begin(x).tell(Outcome::from((x - 0.3).powi(2))).unwrap();
+        }
+        for at in 0..running {
+            begin(0.28 + 0.004 * at as f64);
+        }
+        let record = study.snapshot();
+        let near = |seed: &u64| {
+            let drawn = Tpe::new(*seed).draw(&record, record.trials.len(), &wanted).unwrap();
+            (drawn.numbers[0] - 0.3).abs() < 0.03
+        };
+        (0..200).filter(near).count()
+    };
+    let (alone, beside) = (draws_near_the_best(0), draws_near_the_best(10));
+    assert!(alone > 100 && beside < alone / 2, "{alone} of 200 alone, {beside} beside ten that are at it");
 }
