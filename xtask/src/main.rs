@@ -16,6 +16,9 @@ const USAGE: &str = "\
 usage: cargo xtask VERB
 
   test       everything that CI checks; installs what it needs (Debian packages, a Python environment in target/)
+  test --extended
+             that and the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON; test-extended is
+             these alone
   test-c     the part of it that tests the C library
   generate   write stubs, C headers and docs/learners.md, which are made of the registry
   realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
@@ -29,6 +32,8 @@ fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["test"] => test::run(),
+        ["test", "--extended"] => test::run().and_then(|()| test::run_extended()),
+        ["test-extended"] => test::run_extended(),
         ["test-c"] => test::run_c(),
         ["generate"] => generate::run(),
         ["realtime"] => realtime::run(),

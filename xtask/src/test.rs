@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
-use crate::{install_c, parity, surfaces};
+use crate::{install_c, parity, python_package, surfaces};
 
 /// Runs every check; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -85,6 +85,19 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_TRAINING_OWN_MODULE", examples.join("own_module"));
     environment.apply(&mut pytest);
     step("tests beside the reference tools", &mut pytest)
+}
+
+/// What needs PyTorch, with an interpreter that has it and `tests/extended/requirements.txt`: the normal run does
+/// without, since torch's wheel brings gigabytes.
+pub fn run_extended() -> Result<()> {
+    let python = std::env::var_os("OPENDR_TORCH_PYTHON").ok_or(
+        "OPENDR_TORCH_PYTHON is not set; name an interpreter with torch and tests/extended/requirements.txt",
+    )?;
+    let folder = target().join("extended");
+    python_package::build(&folder)?;
+    let mut pytest = command(python);
+    pytest.args(["-m", "pytest", "-ra", "tests/extended"]).env("PYTHONPATH", folder);
+    step("tests with PyTorch", &mut pytest)
 }
 
 /// The learner that every surface is tested with is in every build for tests.

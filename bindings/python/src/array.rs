@@ -42,6 +42,18 @@ impl Element for f32 {
     const TYPE_TEXT: &'static str = if cfg!(target_endian = "little") { "<f4" } else { ">f4" };
 }
 
+impl Element for f64 {
+    const TYPE_TEXT: &'static str = if cfg!(target_endian = "little") { "<f8" } else { ">f8" };
+}
+
+impl Element for i64 {
+    const TYPE_TEXT: &'static str = if cfg!(target_endian = "little") { "<i8" } else { ">i8" };
+}
+
+impl Element for i8 {
+    const TYPE_TEXT: &'static str = "|i1";
+}
+
 impl ArrayMemory {
     /// The memory of `array`, which must be a NumPy array: nothing else is trusted to describe its memory rightly.
     pub fn of(array: &Bound<'_, PyAny>) -> PyResult<Self> {

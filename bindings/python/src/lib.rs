@@ -10,6 +10,7 @@ mod command;
 mod convert;
 mod dataset;
 mod datum;
+mod environment;
 mod error;
 mod handle;
 mod metric;
@@ -36,8 +37,12 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<pixels::Pixels>()?;
     module.add_class::<array::NativeArray>()?;
     module.add_class::<source::Source>()?;
+    module.add_class::<environment::Environment>()?;
+    module.add_class::<environment::VectorEnvironment>()?;
+    module.add_class::<environment::SharedArray>()?;
     for function in [
         wrap_pyfunction!(registry::entries, module)?,
+        wrap_pyfunction!(environment::environments, module)?,
         wrap_pyfunction!(dataset::formats, module)?,
         wrap_pyfunction!(dataset::shuffled, module)?,
         wrap_pyfunction!(dataset::split, module)?,

@@ -69,6 +69,21 @@ impl Registration {
     pub fn make(&self, params: &ParamMap) -> Result<Box<dyn Environment>> {
         (self.make)(params).map_err(|error| error.context(format!("making {}", self.id)))
     }
+
+    /// Makes `options.count` environments that are stepped together.
+    ///
+    /// # Errors
+    /// As [`Self::make`], and `InvalidParam` for no environment or too many.
+    pub fn make_vec(&self, params: &ParamMap, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
+        if self.id == <CartPole as Registered>::ID {
+            let carts = CartPoleParams::from_map(params)
+                .and_then(|params| CartPoleVector::new(&params, options.count, options.autoreset));
+            return Ok(Box::new(carts.map_err(|error| error.context(format!("making {}", self.id)))?));
+        }
+        let environments = (0..options.checked_count()?).map(|_| self.make(params));
+        let environments = environments.collect::<Result<Vec<_>>>()?;
+        Ok(Box::new(EnvironmentVector::new(environments, options.autoreset, options.threads)?))
+    }
 }
 
 /// An environment with the time limit of its spec and with checks.
@@ -199,14 +214,7 @@ pub fn make(id: &str) -> Result<Box<dyn Environment>> {
 /// # Errors
 /// `NotFound` for an unknown name, `InvalidParam` for no environment or too many.
 pub fn make_vec(id: &str, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
-    let registration = Registry::builtin().get(id)?;
-    if registration.id == <CartPole as Registered>::ID {
-        let params = CartPoleParams::default();
-        return Ok(Box::new(CartPoleVector::new(&params, options.count, options.autoreset)?));
-    }
-    let environments = (0..options.checked_count()?).map(|_| registration.make(&ParamMap::new()));
-    let environments = environments.collect::<Result<Vec<_>>>()?;
-    Ok(Box::new(EnvironmentVector::new(environments, options.autoreset, options.threads)?))
+    Registry::builtin().get(id)?.make_vec(&ParamMap::new(), options)
 }
 
 #[cfg(test)]
@@ -239,6 +247,13 @@ mod tests {
         assert!(with(ParamValue::Float(9.81)).is_ok());
         assert!(with(ParamValue::Float(-1.0)).is_err());
         assert!(with(ParamValue::Text("heavy".to_owned())).is_err());
+        let side_by_side = |id: &str, name: &str, value: ParamValue| {
+            let params = ParamMap::from([(name.to_owned(), value)]);
+            Registry::builtin().get(id).unwrap().make_vec(&params, VectorOptions::new(2))
+        };
+        assert!(side_by_side("CartPole-v1", "semi_implicit", ParamValue::Bool(true)).is_ok());
+        assert!(side_by_side("CartPole-v1", "g", ParamValue::Float(9.81)).is_err());
+        assert!(side_by_side("Pendulum-v1", "g", ParamValue::Float(9.81)).is_ok());
         assert!(pendulum.make(&ParamMap::from([("gg".to_owned(), ParamValue::Int(1))])).is_err());
     }
 

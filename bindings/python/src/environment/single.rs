@@ -1,0 +1,162 @@
+//! One environment for Python.
+
+use std::sync::{Mutex, PoisonError};
+
+use opendr::environment::{Environment as World, EnvironmentSpec, Info, ResetOptions, Snapshot};
+use opendr::simulation::Registry;
+use opendr::simulation::wrappers::Checked;
+use opendr::{Error, Result};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use super::parts::Parts;
+use super::python_environment::PythonEnvironment;
+use super::spec_table;
+use crate::error::ToPython;
+use crate::param::params_from_python;
+use crate::pixels::Pixels;
+
+/// An environment whose observations and actions lie in arrays that it shares with NumPy: `step` reads the action there
+/// and leaves the observation there. `opendr.simulation.Environment` is Gymnasium's form of it.
+#[pyclass(frozen, module = "opendr._opendr")]
+pub struct Environment {
+    state: Mutex<State>,
+    spec: EnvironmentSpec,
+    observation: Parts,
+    action: Parts,
+}
+
+struct State {
+    world: Box<dyn World>,
+    observation: Vec<f32>,
+    action: Vec<f32>,
+}
+
+/// The longest snapshot that is read, in bytes.
+const MAX_SNAPSHOT: usize = 1 << 28;
+
+impl Environment {
+    fn of(py: Python<'_>, world: Box<dyn World>) -> PyResult<Self> {
+        let spec = world.spec().clone();
+        Ok(Self {
+            observation: Parts::of_observations(py, &spec.observation, None)?,
+            action: Parts::of_actions(py, &spec.action, None)?,
+            state: Mutex::new(State {
+                world,
+                observation: vec![0.0; spec.observation.len()],
+                action: vec![0.0; spec.action.len()],
+            }),
+            spec,
+        })
+    }
+
+    /// Works on the world with the interpreter's lock released.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut State) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        py.detach(|| work(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))).to_python(py)
+    }
+}
+
+#[pymethods]
+impl Environment {
+    /// The environment `id` of the registry.
+    #[new]
+    fn new(py: Python<'_>, id: &str, params: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let params = params_from_python(params)?;
+        let world = py.detach(|| Registry::builtin().get(id)?.make(&params)).to_python(py)?;
+        Self::of(py, world)
+    }
+
+    /// An environment of Python as the learners of the toolkit see it; `bridge` is of `opendr.simulation`.
+    #[staticmethod]
+    fn of_python(py: Python<'_>, bridge: &Bound<'_, PyAny>) -> PyResult<Self> {
+        Self::of(py, Box::new(Checked::new(PythonEnvironment::new(bridge)?)))
+    }
+
+    /// Name, spaces and limits.
+    #[getter]
+    fn spec<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        spec_table(py, &self.spec)
+    }
+
+    /// Where observations are, an array for each part of the space.
+    #[getter]
+    fn observation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        self.observation.arrays(py)
+    }
+
+    /// Where actions are wanted, an array for each part of the space.
+    #[getter]
+    fn action<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        self.action.arrays(py)
+    }
+
+    /// Begins an episode; what else is known.
+    #[pyo3(signature = (seed=None, options=None))]
+    fn reset<'py>(
+        &self,
+        py: Python<'py>,
+        seed: Option<u64>,
+        options: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let options = options.map_or_else(|| Ok(ResetOptions::new()), params_from_python)?;
+        let info = self.with(py, |state| {
+            let info = state.world.reset(seed, &options, &mut state.observation)?;
+            self.observation.write(&state.observation);
+            Ok(info)
+        })?;
+        python_from_info(py, &info)
+    }
+
+    /// Takes a step: reward, terminated, truncated, what else is known.
+    fn step<'py>(&self, py: Python<'py>) -> PyResult<(f64, bool, bool, Bound<'py, PyDict>)> {
+        let step = self.with(py, |state| {
+            self.action.read(&mut state.action);
+            let step = state.world.step(&state.action, &mut state.observation)?;
+            self.observation.write(&state.observation);
+            Ok(step)
+        })?;
+        Ok((step.reward, step.terminated, step.truncated, python_from_info(py, &step.info)?))
+    }
+
+    /// A picture of the world as it is.
+    fn render(&self, py: Python<'_>) -> PyResult<Option<Pixels>> {
+        let picture = self.with(py, |state| state.world.render())?;
+        picture.map(Pixels::new).transpose().to_python(py)
+    }
+
+    /// The state of now as text.
+    fn snapshot(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |state| {
+            let snapshot = state.world.snapshot()?;
+            serde_json::to_string(&snapshot).map_err(|error| Error::internal(error.to_string()))
+        })
+    }
+
+    /// Goes back to the state of a text.
+    fn restore(&self, py: Python<'_>, snapshot: &str) -> PyResult<()> {
+        self.with(py, |state| state.world.restore(&snapshot_of_text(snapshot)?))
+    }
+}
+
+/// The snapshot that a text is.
+pub fn snapshot_of_text(text: &str) -> Result<Snapshot> {
+    if text.len() > MAX_SNAPSHOT {
+        return Err(Error::format(format!(
+            "a snapshot of {} bytes; it has at most {MAX_SNAPSHOT}",
+            text.len()
+        )));
+    }
+    serde_json::from_str(text).map_err(|error| {
+        Error::format("this is no snapshot; give what snapshot() returned").with_source(error)
+    })
+}
+
+fn python_from_info<'py>(py: Python<'py>, info: &Info) -> PyResult<Bound<'py, PyDict>> {
+    let table = PyDict::new(py);
+    info.iter().try_for_each(|(key, number)| table.set_item(key, number))?;
+    Ok(table)
+}

@@ -1,0 +1,232 @@
+//! Many environments for Python.
+
+use std::sync::{Mutex, PoisonError};
+
+use opendr::environment::{EnvironmentSpec, Info, ResetOptions};
+use opendr::simulation::Registry;
+use opendr::simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment, VectorOptions};
+use opendr::{Error, Result};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use super::parts::Parts;
+use super::shared_array::{Number, SharedArray};
+use super::single::snapshot_of_text;
+use super::spec_table;
+use crate::error::ToPython;
+use crate::param::params_from_python;
+
+/// Environments that are stepped together. All that goes in and comes out lies in arrays shared with NumPy; nothing is
+/// done in Python for each of them. `opendr.simulation.VectorEnvironment` is Gymnasium's form of it.
+#[pyclass(frozen, module = "opendr._opendr")]
+pub struct VectorEnvironment {
+    state: Mutex<State>,
+    spec: EnvironmentSpec,
+    observations: Parts,
+    final_observations: Parts,
+    actions: Parts,
+    rewards: Py<SharedArray>,
+    terminations: Py<SharedArray>,
+    truncations: Py<SharedArray>,
+}
+
+struct State {
+    worlds: Box<dyn VecEnvironment>,
+    batch: Batch,
+    actions: Vec<f32>,
+}
+
+/// Numbers by name: the name, a number for each environment, and whether it has one.
+type Infos = Vec<(&'static str, Vec<f64>, Vec<bool>)>;
+
+#[pymethods]
+impl VectorEnvironment {
+    /// `count` environments `id` of the registry; `autoreset` is in Gymnasium's words.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        id: &str,
+        params: &Bound<'_, PyDict>,
+        count: usize,
+        threads: usize,
+        autoreset: &str,
+    ) -> PyResult<Self> {
+        let autoreset = autoreset_of_name(autoreset).to_python(py)?;
+        let params = params_from_python(params)?;
+        let options = VectorOptions { autoreset, threads, ..VectorOptions::new(count) };
+        let worlds = py.detach(|| Registry::builtin().get(id)?.make_vec(&params, options)).to_python(py)?;
+        let spec = worlds.spec().clone();
+        let observations = |count| Parts::of_observations(py, &spec.observation, Some(count));
+        let finals = if autoreset == Autoreset::SameStep { count } else { 0 };
+        let array = |number| Py::new(py, SharedArray::new(number, vec![count]).to_python(py)?);
+        Ok(Self {
+            observations: observations(count)?,
+            final_observations: observations(finals)?,
+            actions: Parts::of_actions(py, &spec.action, Some(count))?,
+            rewards: array(Number::F64)?,
+            terminations: array(Number::Bool)?,
+            truncations: array(Number::Bool)?,
+            state: Mutex::new(State {
+                batch: Batch::new(&spec, count),
+                actions: vec![0.0; spec.action.len() * count],
+                worlds,
+            }),
+            spec,
+        })
+    }
+
+    /// Name, spaces and limits of each.
+    #[getter]
+    fn spec<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        spec_table(py, &self.spec)
+    }
+
+    /// Where observations are, an array for each part of the space.
+    #[getter]
+    fn observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        self.observations.arrays(py)
+    }
+
+    /// Where the last observations of ended episodes are, with autoreset in the same step.
+    #[getter]
+    fn final_observations<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        self.final_observations.arrays(py)
+    }
+
+    /// Where actions are wanted, an array for each part of the space.
+    #[getter]
+    fn actions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        self.actions.arrays(py)
+    }
+
+    /// Where rewards are.
+    #[getter]
+    fn rewards(&self, py: Python<'_>) -> Py<SharedArray> {
+        self.rewards.clone_ref(py)
+    }
+
+    /// Where it is told which tasks ended.
+    #[getter]
+    fn terminations(&self, py: Python<'_>) -> Py<SharedArray> {
+        self.terminations.clone_ref(py)
+    }
+
+    /// Where it is told which episodes were cut.
+    #[getter]
+    fn truncations(&self, py: Python<'_>) -> Py<SharedArray> {
+        self.truncations.clone_ref(py)
+    }
+
+    /// Begins episodes, where `mask` says so; `seeds` is a number for each or none.
+    #[pyo3(signature = (seed=None, seeds=None, options=None, mask=None))]
+    fn reset<'py>(
+        &self,
+        py: Python<'py>,
+        seed: Option<u64>,
+        seeds: Option<Vec<Option<u64>>>,
+        options: Option<&Bound<'py, PyDict>>,
+        mask: Option<Vec<bool>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let options = options.map_or_else(|| Ok(ResetOptions::new()), params_from_python)?;
+        let infos = self.with(py, |State { worlds, batch, .. }| {
+            let seeds = match (&seeds, seed) {
+                (Some(seeds), _) => Seeds::Each(seeds),
+                (None, Some(seed)) => Seeds::From(seed),
+                (None, None) => Seeds::Chance,
+            };
+            worlds.reset(seeds, &options, mask.as_deref(), batch)?;
+            self.write(batch);
+            Ok(gathered(&batch.infos, |index| mask.as_ref().is_none_or(|mask| mask[index])))
+        })?;
+        python_from_infos(py, infos)
+    }
+
+    /// Takes a step everywhere: what else is known, and of the ends of episodes, where observations were kept.
+    fn step<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
+        let (infos, ends) = self.with(py, |State { worlds, batch, actions }| {
+            self.actions.read(actions);
+            worlds.step(actions, batch)?;
+            self.write(batch);
+            let infos = gathered(&batch.infos, |_| true);
+            let over = |index: usize| batch.terminated[index] || batch.truncated[index];
+            if worlds.autoreset() != Autoreset::SameStep || !(0..batch.count()).any(over) {
+                return Ok((infos, None));
+            }
+            self.final_observations.write(&batch.final_observations);
+            Ok((infos, Some(gathered(&batch.final_infos, over))))
+        })?;
+        let ends = ends.map(|ends| python_from_infos(py, ends)).transpose()?;
+        Ok((python_from_infos(py, infos)?, ends))
+    }
+
+    /// The state of now as text.
+    fn snapshot(&self, py: Python<'_>) -> PyResult<String> {
+        self.with(py, |state| {
+            let snapshot = state.worlds.snapshot()?;
+            serde_json::to_string(&snapshot).map_err(|error| Error::internal(error.to_string()))
+        })
+    }
+
+    /// Goes back to the state of a text.
+    fn restore(&self, py: Python<'_>, snapshot: &str) -> PyResult<()> {
+        self.with(py, |state| state.worlds.restore(&snapshot_of_text(snapshot)?))
+    }
+}
+
+impl VectorEnvironment {
+    /// Works on the worlds with the interpreter's lock released.
+    fn with<T: Send>(
+        &self,
+        py: Python<'_>,
+        work: impl FnOnce(&mut State) -> Result<T> + Send,
+    ) -> PyResult<T> {
+        py.detach(|| work(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))).to_python(py)
+    }
+
+    fn write(&self, batch: &Batch) {
+        self.observations.write(&batch.observations);
+        self.rewards.get().write_doubles(batch.rewards.iter().copied());
+        self.terminations.get().write_flags(batch.terminated.iter().copied());
+        self.truncations.get().write_flags(batch.truncated.iter().copied());
+    }
+}
+
+fn autoreset_of_name(name: &str) -> Result<Autoreset> {
+    match name {
+        "NextStep" => Ok(Autoreset::NextStep),
+        "SameStep" => Ok(Autoreset::SameStep),
+        "Disabled" => Ok(Autoreset::Disabled),
+        _ => Err(Error::invalid_param(format!(
+            "autoreset mode {name:?}; there are \"NextStep\", \"SameStep\" and \"Disabled\""
+        ))),
+    }
+}
+
+/// Numbers of the environments that are `chosen`, by name.
+fn gathered(infos: &[Info], chosen: impl Fn(usize) -> bool) -> Infos {
+    let mut gathered = Infos::new();
+    for (index, info) in infos.iter().enumerate().filter(|(index, _)| chosen(*index)) {
+        for (key, number) in info.iter() {
+            let place = gathered.iter().position(|(name, ..)| *name == key).unwrap_or_else(|| {
+                gathered.push((key, vec![0.0; infos.len()], vec![false; infos.len()]));
+                gathered.len() - 1
+            });
+            let (_, numbers, has) = &mut gathered[place];
+            (numbers[index], has[index]) = (number, true);
+        }
+    }
+    gathered
+}
+
+/// By name, the numbers and who has one.
+fn python_from_infos(py: Python<'_>, infos: Infos) -> PyResult<Bound<'_, PyDict>> {
+    let table = PyDict::new(py);
+    for (key, numbers, has) in infos {
+        let values = SharedArray::writable(Number::F64, vec![numbers.len()]).to_python(py)?;
+        values.write_doubles(numbers.into_iter());
+        let mask = SharedArray::writable(Number::Bool, vec![has.len()]).to_python(py)?;
+        mask.write_flags(has.into_iter());
+        table.set_item(key, (Py::new(py, values)?, Py::new(py, mask)?))?;
+    }
+    Ok(table)
+}
