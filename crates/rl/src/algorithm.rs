@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use opendr_engine::environment::{Info, Snapshot};
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, ErrorKind, Result};
 use opendr_runlog::{Checkpoint, Checkpoints};
 use opendr_simulation::vector::VecEnvironment;
 
@@ -50,6 +50,12 @@ pub trait Algorithm {
     /// What it has learnt.
     fn policy(&self) -> &Policy;
 
+    /// Begins from a policy, e.g. one that was imported or cloned from demonstrations; values are still to be learnt.
+    ///
+    /// # Errors
+    /// `InvalidInput` when it sees, acts or is made otherwise.
+    fn set_policy(&mut self, policy: &Policy) -> Result<()>;
+
     /// How the training goes.
     fn report(&self) -> &Report;
 
@@ -61,10 +67,10 @@ pub trait Algorithm {
     /// for observations and rewards that are not finite; `Internal` when learning diverges. The message has the step.
     fn iterate(&mut self, environments: &mut dyn VecEnvironment, total_timesteps: u64) -> Result<&Report>;
 
-    /// Everything that decides the future.
+    /// Everything that decides the future; but environments without snapshots begin their episodes anew.
     ///
     /// # Errors
-    /// `Unsupported` for environments without snapshots, `InvalidInput` before the first iteration.
+    /// `InvalidInput` before the first iteration.
     fn saved_state(&self, environments: &dyn VecEnvironment) -> Result<SavedState>;
 
     /// Goes back to a state, in environments of the same kind and number.
@@ -140,9 +146,12 @@ pub(crate) fn not_begun(name: &str) -> Error {
     Error::invalid_input(format!("{name} has not begun; iterate once before its state is saved"))
 }
 
-/// The states of environments, with a word on what wanted them.
+/// The states of environments; of those that keep none, a snapshot without a name, from which they begin anew.
 pub(crate) fn snapshot_of(environments: &dyn VecEnvironment) -> Result<Snapshot> {
-    environments.snapshot().map_err(|error| error.context("saving the state of a training"))
+    match environments.snapshot() {
+        Err(error) if error.kind() == ErrorKind::Unsupported => Ok(Snapshot::new("")),
+        snapshot => snapshot.map_err(|error| error.context("saving the state of a training")),
+    }
 }
 
 /// The error of a loss or gradient that is not finite.

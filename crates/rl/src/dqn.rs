@@ -238,6 +238,12 @@ impl Algorithm for Dqn {
         &self.policy
     }
 
+    fn set_policy(&mut self, policy: &Policy) -> Result<()> {
+        self.policy.take_over(policy)?;
+        self.target.clone_from(&self.policy);
+        Ok(())
+    }
+
     fn report(&self) -> &Report {
         &self.report
     }
@@ -272,10 +278,10 @@ impl Algorithm for Dqn {
         state.fill_adam([ROWS[2], ROWS[3]], &mut self.adam, &mut words)?;
         self.updates = words.word()?;
         let config = &self.config.off_policy;
-        let (experience, random) =
+        let (mut experience, random) =
             Experience::load(state, &mut words, environments, &mut self.policy, config)?;
         words.finish()?;
-        environments.restore(state.environments())?;
+        experience.interaction.go_on(state.environments(), environments, &self.policy.encoder)?;
         self.random = random;
         self.report.count(experience.interaction.timesteps, &experience.interaction.episodes);
         self.experience = Some(experience);

@@ -50,6 +50,11 @@ impl Episodes {
         }
     }
 
+    /// Forgets the episodes that run.
+    pub(crate) fn begin_anew(&mut self) {
+        self.running.fill((0.0, 0));
+    }
+
     /// How many ended.
     pub fn count(&self) -> u64 {
         self.count

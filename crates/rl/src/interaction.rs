@@ -1,7 +1,7 @@
 //! A learner and its environments.
 
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
-use opendr_engine::{Error, Result, ResultExt as _};
+use opendr_engine::{Error, Random, Result, ResultExt as _};
 use opendr_simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment};
 
 use crate::episodes::Episodes;
@@ -122,6 +122,26 @@ impl Interaction {
             *number = words.finite()? as f32;
         }
         Ok(interaction)
+    }
+}
+
+impl Interaction {
+    /// Brings environments back to their states; where they keep none, begins an episode in each, and answers false.
+    pub fn go_on(
+        &mut self,
+        states: &Snapshot,
+        environments: &mut dyn VecEnvironment,
+        encoder: &ObservationEncoder,
+    ) -> Result<bool> {
+        if !states.id().is_empty() {
+            return environments.restore(states).map(|()| true);
+        }
+        let seeds = Seeds::From(Random::at([self.timesteps, self.count() as u64]).bits() >> 32);
+        environments.reset(seeds, &ResetOptions::new(), None, &mut self.batch)?;
+        self.episodes.begin_anew();
+        check_finite(&self.batch.observations, self.size)?;
+        encoder.encode(&self.batch.observations, &mut self.encoded)?;
+        Ok(false)
     }
 }
 

@@ -272,6 +272,12 @@ impl Algorithm for Td3 {
         &self.policy
     }
 
+    fn set_policy(&mut self, policy: &Policy) -> Result<()> {
+        self.policy.take_over(policy)?;
+        self.target.clone_from(&self.policy);
+        Ok(())
+    }
+
     fn report(&self) -> &Report {
         &self.report
     }
@@ -314,10 +320,10 @@ impl Algorithm for Td3 {
             *noise = words.finite()? as f32;
         }
         let config = &self.config.off_policy;
-        let (experience, random) =
+        let (mut experience, random) =
             Experience::load(state, &mut words, environments, &mut self.policy, config)?;
         words.finish()?;
-        environments.restore(state.environments())?;
+        experience.interaction.go_on(state.environments(), environments, &self.policy.encoder)?;
         self.random = random;
         self.report.count(experience.interaction.timesteps, &experience.interaction.episodes);
         self.experience = Some(experience);

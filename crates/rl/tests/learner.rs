@@ -47,7 +47,7 @@ fn handle() -> Handle<PpoLearner> {
 }
 
 fn policy_of(folder: &Path) -> Vec<u8> {
-    Model::open(folder.join("model")).unwrap().file("policy.safetensors").unwrap().into()
+    Model::open(folder.join("model")).unwrap().file("policy.safetensors").unwrap()
 }
 
 #[test]
@@ -142,4 +142,29 @@ fn an_environment_that_breaks_is_told_with_its_step_and_the_checkpoint_stays() {
     let job = FitJob { resume: true, ..FitJob::new(&folder.0) };
     let statistics = handle().fit_in(&short(2048), &cart, None, &job).unwrap();
     assert!(statistics.get("steps").unwrap() >= 2048.0);
+}
+
+#[test]
+fn an_environment_without_snapshots_begins_its_episodes_anew() {
+    struct Forgetful(Box<dyn Environment>);
+    impl Environment for Forgetful {
+        fn spec(&self) -> &EnvironmentSpec {
+            self.0.spec()
+        }
+        fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, seen: &mut [f32]) -> Result<Info> {
+            self.0.reset(seed, options, seen)
+        }
+        fn step(&mut self, action: &[f32], seen: &mut [f32]) -> Result<Step> {
+            self.0.step(action, seen)
+        }
+    }
+    let folder = Folder::new("forgetful");
+    let forgetful = || -> Result<Box<dyn Environment>> { Ok(Box::new(Forgetful(cart()?))) };
+    let stops = StopsAt(700, AtomicU64::new(0));
+    let job = FitJob { progress: &stops, ..FitJob::new(&folder.0) };
+    handle().fit_in(&short(2048), &forgetful, None, &job).unwrap();
+    let job = FitJob { resume: true, ..FitJob::new(&folder.0) };
+    let statistics = handle().fit_in(&short(2048), &forgetful, None, &job).unwrap();
+    assert_eq!(statistics.get("steps"), Some(2048.0));
+    assert!(statistics.get("mean_return").unwrap() > 9.0);
 }

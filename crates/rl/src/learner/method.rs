@@ -3,7 +3,7 @@
 use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
-use opendr_engine::{Error, Result, Task};
+use opendr_engine::{Result, Task};
 use opendr_kernels::Compute;
 
 use super::training_params::{RlTrainingParams, over_preset};
@@ -29,7 +29,7 @@ pub trait Method: Send + Sync + 'static {
     /// A learner, that begins from the policy `base` where there is one.
     ///
     /// # Errors
-    /// As those of the algorithm; `Unsupported` where it cannot begin from a policy.
+    /// As those of the algorithm.
     fn algorithm(
         params: &Self::FitParams,
         spec: &EnvironmentSpec,
@@ -41,7 +41,7 @@ pub trait Method: Send + Sync + 'static {
 macro_rules! method {
     (
         $(#[$doc:meta])* $method:ident, $(#[$fit_doc:meta])* $fit_params:ident,
-        $algorithm:ident($config:ident), $spec:expr, $preset:expr, $begin:expr
+        $algorithm:ident($config:ident), $spec:expr, $preset:expr
     ) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy)]
@@ -89,18 +89,14 @@ macro_rules! method {
                 let mut config = params.config.clone();
                 if let Some(base) = base {
                     config.network = base.config.clone();
+                    config.set("norm_obs", base.encoder().normaliser.is_some().into())?;
                 }
                 let mut algorithm = $algorithm::new(&config, spec)?.with_compute(compute);
-                let begin: fn(&mut $algorithm, &Policy) -> Result<()> = $begin;
-                base.map_or(Ok(()), |base| begin(&mut algorithm, base))?;
+                base.map_or(Ok(()), |base| algorithm.set_policy(base))?;
                 Ok(algorithm)
             }
         }
     };
-}
-
-fn cannot_begin<A>(_: &mut A, _: &Policy) -> Result<()> {
-    Err(Error::unsupported("this method cannot begin from a policy; train a new learner"))
 }
 
 method! {
@@ -112,8 +108,7 @@ method! {
     Spec::new("ppo", Task::ReinforcementLearning)
         .class("PpoLearner")
         .about("Proximal policy optimisation: the method to begin with, for actions of any kind."),
-    PpoConfig::preset,
-    Ppo::set_policy
+    PpoConfig::preset
 }
 
 method! {
@@ -125,8 +120,7 @@ method! {
     Spec::new("sac", Task::ReinforcementLearning)
         .class("SacLearner")
         .about("Soft actor-critic: few steps for continuous actions, where steps are dear."),
-    SacConfig::preset,
-    Sac::set_policy
+    SacConfig::preset
 }
 
 method! {
@@ -138,8 +132,7 @@ method! {
     Spec::new("td3", Task::ReinforcementLearning)
         .class("Td3Learner")
         .about("Twin delayed policy gradients: deterministic policies of continuous actions."),
-    |_| None,
-    cannot_begin
+    Td3Config::preset
 }
 
 method! {
@@ -151,6 +144,5 @@ method! {
     Spec::new("dqn", Task::ReinforcementLearning)
         .class("DqnLearner")
         .about("Deep Q-learning: one choice among few, learnt from steps of the past."),
-    DqnConfig::preset,
-    cannot_begin
+    DqnConfig::preset
 }

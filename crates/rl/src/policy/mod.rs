@@ -123,6 +123,19 @@ impl Policy {
         &self.parameters[self.extractor.parameters() + self.trunk.parameters()..]
     }
 
+    /// Becomes another that sees, acts and is made alike.
+    pub(crate) fn take_over(&mut self, other: &Self) -> Result<()> {
+        if !self.is_made_like(other) {
+            return Err(Error::invalid_input(format!(
+                "a policy of {:?} for {} cannot go on here; set its networks in the settings",
+                other.config,
+                other.observation()
+            )));
+        }
+        self.clone_from(other);
+        Ok(())
+    }
+
     /// Whether another sees, acts and is made alike, but for its parameters and what its normaliser saw.
     pub(crate) fn is_made_like(&self, other: &Self) -> bool {
         (self.observation(), &self.action, &self.head, &self.config)

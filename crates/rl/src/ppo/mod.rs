@@ -126,22 +126,6 @@ impl Ppo {
         Self { compute, ..self }
     }
 
-    /// Begins from a policy, e.g. one that was imported or cloned from demonstrations; values are still to be learnt.
-    ///
-    /// # Errors
-    /// `InvalidInput` when it sees, acts or is made otherwise.
-    pub fn set_policy(&mut self, policy: &Policy) -> Result<()> {
-        if !self.policy.is_made_like(policy) {
-            return Err(Error::invalid_input(format!(
-                "a policy of {:?} for {} cannot go on here; set its networks in the settings",
-                policy.config,
-                policy.observation()
-            )));
-        }
-        self.policy = policy.clone();
-        Ok(())
-    }
-
     /// What observations are worth, `encoded` as networks take them, where the values remember `memory.states`.
     fn values(&mut self, encoded: &[f32]) -> &[f32] {
         let Self { policy, compute, critic, critic_parameters, memory, .. } = self;

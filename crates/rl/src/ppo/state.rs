@@ -28,6 +28,10 @@ impl Algorithm for Ppo {
         &self.policy
     }
 
+    fn set_policy(&mut self, policy: &Policy) -> Result<()> {
+        self.policy.take_over(policy)
+    }
+
     fn report(&self) -> &Report {
         &self.report
     }
@@ -79,7 +83,7 @@ impl Algorithm for Ppo {
         if let Some(normaliser) = &mut self.policy.encoder.normaliser {
             normaliser.moments.load(&mut words)?;
         }
-        let interaction = Interaction::load(&mut words, environments, &self.policy.encoder)?;
+        let mut interaction = Interaction::load(&mut words, environments, &self.policy.encoder)?;
         self.prepare(interaction.count())?;
         if let Some(normaliser) = &mut self.reward_normaliser {
             normaliser.load(&mut words)?;
@@ -88,7 +92,9 @@ impl Algorithm for Ppo {
             *number = words.finite()? as f32;
         }
         words.finish()?;
-        environments.restore(state.environments())?;
+        if !interaction.go_on(state.environments(), environments, &self.policy.encoder)? {
+            self.states.iter_mut().for_each(|states| states.fill(0.0));
+        }
         self.report.count(interaction.timesteps, &interaction.episodes);
         self.interaction = Some(interaction);
         Ok(())

@@ -150,22 +150,6 @@ impl Sac {
         Self { compute, ..self }
     }
 
-    /// Begins from a policy, e.g. one that was imported or cloned from demonstrations; values are still to be learnt.
-    ///
-    /// # Errors
-    /// `InvalidInput` when it sees, acts or is made otherwise.
-    pub fn set_policy(&mut self, policy: &Policy) -> Result<()> {
-        if !self.policy.is_made_like(policy) {
-            return Err(Error::invalid_input(format!(
-                "a policy of {:?} for {} cannot go on here; set its networks in the settings",
-                policy.config,
-                policy.observation()
-            )));
-        }
-        self.policy = policy.clone();
-        Ok(())
-    }
-
     /// Writes actions for what is seen: by chance before learning begins, then from the policy.
     fn act(&mut self, experience: &mut Experience) {
         if experience.interaction.timesteps < self.config.off_policy.learning_starts {
@@ -264,6 +248,10 @@ impl Algorithm for Sac {
         &self.policy
     }
 
+    fn set_policy(&mut self, policy: &Policy) -> Result<()> {
+        self.policy.take_over(policy)
+    }
+
     fn report(&self) -> &Report {
         &self.report
     }
@@ -302,10 +290,10 @@ impl Algorithm for Sac {
         self.critics.load(state, &mut words)?;
         self.updates = words.word()?;
         let config = &self.config.off_policy;
-        let (experience, random) =
+        let (mut experience, random) =
             Experience::load(state, &mut words, environments, &mut self.policy, config)?;
         words.finish()?;
-        environments.restore(state.environments())?;
+        experience.interaction.go_on(state.environments(), environments, &self.policy.encoder)?;
         self.random = random;
         self.report.count(experience.interaction.timesteps, &experience.interaction.episodes);
         self.experience = Some(experience);
