@@ -15,11 +15,12 @@ from pathlib import Path
 
 from opendr import _opendr
 from opendr._native_learner import OF_SEVERAL_PARTS, NativeLearner
+from opendr._native_learner_rl import NativeLearnerRL
 from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr.engine.learners import BaseLearner
 
-STUBS = Path(__file__).parent / "python/opendr/perception"
+STUBS = Path(__file__).parent / "python/opendr"
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE_HEADER = """# Learners
 
@@ -144,10 +145,10 @@ def infer(entry):
 
 def fit(entry):
     """`fit` with the parameters of the training; nothing for a learner that does not train."""
-    if not entry["fit"]:
+    if not entry["fit"] and not entry["fit_in"]:
         return ""
     shown = ["self"]
-    for name, parameter in list(inspect.signature(NativeLearner.fit).parameters.items())[1:]:
+    for name, parameter in list(inspect.signature(parent(entry).fit).parameters.items())[1:]:
         if parameter.kind == parameter.VAR_KEYWORD:
             continue
         if parameter.kind == parameter.KEYWORD_ONLY and "*" not in shown:
@@ -157,13 +158,17 @@ def fit(entry):
     return call("fit", shown, "dict[str, Any]", note="  # type: ignore[override]")
 
 
+def parent(entry):
+    return NativeLearnerRL if entry["fit_in"] else NativeLearner
+
+
 def learner(entry):
     text = ""
     if len(entry["outputs"]) > 1:
         fields = "".join(f"    {output['name']}: {output['type']}\n" for output in entry["outputs"])
         text += f"class {entry['class_name']}Outputs(NamedTuple):\n{fields}\n"
     doc = textwrap.indent(document(entry).rstrip(), "    ")
-    text += f'class {entry["class_name"]}(NativeLearner):\n    """{doc.lstrip()}\n    """\n\n'
+    text += f'class {entry["class_name"]}({parent(entry).__name__}):\n    """{doc.lstrip()}\n    """\n\n'
     text += "".join(f"    {field['name']}: {param_type(field)}\n" for field in entry["params"])
     return text + call("__init__", arguments(entry), "None") + infer(entry) + fit(entry)
 
@@ -174,7 +179,10 @@ def module(task, entries):
     functions = sorted({name for kind in kinds for name in _DRAWING.get(kind, ())})
     imports = "".join(f"from opendr._drawing import {name} as {name}\n" for name in functions)
     trains = any(entry["fit"] for entry in entries)
-    imports += f"from opendr._native_learner import NativeLearner{', PathLike' if trains else ''}\n"
+    parents = {parent(entry).__name__ for entry in entries}
+    wanted = sorted(parents - {"NativeLearnerRL"}) + ["PathLike"] * any(entry["fit"] or entry["fit_in"] for entry in entries)
+    imports += f"from opendr._native_learner import {', '.join(wanted)}\n" if wanted else ""
+    imports += "from opendr._native_learner_rl import NativeLearnerRL\n" if "NativeLearnerRL" in parents else ""
     for home, wanted in (("data", False), ("target", True)):
         found = ", ".join(sorted(kind for kind in kinds if is_target(kind) == wanted))
         imports += f"from opendr.engine.{home} import {found}\n" if found else ""
@@ -254,10 +262,14 @@ def datasets_page():
 
 
 def stubs():
-    tasks = by_task()
-    listed = "".join(f"from opendr.perception import {task} as {task}\n" for task in sorted(tasks))
-    files = {f"{task}.pyi": module(task, entries) for task, entries in tasks.items()}
-    return {"__init__.pyi": f'"""Perception: a module a task."""\n\n{listed}', **files}
+    files, listed = {}, {}
+    for task, entries in by_task().items():
+        package = entries[0]["package"]
+        files[f"{package}/{task}.pyi"] = module(task, entries)
+        listed.setdefault(package, []).append(f"from opendr.{package} import {task} as {task}\n")
+    for package, lines in listed.items():
+        files[f"{package}/__init__.pyi"] = f'"""{package.title()}: a module a task."""\n\n{"".join(sorted(lines))}'
+    return files
 
 
 def main():
@@ -271,7 +283,8 @@ def main():
         elif there != text:
             stale = True
             sys.stdout.writelines(difflib.unified_diff(there.splitlines(True), text.splitlines(True), str(path), "registry"))
-    extra = set(STUBS.glob("*.pyi")) - files.keys()
+    packages = {path.parent for path in files if path.is_relative_to(STUBS)}
+    extra = {path for package in packages for path in package.glob("*.pyi")} - files.keys()
     for path in extra:
         print(f"{path}: no such task")
     return int(stale or bool(extra))

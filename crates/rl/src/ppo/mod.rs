@@ -10,7 +10,7 @@ mod update;
 
 use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::params::Params as _;
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Random, Result};
 use opendr_kernels::{Adam, AdamOptions, Compute};
 use opendr_simulation::vector::VecEnvironment;
 

@@ -4,7 +4,7 @@ mod squashed;
 
 use opendr_engine::environment::EnvironmentSpec;
 use opendr_engine::params::Params;
-use opendr_engine::{Error, Random, Result};
+use opendr_engine::{Random, Result};
 use opendr_kernels::{Adam, AdamOptions, Compute};
 use opendr_simulation::vector::VecEnvironment;
 
