@@ -20,8 +20,10 @@ import subprocess
 import sys
 import time
 
-#: Steps of a measurement: ours, and Stable-Baselines3's.
-STEPS = {"ppo": (100_096, 20_480), "sac": (3_000, 1_100)}
+#: Steps of a measurement that are learnt from: ours, and Stable-Baselines3's.
+STEPS = {"ppo": (100_096, 20_480), "sac": (3_000 - 100, 1_100 - 100)}
+#: Steps before learning begins.
+BEFORE = {"ppo": 0, "sac": 100}
 NAMES = {"ppo": "PPO, CartPole-v1", "sac": "SAC, Pendulum-v1"}
 ENVIRONMENT = {**os.environ, "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OPENDR_THREADS": "1"}
 
@@ -39,15 +41,15 @@ def measure_stable_baselines3(name):
     else:
         model = SAC("MlpPolicy", "Pendulum-v1", learning_rate=1e-3, device="cpu", seed=0)
     wall, cpu = time.perf_counter(), time.process_time()
-    model.learn(STEPS[name][1])
+    model.learn(STEPS[name][1] + BEFORE[name])
     cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
-    print(json.dumps({"cpu": model.num_timesteps / cpu, "wall": model.num_timesteps / wall}))
+    print(json.dumps({"cpu": STEPS[name][1] / cpu, "wall": STEPS[name][1] / wall}))
 
 
 def measure_ours(name, folder):
     """Steps a second of a whole process."""
-    steps = STEPS[name][0]
-    command = {"ppo": ["ppo_cart_pole", "0"], "sac": ["sac_pendulum", "0", "1", str(steps // 1000)]}[name]
+    steps, thousands = STEPS[name][0], (STEPS[name][0] + BEFORE[name]) // 1000
+    command = {"ppo": ["ppo_cart_pole", "0"], "sac": ["sac_pendulum", "0", "1", str(thousands)]}[name]
     wall = time.perf_counter()
     process = subprocess.Popen([os.path.join(folder, command[0]), *command[1:]], stdout=subprocess.DEVNULL, env=ENVIRONMENT)
     _, status, usage = os.wait4(process.pid, 0)

@@ -66,7 +66,7 @@ fn row(learner: &str, id: &str, goal: f64, timesteps: Option<u64>, seeds: u64) -
     let (Some(rate), [lowest, .., highest]) = (SuccessRate::of(reached, seeds), &returns[..]) else {
         return Err(Error::invalid_param(format!("{seeds} seeds; give at least 2")));
     };
-    let ([low, high], median) = (rate.interval, |sorted: &[f64]| sorted[sorted.len() / 2]);
+    let [low, high] = rate.interval;
     println!(
         "| {learner}, {id} | {steps} | {goal} | {:.1} | {lowest:.1} | {highest:.1} | {reached} of {seeds}, {:.0} to {:.0} % | {:.1} |",
         median(&returns),
@@ -75,6 +75,12 @@ fn row(learner: &str, id: &str, goal: f64, timesteps: Option<u64>, seeds: u64) -
         median(&seconds)
     );
     Ok(())
+}
+
+/// The middle one of sorted numbers, or between the two.
+fn median(sorted: &[f64]) -> f64 {
+    let middle = sorted.len() / 2;
+    if sorted.len().is_multiple_of(2) { 0.5 * (sorted[middle - 1] + sorted[middle]) } else { sorted[middle] }
 }
 
 struct Training {

@@ -124,11 +124,7 @@ impl PpoConfig {
                     ..base
                 },
             ),
-            "Pendulum-v1" => (
-                4,
-                200_000,
-                Self { n_steps: 1024, gamma: 0.9, learning_rate: 1e-3, norm_reward: false, ..base },
-            ),
+            "Pendulum-v1" => (4, 200_000, Self { n_steps: 1024, gamma: 0.9, learning_rate: 1e-3, ..base }),
             "Acrobot-v1" => (
                 16,
                 1_000_000,

@@ -4,7 +4,6 @@ use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
 use opendr_engine::{Random, Result};
-
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
 use opendr_simulation::wrappers::TimeLimit;
 

@@ -5,6 +5,7 @@
 pub mod dots;
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use opendr_engine::{Random, Result};
 use opendr_kernels::Compute;
@@ -22,7 +23,10 @@ pub struct Folder(PathBuf);
 
 impl Folder {
     pub fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("opendr-rl-{name}-{}", std::process::id()));
+        // Tests of one process run side by side.
+        static COUNT: AtomicUsize = AtomicUsize::new(0);
+        let (process, count) = (std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let path = std::env::temp_dir().join(format!("opendr-rl-{name}-{process}-{count}"));
         std::fs::remove_dir_all(&path).ok();
         Self(path)
     }
