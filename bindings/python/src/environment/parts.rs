@@ -25,7 +25,7 @@ struct Part {
 impl Parts {
     /// Arrays that NumPy reads, each of its part's own type.
     pub fn of_observations(py: Python<'_>, space: &Space, count: Option<usize>) -> PyResult<Self> {
-        Self::new(py, space, count, |number, shape| SharedArray::new(number, shape))
+        Self::new(py, space, count, SharedArray::new)
     }
 
     /// Arrays of single precision that NumPy writes.
