@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run; those marked `python no_run` need models."""
+"""The examples of docs/python.md and docs/simulation.md run; those marked `python no_run` need models."""
 
 from __future__ import annotations
 
@@ -8,8 +8,12 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[3] / "docs" / "python.md"
-BLOCKS = re.findall(r"^```python\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+DOCS = Path(__file__).parents[3] / "docs"
+BLOCKS = [
+    block
+    for page in ("python.md", "simulation.md")
+    for block in re.findall(r"^```python\n(.*?)^```$", (DOCS / page).read_text("utf-8"), re.DOTALL | re.MULTILINE)
+]
 
 
 @pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.strip().splitlines()[0])
