@@ -15,7 +15,7 @@ def is_found(output):
     return output.count("bus.jpg") == 1 and output.count("zidane.jpg") == 1
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", [*NAMES, "balance.c"])
 def test_examples_are_short(name):
     assert len((EXAMPLES / name).read_text().splitlines()) <= 40
 
@@ -32,6 +32,11 @@ def test_pkg_config(compiler, pictures, name):
     done = compiler.run(program, pictures)
     assert is_found(done.stdout.decode()), done.stdout
     assert "broken.png" in done.stderr.decode()
+
+
+def test_a_policy_balances(compiler):
+    program = compiler.build(EXAMPLES / "balance.c")
+    assert compiler.run(program).stdout == b"return 500\n"
 
 
 def test_cmake(compiler, pictures, tmp_path):

@@ -1,0 +1,43 @@
+"""Policies by the command: trained, resumed, measured, filmed."""
+
+import json
+
+
+def test_a_policy_is_trained_measured_and_filmed(opendr, tmp_path):
+    run = tmp_path / "run"
+    arguments = ["ppo", "--env", "CartPole-v1", "--output", run, "--total-timesteps", "20000", "--eval-freq", "5000"]
+    done = opendr.run("fit", *arguments, "--json", "--quiet")
+    assert done.returncode == 0, done.stderr
+    report = json.loads(done.stdout)
+    assert report["complete"] and report["environment"] == "CartPole-v1" and report["scalars"]["steps"] >= 20000
+    assert (run / "log/curves.svg").exists() and (run / "model/policy.onnx").exists()
+
+    done = opendr.run("eval", "ppo", "--model", run / "model", "--episodes", "20", "--json", "--quiet")
+    assert done.returncode == 0, done.stderr
+    numbers = json.loads(done.stdout)["scalars"]
+    assert numbers["episodes"] == 20 and numbers["mean_return"] > 100
+
+    film = tmp_path / "cart.gif"
+    done = opendr.run("sim", "view", "CartPole-v1", "--learner", "ppo", "--model", run / "model", "--out", film, "--quiet")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("seed 0: return ") and film.read_bytes().startswith(b"GIF89a")
+
+
+def test_environments_are_listed(opendr):
+    listed = opendr.run("sim", "list").stdout
+    assert "CartPole-v1" in listed and "UavDepthCorridor-v1" in listed
+    one = opendr.run("sim", "list", "UavDepthCorridor-v1").stdout
+    assert "--env-param max_obstacles=6 [0 to 15]" in one and "truncated    after 100 steps" in one
+
+
+def test_wrong_use_is_told(opendr, tmp_path):
+    for arguments, word in [
+        (["fit", "ppo"], "--env"),
+        (["fit", "ppo", "--env", "CartPole-v9"], "CartPole-v1"),
+        (["fit", "ppo", "--env", "UavDepthCorridor-v1", "--env-param", "colour=red"], "max_obstacles"),
+        (["fit", "sac", "--env", "CartPole-v1", "--output", tmp_path / "run"], "Discrete"),
+        (["sim", "view", "CartPole-v1", "--out", tmp_path / "film.txt"], ".gif"),
+        (["sim", "view", "CartPole-v1", "--learner", "centernet"], "no policy"),
+    ]:
+        done = opendr.run(*arguments)
+        assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)
