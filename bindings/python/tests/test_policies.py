@@ -4,6 +4,7 @@ import gymnasium
 import numpy as np
 import opendr
 import pytest
+from opendr import _opendr
 from opendr.control.reinforcement_learning import PpoLearner, SacLearner
 from opendr.engine.data import Observation
 from opendr.engine.learners import LearnerRL
@@ -39,6 +40,23 @@ def test_the_same_training_gives_the_same_policy(policy, tmp_path):
     again.fit("CartPole-v1", silent=True, output=tmp_path / "run")
     seen = np.random.default_rng(0).normal(0, 0.1, (20, 4))
     assert [int(again.infer(row)) for row in seen] == [int(policy.infer(row)) for row in seen]
+
+
+@pytest.mark.parametrize("entry", [entry for entry in _opendr.entries() if entry["fit_in"]], ids=lambda entry: entry["name"])
+def test_pretrained_policies(entry, tmp_path):
+    cls = opendr.learners()[entry["name"]]
+    learner = cls(device="cpu")
+    with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
+        learner.infer([0.0])
+    assert learner.load() is True and learner.is_ready
+    numbers = learner.eval(episodes=3)
+    assert numbers["episodes"] == 3
+    learner.save(tmp_path / "saved")
+    again = cls(device="cpu")
+    again.load(tmp_path / "saved")
+    assert {**again.eval(episodes=3), "seconds": 0} == {**numbers, "seconds": 0}
+    with pytest.raises(opendr.Unsupported, match=entry["class_name"]):
+        learner.optimize("cpu")
 
 
 def test_eval_is_of_fixed_episodes(policy):

@@ -3,9 +3,13 @@
 
 mod models;
 
+use std::path::Path;
+
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};
 use opendr::datasets::{OpenOptions, Problems, open};
+use opendr::environment::{Environment as _, ResetOptions};
 use opendr::learner::{CheckOptions, Entry, check_learner};
+use opendr::model::Model;
 use opendr::{Header, Value, ValueType};
 
 #[test]
@@ -15,7 +19,10 @@ fn every_learner_keeps_its_promises() {
     let mut checked = 0;
     for entry in learners() {
         let Some(model) = models.get(entry.spec.name) else { continue };
-        let calls = calls(entry.ports[0].value_type, &models);
+        let calls = match entry.ports[0].value_type {
+            ValueType::Observation => observations(&model),
+            kind => calls(kind, &models),
+        };
         let options = CheckOptions { model: &model, scratch: &scratch, calls: &calls };
         check_learner(entry, &options).unwrap();
         checked += 1;
@@ -23,6 +30,20 @@ fn every_learner_keeps_its_promises() {
     println!("{checked} learners checked");
     assert!(checked > 0);
     std::fs::remove_dir_all(&scratch).ok();
+}
+
+/// Three observations of the environment that a policy was trained in.
+fn observations(model: &Path) -> Vec<Vec<(&'static str, Value)>> {
+    let model = Model::open(model).unwrap();
+    let mut environment =
+        opendr::simulation::make(model.manifest().inputs["environment"].as_str().unwrap()).unwrap();
+    let space = environment.spec().observation.clone();
+    let mut numbers = vec![0.0; space.len()];
+    let values = (0..3).map(|seed| {
+        environment.reset(Some(seed), &ResetOptions::new(), &mut numbers).unwrap();
+        opendr::rl::observation_from_numbers(&space, &numbers).unwrap().into()
+    });
+    stamped(ValueType::Observation, values)
 }
 
 /// Three different data of a type, each with a stamp.
@@ -44,6 +65,10 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
                 .into()
         }
     };
+    stamped(kind, values)
+}
+
+fn stamped(kind: ValueType, values: impl IntoIterator<Item = Value>) -> Vec<Vec<(&'static str, Value)>> {
     let stamped = values.into_iter().zip(1..).map(|(mut value, stamp)| {
         *value.header_mut() = Header::new(stamp, "sensor");
         vec![(kind.port(), value)]

@@ -47,3 +47,4 @@ pub use saved_state::SavedState;
 pub use schedule::Schedule;
 pub use stable_baselines3::policy_from_stable_baselines3;
 pub use td3::{ActionNoise, Td3, Td3Config};
+pub use training::{POLICY, fit_policy};

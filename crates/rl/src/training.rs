@@ -18,6 +18,8 @@ use crate::onnx::onnx_from_policy;
 use crate::policy::Policy;
 use crate::saved_state::SavedState;
 
+/// The file of the policy in a container.
+pub const POLICY: &str = "policy.safetensors";
 /// The folder of the checkpoints within the output folder.
 const CHECKPOINTS: &str = "checkpoints";
 /// The files of a checkpoint beside the state of the algorithm: the best policy so far, and what was measured.
@@ -42,8 +44,12 @@ struct Training<'a, A> {
     job: &'a FitJob<'a>,
 }
 
-/// Trains by the method `M` and writes the best policy that was measured.
-pub(crate) fn fit<M: Method>(
+/// Trains a policy by the method `M` and writes the best one that was measured into [`FitJob::model`]: what `fit` of a learner does.
+/// `params` are those of the learner, for the container.
+///
+/// # Errors
+/// As [`LearnerRl::fit`](opendr_engine::learner::LearnerRl::fit).
+pub fn fit_policy<M: Method>(
     base: Option<&Policy>,
     params: &ParamMap,
     fit_params: &M::FitParams,
@@ -53,11 +59,13 @@ pub(crate) fn fit<M: Method>(
 ) -> Result<Statistics> {
     let begun = Instant::now();
     let first = env.make()?;
+    let id = first.spec().id.clone();
+    let first = M::seen(first, true)?;
     let spec = first.spec().clone();
-    let fit_params = M::for_environment(fit_params, &spec.id);
+    let fit_params = M::for_environment(fit_params, &id);
     fit_params.check()?;
     let training = M::training(&fit_params);
-    let further = (1..training.n_envs).map(|_| env.make());
+    let further = (1..training.n_envs).map(|_| M::seen(env.make()?, true));
     let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
     let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.num_workers)?;
     let compute = if training.num_workers > 1 {
@@ -69,7 +77,7 @@ pub(crate) fn fit<M: Method>(
         algorithm: M::algorithm(&fit_params, &spec, compute, base)?,
         environments,
         params: training,
-        val_env: to_measure_in(env, val_env)?,
+        val_env: to_measure_in::<M>(env, val_env)?,
         checkpoints: Checkpoints::new(&job.output.join(CHECKPOINTS), training.checkpoints_kept)?,
         log: RunLog::open(None, None)?,
         best: None,
@@ -81,12 +89,12 @@ pub(crate) fn fit<M: Method>(
     training.log = RunLog::open(job.logging_path, resumed)?;
     training.run()?;
     let policy = training.best_policy()?;
-    write_model::<M>(&policy, &spec.id, params, training.measured.last(), job)?;
+    write_model::<M>(&policy, &id, params, training.measured.last(), job)?;
     Ok(training.statistics(begun))
 }
 
 /// An environment to measure in: of `val_env`, else another of `env`, if there can be one.
-fn to_measure_in(
+fn to_measure_in<M: Method>(
     env: &dyn EnvironmentSource,
     val_env: Option<&dyn EnvironmentSource>,
 ) -> Result<Option<Box<dyn Environment>>> {
@@ -94,7 +102,9 @@ fn to_measure_in(
         Err(error) if val_env.is_none() && error.kind() == ErrorKind::Unsupported => return Ok(None),
         made => made,
     };
-    made.map(Some).context(|| "making the environment that the policy is measured in")
+    made.and_then(|made| M::seen(made, false))
+        .map(Some)
+        .context(|| "making the environment that the policy is measured in")
 }
 
 impl<A: Algorithm> Training<'_, A> {
@@ -263,7 +273,7 @@ fn write_model<M: Method>(
         manifest.metrics.insert(environment.to_owned(), numbers);
     }
     let mut writer = ModelWriter::new(job.model(), manifest)?;
-    writer.add(crate::learner::POLICY, &policy.to_bytes()?)?;
+    writer.add(POLICY, &policy.to_bytes()?)?;
     if let Ok(network) = onnx_from_policy(policy) {
         writer.add("policy.onnx", &network)?;
     }

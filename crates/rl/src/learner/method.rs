@@ -1,6 +1,6 @@
 //! The methods by which policies are trained, as learners have them.
 
-use opendr_engine::environment::EnvironmentSpec;
+use opendr_engine::environment::{Environment, EnvironmentSpec};
 use opendr_engine::learner::Spec;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Task};
@@ -22,6 +22,15 @@ pub trait Method: Send + Sync + 'static {
 
     /// The settings with those that are known to solve the environment called `id`, where the user wants them.
     fn for_environment(params: &Self::FitParams, id: &str) -> Self::FitParams;
+
+    /// An environment as the policy sees it: what the learner makes of observations, and in training of rewards.
+    ///
+    /// # Errors
+    /// `InvalidInput` for an environment that the learner is not for.
+    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+        let _ = in_training;
+        Ok(environment)
+    }
 
     /// What does not depend on the method.
     fn training(params: &Self::FitParams) -> &RlTrainingParams;

@@ -10,7 +10,6 @@ pub use method::{
     Td3Method,
 };
 pub use observation::{numbers_from_observation, observation_from_numbers};
-pub(crate) use policy_learner::POLICY;
 pub use policy_learner::{PolicyLearner, PolicyParams, PolicyState};
 pub use training_params::RlTrainingParams;
 

@@ -14,10 +14,7 @@ use opendr_kernels::Compute;
 use super::method::Method;
 use super::observation::numbers_from_observation;
 use crate::policy::{Acting, Policy, PolicyMemory};
-use crate::training;
-
-/// The file of the policy in a container.
-pub(crate) const POLICY: &str = "policy.safetensors";
+use crate::training::{POLICY, fit_policy};
 
 /// What a user may set of a policy that acts.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -103,6 +100,6 @@ impl<M: Method> LearnerRl for PolicyLearner<M> {
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
         let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
-        training::fit::<M>(base.as_ref(), &params.to_map(), fit_params, env, val_env, job)
+        fit_policy::<M>(base.as_ref(), &params.to_map(), fit_params, env, val_env, job)
     }
 }

@@ -1,0 +1,3 @@
+"""Control: a module a task."""
+
+from opendr.control import reinforcement_learning as reinforcement_learning
