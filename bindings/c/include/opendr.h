@@ -42,6 +42,7 @@ typedef struct opendr_speech_command opendr_speech_command;
 typedef struct opendr_base_transcription opendr_base_transcription;
 typedef struct opendr_whisper_transcription opendr_whisper_transcription;
 typedef struct opendr_vosk_transcription opendr_vosk_transcription;
+typedef struct opendr_rl_target opendr_rl_target;
 
 // The time stamp of a value that has none.
 #define OPENDR_NO_STAMP INT64_MIN
@@ -112,6 +113,9 @@ typedef enum opendr_skeleton {
     OPENDR_COCO17 = 1,
 } opendr_skeleton;
 
+// A world to act in; threads take turns.
+typedef struct opendr_env opendr_env;
+
 // A learner with its model; threads may use it at once, one call is answered after the other.
 typedef struct opendr_learner opendr_learner;
 
@@ -167,6 +171,32 @@ typedef struct opendr_observation_part {
     // How many axes there are.
     size_t axes;
 } opendr_observation_part;
+
+// What an environment is like.
+typedef struct opendr_env_spec {
+    // Name and version; lives as long as the environment.
+    const char *id;
+    // What is seen, in Gymnasium's words; lives as long as the environment.
+    const char *observation_space;
+    // What can be done, in Gymnasium's words; lives as long as the environment.
+    const char *action_space;
+    // How many numbers an observation has.
+    size_t observation_length;
+    // How many numbers an action has.
+    size_t action_length;
+    // After how many steps an episode is truncated; 0 for never.
+    uint32_t max_episode_steps;
+} opendr_env_spec;
+
+// What a step earned, and whether the episode is over.
+typedef struct opendr_env_step_result {
+    // The reward.
+    double reward;
+    // The task itself ended.
+    bool terminated;
+    // The episode was cut by a time limit.
+    bool truncated;
+} opendr_env_step_result;
 
 // Hears how long work goes: context is what was handed in with it, what the work in words, done of total (0 when it is not
 // known) what is done, status how it goes right now ("loss 0.31, 42 images/s", "" when there is nothing to say). It answers
@@ -458,6 +488,32 @@ enum opendr_status opendr_point_cloud_with_calibration_read(const opendr_point_c
 // as they are.
 enum opendr_status opendr_value_draw(const struct opendr_value *target, opendr_image *image);
 
+// Makes an environment, e.g. "CartPole-v1".
+//
+// params_json is an object of its parameters; NULL takes the defaults.
+enum opendr_status opendr_env_make(const char *id, const char *params_json, struct opendr_env **env);
+
+// Tells what an environment is like.
+enum opendr_status opendr_env_describe(const struct opendr_env *env, struct opendr_env_spec *spec);
+
+// Begins an episode; observation, which may be NULL, receives what is seen, to be freed.
+//
+// A seed fixes everything random until the next one; NULL goes on with the stream of random numbers.
+enum opendr_status opendr_env_reset(struct opendr_env *env, const uint64_t *seed, opendr_observation **observation);
+
+// Takes a step with an action of count numbers; observation, which may be NULL, receives what is seen, to be freed.
+enum opendr_status opendr_env_step(struct opendr_env *env,
+                                   const float *action,
+                                   size_t count,
+                                   struct opendr_env_step_result *result,
+                                   opendr_observation **observation);
+
+// A number that the last reset or step told beside observation and reward, e.g. "success".
+enum opendr_status opendr_env_info(const struct opendr_env *env, const char *name, double *value);
+
+// Frees an environment and makes the variable NULL.
+enum opendr_status opendr_env_close(struct opendr_env **env);
+
 // Measures the learner on a data set on disk.
 //
 // dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
@@ -483,6 +539,19 @@ enum opendr_status opendr_fit(const struct opendr_learner *learner,
                               opendr_progress progress,
                               void *context,
                               struct opendr_string **report);
+
+// Trains a policy in environments that id names, e.g. "CartPole-v1", from its model where it has one, and loads the result.
+//
+// env_params_json is an object of parameters of the environment; NULL takes the defaults. options_json is an object:
+// "params" (of the training), "output", "logging_path", "resume"; NULL takes the defaults. progress and report are as
+// those of opendr_fit.
+enum opendr_status opendr_fit_in(const struct opendr_learner *learner,
+                                 const char *id,
+                                 const char *env_params_json,
+                                 const char *options_json,
+                                 opendr_progress progress,
+                                 void *context,
+                                 struct opendr_string **report);
 
 // Loads a learner, e.g. "nanodet" or "yunet/320".
 //
@@ -625,6 +694,12 @@ size_t opendr_pose_list_count(const opendr_pose_list *list);
 
 // Shows an item of the list; what it points to lives as long as the list.
 enum opendr_status opendr_pose_list_get(const opendr_pose_list *list, size_t index, struct opendr_pose *item);
+
+// Makes an action of count numbers, which are copied.
+enum opendr_status opendr_rl_target_create(const float *values, size_t count, opendr_rl_target **target);
+
+// Shows the numbers of an action in a row, as the action space lays them out; they live as long as it.
+enum opendr_status opendr_rl_target_read(const opendr_rl_target *target, const float **values, size_t *count);
 
 // Makes a command; everything is copied.
 enum opendr_status opendr_speech_command_create(const struct opendr_speech_command_fields *fields,
@@ -815,6 +890,7 @@ OPENDR_VALUE_FUNCTIONS(opendr_speech_command)
 OPENDR_VALUE_FUNCTIONS(opendr_base_transcription)
 OPENDR_VALUE_FUNCTIONS(opendr_whisper_transcription)
 OPENDR_VALUE_FUNCTIONS(opendr_vosk_transcription)
+OPENDR_VALUE_FUNCTIONS(opendr_rl_target)
 
 OPENDR_TARGET_FUNCTIONS(opendr_bounding_box_list, "BoundingBoxList")
 OPENDR_TARGET_FUNCTIONS(opendr_tracking_annotation_list, "TrackingAnnotationList")
@@ -827,6 +903,7 @@ OPENDR_TARGET_FUNCTIONS(opendr_speech_command, "SpeechCommand")
 OPENDR_TARGET_FUNCTIONS(opendr_base_transcription, "BaseTranscription")
 OPENDR_TARGET_FUNCTIONS(opendr_whisper_transcription, "WhisperTranscription")
 OPENDR_TARGET_FUNCTIONS(opendr_vosk_transcription, "VoskTranscription")
+OPENDR_TARGET_FUNCTIONS(opendr_rl_target, "RlTarget")
 
 /* shape: channels, time, height, width */
 OPENDR_ARRAY_FUNCTIONS(opendr_video, "Video", 4)
@@ -1240,6 +1317,142 @@ static inline opendr_status opendr_infer_matchboxnet(const opendr_learner *learn
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
     if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * PpoLearner: Proximal policy optimisation: the method to begin with, for actions of any kind.
+ *
+ * Parameters:
+ *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
+ *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_ppo(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("ppo", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_ppo(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * SacLearner: Soft actor-critic: few steps for continuous actions, where steps are dear.
+ *
+ * Parameters:
+ *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
+ *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_sac(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("sac", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_sac(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * Td3Learner: Twin delayed policy gradients: deterministic policies of continuous actions.
+ *
+ * Parameters:
+ *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
+ *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_td3(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("td3", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_td3(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * DqnLearner: Deep Q-learning: one choice among few, learnt from steps of the past.
+ *
+ * Parameters:
+ *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
+ *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_dqn(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("dqn", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_dqn(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
 }
