@@ -13,6 +13,7 @@ mod storage;
 mod study;
 mod table;
 mod timestamp;
+mod tuner;
 
 pub use distribution::Distribution;
 pub use importance::importance_from_study;
@@ -24,3 +25,4 @@ pub use storage::Storage;
 pub use study::{Budget, Outcome, Progress, Reevaluation, Study, Trial, fresh_seeds, training_seeds};
 pub use table::table_from_study;
 pub use timestamp::Timestamp;
+pub use tuner::{Plan, Training, Tuner, Tuning};
