@@ -3,6 +3,7 @@
 //! reads and goes on with. Nothing here knows what a trial does.
 
 mod distribution;
+mod figures;
 mod importance;
 mod normal;
 mod pruner;
@@ -16,6 +17,7 @@ mod timestamp;
 mod tuner;
 
 pub use distribution::Distribution;
+pub use figures::{history_figure, importance_figure};
 pub use importance::importance_from_study;
 pub use pruner::{Advice, Asha, Hyperband, Median, NoPruner, Pruner};
 pub use records::{Direction, StudyRecord, Suggestion, TrialRecord, TrialState};
