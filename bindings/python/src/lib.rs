@@ -18,6 +18,7 @@ mod pixels;
 mod plugin;
 mod registry;
 mod source;
+mod study;
 mod target;
 mod zoo;
 
@@ -36,6 +37,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<pixels::Pixels>()?;
     module.add_class::<array::NativeArray>()?;
     module.add_class::<source::Source>()?;
+    module.add_class::<study::Study>()?;
     for function in [
         wrap_pyfunction!(registry::entries, module)?,
         wrap_pyfunction!(dataset::formats, module)?,
