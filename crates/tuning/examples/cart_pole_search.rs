@@ -34,7 +34,10 @@ fn main() -> Result<()> {
         let halving = steps_to_solve(seed, Asha::new(FIRST as i64, 4)?)?;
         let random = steps_to_solve(seed, NoPruner)?;
         shares.push(halving as f64 / random as f64);
-        println!("seed {seed}: halving {halving} steps, random search {random}, share {:.3}", shares[shares.len() - 1]);
+        println!(
+            "seed {seed}: halving {halving} steps, random search {random}, share {:.3}",
+            shares[shares.len() - 1]
+        );
     }
     shares.sort_by(f64::total_cmp);
     println!("median share {:.3}", shares[shares.len() / 2]);

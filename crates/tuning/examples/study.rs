@@ -34,7 +34,12 @@ fn main() -> Result<()> {
         text.parse::<u64>().map_err(|_| Error::invalid_param(format!("{text:?} is no number from 0")))
     };
     if function == "show" {
-        return show(&option("--journal", ""), &option("--sqlite", ""), &option("--into", ""), &option("--figures", ""));
+        return show(
+            &option("--journal", ""),
+            &option("--sqlite", ""),
+            &option("--into", ""),
+            &option("--figures", ""),
+        );
     }
     let seeds = option("--seeds", "0..1");
     let (first, end) = seeds.split_once("..").unwrap_or((&seeds, &seeds));

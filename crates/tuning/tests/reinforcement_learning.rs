@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use opendr_engine::params::ParamMap;
 use opendr_tuning::{
-    Asha, Budget, Direction, Plan, Progress, RandomSearch, Storage, Study, TrialRecord, TrialState, Training,
+    Asha, Budget, Direction, Plan, Progress, RandomSearch, Storage, Study, Training, TrialRecord, TrialState,
     Tuner, Tuning,
 };
 
@@ -41,7 +41,11 @@ fn a_promoted_training_comes_to_what_an_uninterrupted_one_does() {
         let params = trial.param_map().unwrap();
         let mut training = CartPoleTraining::begin(&params, seeds[0], &whole).unwrap();
         assert_eq!(training.advance(points[0]).unwrap(), trial.reports[&2048]);
-        assert_eq!(training.advance(points[1]).unwrap(), trial.reports[&8192], "it goes on with the same bits");
+        assert_eq!(
+            training.advance(points[1]).unwrap(),
+            trial.reports[&8192],
+            "it goes on with the same bits"
+        );
     }
     assert!(record.trials.iter().all(|trial| trial.state != TrialState::Running));
     assert!(steps.load(Ordering::Relaxed) < 9 * 2 * points[1] / 2, "most was not spent on most");
