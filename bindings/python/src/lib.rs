@@ -19,6 +19,7 @@ mod pixels;
 mod plugin;
 mod registry;
 mod source;
+mod study;
 mod target;
 mod zoo;
 
@@ -40,6 +41,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<environment::Environment>()?;
     module.add_class::<environment::VectorEnvironment>()?;
     module.add_class::<environment::SharedArray>()?;
+    module.add_class::<study::Study>()?;
     for function in [
         wrap_pyfunction!(registry::entries, module)?,
         wrap_pyfunction!(environment::environments, module)?,

@@ -57,7 +57,7 @@ pub use precision_recall::{ClassCounts, ClassScore, ClassScores, PrecisionRecall
 pub use registry::{find, metrics};
 pub use regression::{Regression, Residuals};
 pub use reidentification::{Reidentification, ReidentificationParams, Retrieval, Subject, VectorDistance};
-pub use report::{Curves, Figure, Line, Matrix, Report, Table};
+pub use report::{Bars, Curves, Figure, Line, Matrix, Report, Table};
 pub use roc::{Roc, RocCurve, RocParams, RocPoint};
 pub use rotated_overlap::{RotatedRectangle, StandingBox};
 pub use segmentation::{ClassPixels, Segmentation, SegmentationParams, SegmentationScores};

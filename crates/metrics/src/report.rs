@@ -46,6 +46,21 @@ pub enum Figure {
     Curves(Curves),
     /// Counts of truth by answer.
     Matrix(Matrix),
+    /// One number for each of several things.
+    Bars(Bars),
+}
+
+/// One number, from 0, for each of several things.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Bars {
+    /// Of the file, e.g. `"importance"`.
+    pub name: String,
+    /// For people.
+    pub title: String,
+    /// What the numbers are.
+    pub x: String,
+    /// What each is of, and it.
+    pub bars: Vec<(String, f64)>,
 }
 
 /// Lines over two axes.

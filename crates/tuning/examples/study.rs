@@ -3,16 +3,19 @@
 //! ```console
 //! $ cargo run --release -p opendr-tuning --example study -- branin --trials 100 --seeds 0..30
 //! $ cargo run --release -p opendr-tuning --example study -- mixed --trials 50 --journal study.log --name first
+//! $ cargo run --release -p opendr-tuning --example study -- show --journal study.log --figures pictures
 //! ```
 //!
 //! Prints one line of JSON for each seed: the seed, the best value and its parameters.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use opendr_engine::{Error, Result};
+use opendr_runlog::{svg_from_figure, write_atomically};
 use opendr_tuning::{
     Budget, CmaEs, Direction, Distribution, Outcome, Progress, QuasiRandom, RandomSearch, SearchSpace,
-    Storage, Study, Tpe, Trial, importance_from_study,
+    Storage, Study, Tpe, Trial, history_figure, importance_figure, importance_from_study,
 };
 use serde_json::{Value, json};
 
@@ -31,7 +34,12 @@ fn main() -> Result<()> {
         text.parse::<u64>().map_err(|_| Error::invalid_param(format!("{text:?} is no number from 0")))
     };
     if function == "show" {
-        return show(&option("--journal", ""), &option("--sqlite", ""), &option("--into", ""));
+        return show(
+            &option("--journal", ""),
+            &option("--sqlite", ""),
+            &option("--into", ""),
+            &option("--figures", ""),
+        );
     }
     let seeds = option("--seeds", "0..1");
     let (first, end) = seeds.split_once("..").unwrap_or((&seeds, &seeds));
@@ -101,8 +109,8 @@ fn cube(size: usize, low: f64, high: f64) -> Result<SearchSpace> {
     })
 }
 
-/// Prints what a file holds, and copies its studies `into` a journal.
-fn show(journal: &str, sqlite: &str, into: &str) -> Result<()> {
+/// Prints what a file holds, copies its studies `into` a journal, and draws them into the folder `figures`.
+fn show(journal: &str, sqlite: &str, into: &str, figures: &str) -> Result<()> {
     let storage = if sqlite.is_empty() { Storage::journal(journal)? } else { Storage::sqlite(sqlite)? };
     for study in storage.studies() {
         let trials = study.trials.iter().map(|trial| {
@@ -123,6 +131,14 @@ fn show(journal: &str, sqlite: &str, into: &str) -> Result<()> {
         );
         if !into.is_empty() {
             storage.copy_study(&study.name, &mut Storage::journal(into)?)?;
+        }
+        if !figures.is_empty() {
+            std::fs::create_dir_all(figures)?;
+            for figure in [history_figure(study), importance_figure(study)] {
+                let (name, svg) = svg_from_figure(&figure);
+                let path = Path::new(figures).join(format!("{}_{name}.svg", study.name));
+                write_atomically(&path, svg.as_bytes())?;
+            }
         }
     }
     Ok(())

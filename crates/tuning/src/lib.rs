@@ -3,6 +3,7 @@
 //! reads and goes on with. Nothing here knows what a trial does.
 
 mod distribution;
+mod figures;
 mod importance;
 mod normal;
 mod pruner;
@@ -13,8 +14,10 @@ mod storage;
 mod study;
 mod table;
 mod timestamp;
+mod tuner;
 
 pub use distribution::Distribution;
+pub use figures::{history_figure, importance_figure};
 pub use importance::importance_from_study;
 pub use pruner::{Advice, Asha, Hyperband, Median, NoPruner, Pruner};
 pub use records::{Direction, StudyRecord, Suggestion, TrialRecord, TrialState};
@@ -24,3 +27,4 @@ pub use storage::Storage;
 pub use study::{Budget, Outcome, Progress, Reevaluation, Study, Trial, fresh_seeds, training_seeds};
 pub use table::table_from_study;
 pub use timestamp::Timestamp;
+pub use tuner::{Plan, Training, Tuner, Tuning};

@@ -96,6 +96,8 @@ pub struct TrialRecord {
 
 /// The system attribute with the state from which a paused trial goes on.
 pub(crate) const PAUSED_STATE: &str = "opendr:paused_state";
+/// The system attribute that says whether it was not the pruner that paused a trial.
+pub(crate) const INTERRUPTED: &str = "opendr:interrupted";
 
 impl TrialRecord {
     /// The only value of the objective, when there is exactly one.
@@ -114,6 +116,11 @@ impl TrialRecord {
     /// Whether it stands at a rung and can be gone on with.
     pub fn is_paused(&self) -> bool {
         self.state == TrialState::Waiting && self.system_attributes.contains_key(PAUSED_STATE)
+    }
+
+    /// Whether it was interrupted, by a user or by the death of its worker, and is to go on before anything else.
+    pub fn is_interrupted(&self) -> bool {
+        self.is_paused() && self.system_attributes.get(INTERRUPTED) == Some(&Value::Bool(true))
     }
 
     /// The parameters as learners take them.

@@ -59,14 +59,17 @@ pub fn svg(curves: &Curves) -> String {
     for (at, line) in curves.lines.iter().enumerate() {
         let colour = COLOURS[at % COLOURS.len()];
         let mut path = String::new();
-        let mut broken = true;
-        for [px, py] in &line.points {
-            if px.is_finite() && py.is_finite() {
-                write!(path, "{}{:.1} {:.1}", if broken { 'M' } else { 'L' }, x(*px), y(*py)).ok();
+        for run in line.points.split(|[px, py]| !(px.is_finite() && py.is_finite())) {
+            for (at, [px, py]) in run.iter().enumerate() {
+                write!(path, "{}{:.1} {:.1}", if at == 0 { 'M' } else { 'L' }, x(*px), y(*py)).ok();
             }
-            broken = !(px.is_finite() && py.is_finite());
+            // What stands alone is a dot.
+            path.push_str(if run.len() == 1 { "h0" } else { "" });
         }
-        add(format_args!("<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"2\"/>\n"));
+        let width = if path.contains("h0") && !path.contains('L') { 4 } else { 2 };
+        add(format_args!(
+            "<path d=\"{path}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"/>\n"
+        ));
         if at < MOST_LABELS {
             let (x, y) = (WIDTH - RIGHT + 14.0, TOP + 10.0 + 18.0 * at as f64);
             add(format_args!(

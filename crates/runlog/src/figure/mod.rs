@@ -1,6 +1,7 @@
 //! Figures as SVG files, without fonts or scripts of their own.
 
 mod axis;
+mod bars;
 mod curves;
 mod matrix;
 
@@ -11,6 +12,7 @@ pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
     match figure {
         Figure::Curves(curves) => (&curves.name, curves::svg(curves)),
         Figure::Matrix(matrix) => (&matrix.name, matrix::svg(matrix)),
+        Figure::Bars(bars) => (&bars.name, bars::svg(bars)),
         _ => ("figure", String::new()),
     }
 }
@@ -46,7 +48,7 @@ fn opening(width: f64, height: f64, title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use opendr_metrics::{Line, Matrix};
+    use opendr_metrics::{Bars, Line, Matrix};
 
     #[test]
     fn figures_are_well_formed_whatever_they_hold() {
@@ -61,6 +63,7 @@ mod tests {
                 line("train", &[[0.0, 3.0], [5.0, f64::NAN], [10.0, 1.0]]),
                 line("flat", &[[3.0, 2.0]]),
                 line("none", &[]),
+                line("dots", &[[4.0, 2.0], [f64::NAN; 2], [6.0, 2.5], [f64::NAN; 2]]),
             ],
         };
         let matrix = Matrix {
@@ -69,10 +72,25 @@ mod tests {
             labels: vec!["<cat>".to_owned(), "dog".to_owned()],
             counts: vec![3, 0, 1, 12_345],
         };
-        for figure in [Figure::Curves(curves), Figure::Curves(Curves::default()), Figure::Matrix(matrix)] {
+        let bars = Bars {
+            name: "importance".to_owned(),
+            title: "t".to_owned(),
+            x: "share".to_owned(),
+            bars: vec![
+                ("<cat>".to_owned(), 0.7),
+                ("none".to_owned(), f64::NAN),
+                ("dog".to_owned(), f64::INFINITY),
+            ],
+        };
+        let empty = [Figure::Curves(Curves::default()), Figure::Bars(Bars::default())];
+        for figure in
+            [Figure::Curves(curves), Figure::Matrix(matrix), Figure::Bars(bars)].into_iter().chain(empty)
+        {
             let (_, svg) = svg_from_figure(&figure);
             assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"), "{svg}");
             assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("<cat>"), "{svg}");
+            let dots = if svg.contains(">dots</text>") { 5 } else { 0 };
+            assert_eq!(svg.matches("h0").count(), dots, "single points are dots");
             assert_eq!(svg.matches("<text").count(), svg.matches("</text>").count());
         }
     }

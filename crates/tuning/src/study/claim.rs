@@ -13,25 +13,29 @@ use crate::storage::{NewTrial, Notes, Operation, is_dead};
 use crate::study::{FIXED, Study, Trial, check_compatible, last_sign, outcome};
 
 impl Study {
-    /// The next trial: a paused one that should go on, one of the queue, or a new one where `may_begin` allows it. Choice
+    /// The next trial: an interrupted one, a paused one that should go on, one of the queue, or a new one where `may_begin` allows it. Choice
     /// and parameters are written while no other worker can write, so no two get the same, and each knows of all others.
     pub(super) fn claim(
         &self,
         space: &SearchSpace,
         may_begin: impl FnOnce(&StudyRecord) -> bool,
     ) -> Result<Option<Trial<'_>>> {
+        // On its own, so that what is decided next knows that their workers are dead.
+        self.write(|study| Ok(self.bury(study)))?;
         let mut claimed = None;
         self.storage().transact(|replay, _| {
             let study = replay
                 .study(self.id)
                 .ok_or_else(|| opendr_engine::Error::not_found("the study has been deleted"))?;
-            let mut operations = self.bury(study);
+            let mut operations = Vec::new();
+            let interrupted = study.trials.iter().find(|trial| trial.is_interrupted());
             let queued =
                 || study.trials.iter().find(|trial| trial.state == TrialState::Waiting && !trial.is_paused());
-            let promoted = self.pruner.promotable(study).and_then(|number| study.trials.get(number));
-            let (number, id, known) = match promoted.or_else(queued) {
+            let promoted = || self.pruner.promotable(study).and_then(|number| study.trials.get(number));
+            let (number, id, known) = match interrupted.or_else(promoted).or_else(queued) {
                 Some(trial) => {
                     let (state, values, at) = (TrialState::Running, Vec::new(), Timestamp::now());
+                    operations.extend(trial.is_interrupted().then(|| outcome::go_on(trial)));
                     operations.push(Operation::SetState { trial: trial.id, state, values, at });
                     (trial.number, trial.id, Some(trial))
                 }
@@ -54,7 +58,7 @@ impl Study {
         Ok(claimed.map(trial))
     }
 
-    /// Ends the trials whose workers are dead. One that had been paused before waits again, with the state that it had.
+    /// Ends the trials whose workers are dead. One that has a state from which to go on waits.
     fn bury(&self, study: &StudyRecord) -> Vec<Operation> {
         let silent = |trial: &TrialRecord| {
             self.abandoned_after
@@ -64,12 +68,7 @@ impl Study {
         let running = study.trials.iter().filter(|trial| trial.state == TrialState::Running);
         let dead = running.filter(|trial| is_dead(&trial.worker) || silent(trial));
         dead.flat_map(|trial| match trial.system_attributes.contains_key(PAUSED_STATE) {
-            true => vec![Operation::SetState {
-                trial: trial.id,
-                state: TrialState::Waiting,
-                values: Vec::new(),
-                at: Timestamp::now(),
-            }],
+            true => outcome::interrupt(trial),
             false => outcome::fail(trial, "its worker died"),
         })
         .collect()

@@ -168,6 +168,14 @@ impl Study {
         })
     }
 
+    /// Keeps the state from which trial `number` goes on should its worker die.
+    ///
+    /// # Errors
+    /// As [`Study::note`].
+    pub fn checkpoint(&self, number: usize, state: Value) -> Result<()> {
+        self.write_of(number, |_, trial| Ok(vec![outcome::checkpoint(trial, state)]))
+    }
+
     /// Notes something about the study.
     ///
     /// # Errors

@@ -57,6 +57,11 @@ impl Budget {
     pub fn failures(self, failures: usize) -> Self {
         Self { failures: failures.max(1), ..self }
     }
+
+    /// When the time is over, counted from now.
+    pub(crate) fn end(&self) -> Option<Instant> {
+        self.timeout.map(|timeout| Instant::now() + timeout)
+    }
 }
 
 /// Whether a study goes on after a trial.
@@ -97,7 +102,7 @@ impl Study {
             failed_in_row: AtomicUsize::new(0),
             error: Mutex::new(None),
         };
-        let end = budget.timeout.map(|timeout| Instant::now() + timeout);
+        let end = budget.end();
         let work = || {
             let on = || !shared.stop.load(Ordering::Relaxed) && end.is_none_or(|end| Instant::now() < end);
             while on() {

@@ -4,7 +4,7 @@ use opendr_engine::{Error, Result};
 use serde_json::Value;
 
 use crate::Timestamp;
-use crate::records::{PAUSED_STATE, StudyRecord, TrialRecord, TrialState};
+use crate::records::{INTERRUPTED, PAUSED_STATE, StudyRecord, TrialRecord, TrialState};
 use crate::storage::{Notes, Operation};
 use crate::study::REASON;
 
@@ -18,6 +18,9 @@ pub enum Outcome {
     /// It stands at a rung. The value is all it takes to go on, such as the path of a checkpoint:
     /// [`Trial::resumed_from`](crate::Trial::resumed_from) gives it back.
     Paused(Value),
+    /// Something other than the pruner wants it to end here for now, such as a user: it is the first to be asked for when
+    /// the study goes on, with this state.
+    Interrupted(Value),
     /// It could not be carried out, for this reason.
     Failed(String),
 }
@@ -45,8 +48,9 @@ impl Outcome {
             }
             Self::Complete(values) => Ok(vec![ended(trial, TrialState::Complete, values)]),
             Self::Pruned => Ok(prune(study, trial)),
-            Self::Paused(state) => {
-                Ok(vec![note(trial, PAUSED_STATE, state), ended(trial, TrialState::Waiting, Vec::new())])
+            Self::Paused(state) => Ok(vec![checkpoint(trial, state), wait(trial)]),
+            Self::Interrupted(state) => {
+                Ok([checkpoint(trial, state)].into_iter().chain(interrupt(trial)).collect())
             }
             Self::Failed(reason) => Ok(fail(trial, &reason)),
         }
@@ -55,6 +59,25 @@ impl Outcome {
 
 pub(super) fn fail(trial: &TrialRecord, reason: &str) -> Vec<Operation> {
     vec![note(trial, REASON, reason.into()), ended(trial, TrialState::Failed, Vec::new())]
+}
+
+/// The state from which the trial goes on.
+pub(super) fn checkpoint(trial: &TrialRecord, state: Value) -> Operation {
+    note(trial, PAUSED_STATE, state)
+}
+
+/// Lets a trial wait that has a state from which to go on.
+pub(super) fn interrupt(trial: &TrialRecord) -> Vec<Operation> {
+    vec![note(trial, INTERRUPTED, true.into()), wait(trial)]
+}
+
+/// What is noted of a trial when it is no longer interrupted.
+pub(super) fn go_on(trial: &TrialRecord) -> Operation {
+    note(trial, INTERRUPTED, false.into())
+}
+
+fn wait(trial: &TrialRecord) -> Operation {
+    ended(trial, TrialState::Waiting, Vec::new())
 }
 
 pub(super) fn prune(study: &StudyRecord, trial: &TrialRecord) -> Vec<Operation> {

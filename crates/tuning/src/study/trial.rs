@@ -74,7 +74,7 @@ impl Trial<'_> {
         self.get(name)
     }
 
-    /// The state with which the trial was paused, when it is to go on from there.
+    /// The state with which the trial was paused or interrupted, when it is to go on from there.
     pub fn resumed_from(&self) -> Option<&Value> {
         self.resumed.as_ref()
     }
@@ -103,6 +103,14 @@ impl Trial<'_> {
     /// As [`Study::note`].
     pub fn note(&self, key: &str, value: impl Into<Value>) -> Result<()> {
         self.study.note(self.number, key, value.into())
+    }
+
+    /// Keeps the state from which the trial goes on should this process die; without any, the trial is then lost.
+    ///
+    /// # Errors
+    /// As [`Study::note`].
+    pub fn checkpoint(&self, state: impl Into<Value>) -> Result<()> {
+        self.study.checkpoint(self.number, state.into())
     }
 
     /// Ends the trial, for good or for now.

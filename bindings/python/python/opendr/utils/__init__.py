@@ -1,0 +1,1 @@
+"""OpenDR's tools around learners."""

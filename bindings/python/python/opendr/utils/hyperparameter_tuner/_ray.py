@@ -1,0 +1,101 @@
+"""Trials as tasks of a Ray cluster."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import Any, Optional, Union
+
+from opendr import Unsupported
+from opendr.utils.hyperparameter_tuner.trial import Job
+
+#: Seconds between two looks at what running trials have reported.
+_PATIENCE = 0.2
+
+
+class Mailbox:
+    """Where trials on other machines leave what they measured, and find whether they are to stop."""
+
+    def __init__(self) -> None:
+        self._reports: list[tuple[int, int, float]] = []
+        self._stopped: set[int] = set()
+
+    def report(self, number: int, step: int, value: float) -> bool:
+        """Leaves a measurement; whether those before have stopped the trial."""
+        self._reports.append((number, step, value))
+        return number in self._stopped
+
+    def collect(self) -> list[tuple[int, int, float]]:
+        """What was left since the last time."""
+        reports, self._reports = self._reports, []
+        return reports
+
+    def stop(self, number: int) -> None:
+        """Has a trial stop at its next report."""
+        self._stopped.add(number)
+
+
+def _carry_out(job: Job, number: int, params: dict[str, Any], mailbox: Any) -> Optional[float]:
+    import ray  # type: ignore[import-not-found,unused-ignore]
+
+    return job.carry_out(params, lambda step, value: ray.get(mailbox.report.remote(number, step, value)))
+
+
+class RayTrials:
+    """Runs trials on the cluster at an address, or, for True, on one that is begun here where there is none."""
+
+    def __init__(
+        self, job: Job, slots: int, where: Union[bool, str], resources: Optional[dict[str, Any]] = None
+    ) -> None:
+        try:
+            import ray  # type: ignore[import-not-found,unused-ignore]
+        except ImportError as error:
+            raise Unsupported("trials on Ray take the package ray: pip install ray") from error
+        self._ray = ray
+        self._begun = not ray.is_initialized()
+        if self._begun:
+            ray.init(address=where if isinstance(where, str) else None, log_to_driver=False)
+        # A worker that dies takes its trial with it, and no other: the study knows what to try next.
+        options = {"max_retries": 0, **(resources or {})}
+        self._task = ray.remote(_carry_out).options(**options)
+        self._job = ray.put(job)
+        self._mailbox = ray.remote(Mailbox).options(num_cpus=0).remote()
+        self._running: dict[Any, int] = {}
+        #: So many trials at a time.
+        self.slots = max(1, slots if slots != -1 else int(ray.cluster_resources().get("CPU", 1)))
+
+    def begin(self, number: int, params: dict[str, Any]) -> None:
+        """Begins a trial somewhere."""
+        self._running[self._task.remote(self._job, number, params, self._mailbox)] = number
+
+    def reports(self) -> list[tuple[int, int, float]]:
+        """What trials have reported since the last time: number, step and value."""
+        reports: list[tuple[int, int, float]] = self._ray.get(self._mailbox.collect.remote())
+        return reports
+
+    def stop(self, number: int) -> None:
+        """Has a trial stop at its next report."""
+        self._mailbox.stop.remote(number)
+
+    def ended(self) -> Iterator[tuple[int, Optional[float], Optional[Exception]]]:
+        """The trials that have ended, each with its value, None when pruned, or with what was raised."""
+        done, _ = self._ray.wait(list(self._running), num_returns=1, timeout=_PATIENCE) if self._running else ([], [])
+        for reference in done:
+            number = self._running.pop(reference)
+            try:
+                yield number, self._ray.get(reference), None
+            except self._ray.exceptions.RayTaskError as error:
+                yield number, None, error.cause if isinstance(error.cause, Exception) else error
+            except self._ray.exceptions.RayError as error:
+                yield number, None, error
+
+    def close(self) -> list[int]:
+        """Ends what still runs; the numbers of those trials."""
+        for reference in self._running:
+            with contextlib.suppress(Exception):
+                self._ray.cancel(reference, force=True)
+        numbers, self._running = list(self._running.values()), {}
+        self._ray.kill(self._mailbox)
+        if self._begun:
+            self._ray.shutdown()
+        return numbers

@@ -1,0 +1,70 @@
+//! Pictures of a study, as `opendr_runlog::svg_from_figure` draws them.
+
+use opendr_metrics::{Bars, Curves, Figure, Line};
+
+use crate::importance::importance_from_study;
+use crate::records::{Direction, StudyRecord};
+
+/// The value of every complete trial by its number, as dots, and the best so far, as a line.
+pub fn history_figure(study: &StudyRecord) -> Figure {
+    let points: Vec<[f64; 2]> = study
+        .complete()
+        .filter_map(|trial| Some([trial.number as f64, *trial.values.first()?]))
+        .filter(|[_, value]| value.is_finite())
+        .collect();
+    let better: fn(f64, f64) -> f64 = match study.direction() {
+        Direction::Minimize => f64::min,
+        Direction::Maximize => f64::max,
+    };
+    let best = points.iter().scan(f64::NAN, |best, [number, value]| {
+        *best = better(*best, *value);
+        Some([*number, *best])
+    });
+    let lines = vec![
+        Line { label: "best so far".to_owned(), points: best.collect() },
+        // What stands alone between breaks is drawn as a dot.
+        Line {
+            label: "trial".to_owned(),
+            points: points.iter().flat_map(|point| [*point, [f64::NAN; 2]]).collect(),
+        },
+    ];
+    Figure::Curves(Curves {
+        name: "history".to_owned(),
+        title: study.name.clone(),
+        x: "trial".to_owned(),
+        y: "value".to_owned(),
+        lines,
+    })
+}
+
+/// How much each parameter had to do with good values: [`importance_from_study`].
+pub fn importance_figure(study: &StudyRecord) -> Figure {
+    Figure::Bars(Bars {
+        name: "importance".to_owned(),
+        title: study.name.clone(),
+        x: "importance for the best tenth (PED-ANOVA)".to_owned(),
+        bars: importance_from_study(study),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Budget, Distribution, Outcome, Progress, RandomSearch, SearchSpace, Storage, Study};
+
+    #[test]
+    fn the_line_never_gets_worse() {
+        let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
+        for (direction, sign) in [(Direction::Minimize, 1.0), (Direction::Maximize, -1.0)] {
+            let study =
+                Study::open(Storage::memory(), "s", &[direction]).unwrap().with_sampler(RandomSearch::new(1));
+            let objective = |trial: &crate::Trial<'_>| trial.float("x").map(Outcome::from);
+            study.optimize(&space, &Budget::more(20), objective, |_, _| Progress::Continue).unwrap();
+            let Figure::Curves(curves) = study.inspect(history_figure) else { panic!() };
+            let best = &curves.lines[0].points;
+            assert_eq!((best.len(), curves.lines[1].points.len()), (20, 40));
+            assert!(best.windows(2).all(|pair| sign * pair[1][1] <= sign * pair[0][1]));
+            assert_eq!(best[19][1], study.best().unwrap().value().unwrap());
+        }
+    }
+}

@@ -1,0 +1,168 @@
+use std::path::Path;
+use std::sync::atomic::AtomicU64;
+use std::time::Duration;
+
+use super::*;
+use crate::{Asha, Direction, Distribution, Median, RandomSearch, Storage, TrialRecord};
+
+/// The loss falls with the units to what the configuration is worth, and some for the seed.
+struct Slope<'a> {
+    worth: f64,
+    done: u64,
+    spent: &'a AtomicU64,
+}
+
+impl Training for Slope<'_> {
+    fn advance(&mut self, until: u64) -> Result<f64> {
+        self.spent.fetch_add(until.saturating_sub(self.done), Ordering::Relaxed);
+        self.done = self.done.max(until);
+        Ok(self.worth + 1.0 / self.done as f64)
+    }
+
+    fn save(&self, folder: &Path) -> Result<()> {
+        fs::create_dir_all(folder)?;
+        Ok(fs::write(folder.join("done"), self.done.to_string())?)
+    }
+
+    fn load(&mut self, folder: &Path) -> Result<()> {
+        self.done = fs::read_to_string(folder.join("done"))?.parse().unwrap();
+        Ok(())
+    }
+}
+
+fn folder(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("opendr-tuner-{name}-{}", std::process::id()))
+}
+
+fn study() -> Study {
+    let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
+    study.with_sampler(RandomSearch::new(5)).with_pruner(Asha::new(1, 3).unwrap())
+}
+
+fn tuner<'a>(study: Study, folder: &Path, spent: &'a AtomicU64) -> Tuner<'a> {
+    let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
+    let begin = move |params: &ParamMap, seed: u64| {
+        let worth = params["x"].as_float().unwrap() + (seed % 1000) as f64 * 1e-5;
+        Ok(Slope { worth, done: 0, spent })
+    };
+    Tuner::new(study, space, Plan::at(vec![1, 3, 9]).unwrap(), folder, begin).unwrap()
+}
+
+/// Units that a study's trials have come to.
+fn units(study: &StudyRecord) -> u64 {
+    study.trials.iter().filter_map(|trial| trial.last_report()).map(|(step, _)| step as u64).sum()
+}
+
+fn told(study: &StudyRecord) -> Vec<(TrialState, Vec<f64>, Vec<(i64, f64)>)> {
+    let of = |trial: &TrialRecord| {
+        (
+            trial.state,
+            trial.values.clone(),
+            trial.reports.iter().map(|(step, value)| (*step, *value)).collect(),
+        )
+    };
+    study.trials.iter().map(of).collect()
+}
+
+#[test]
+fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
+    let (folder, spent) = (folder("seeds"), AtomicU64::new(0));
+    let tuner = tuner(study(), &folder, &spent);
+    assert_eq!(tuner.run(&Budget::total(60), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
+    let record = tuner.study().snapshot();
+    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was done twice");
+    assert!(units(&record) < 60 * 27 / 5, "{}", units(&record));
+    assert!(record.complete().count() > 0);
+    for trial in record.complete() {
+        assert_eq!(trial.reports.keys().copied().collect::<Vec<_>>(), [1, 3, 9, 18, 27]);
+    }
+    let best = record.best().unwrap();
+    let noise = tuner.plan.seeds().iter().map(|seed| (seed % 1000) as f64 * 1e-5).sum::<f64>() / 3.0;
+    let wanted = best.params["x"].number + noise + 1.0 / 9.0;
+    assert!((best.value().unwrap() - wanted).abs() < 1e-12, "the mean of three seeds");
+    let again = tuner.reevaluate().unwrap();
+    assert_eq!((again.number, again.chosen_by, again.values.len()), (best.number, best.value().unwrap(), 3));
+    assert_ne!(again.mean(), again.chosen_by);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
+    let (folder, spent, other) = (folder("interrupted"), AtomicU64::new(0), AtomicU64::new(0));
+    let whole = tuner(study(), &folder.join("whole"), &other);
+    whole.run(&Budget::total(20), |_, _| Progress::Continue).unwrap();
+    fs::create_dir_all(&folder).unwrap();
+    let journal = folder.join("study.log");
+    let mut runs = 0;
+    loop {
+        let study = Study::open(Storage::journal(&journal).unwrap(), "s", &[Direction::Minimize]).unwrap();
+        let study = study.with_sampler(RandomSearch::new(5)).with_pruner(Asha::new(1, 3).unwrap());
+        let tuner = tuner(study, &folder.join("trials"), &spent);
+        let measured = AtomicU64::new(0);
+        let three = |_: &StudyRecord, _| match measured.fetch_add(1, Ordering::Relaxed) {
+            2 => Progress::Stop,
+            _ => Progress::Continue,
+        };
+        runs += 1;
+        if tuner.run(&Budget::total(20), three).unwrap() == Tuning::Finished {
+            assert_eq!(told(&tuner.study().snapshot()), told(&whole.study().snapshot()));
+            break;
+        }
+        assert_eq!(
+            tuner.study().inspect(|study| study
+                .trials
+                .iter()
+                .filter(|it| it.state == TrialState::Running)
+                .count()),
+            0
+        );
+    }
+    assert!(runs > 8, "{runs}");
+    assert_eq!(spent.load(Ordering::Relaxed), other.load(Ordering::Relaxed), "a unit was done twice");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
+    let (folder, spent) = (folder("dead"), AtomicU64::new(0));
+    let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
+    let tuner = tuner(study.with_abandoned_after(Duration::from_millis(50)), &folder, &spent);
+    let trial = tuner.study().ask(&tuner.space).unwrap();
+    let mut training = (tuner.begin)(&trial.param_map().unwrap(), tuner.plan.seeds()[0]).unwrap();
+    trial.report(3, training.advance(3).unwrap()).unwrap();
+    training.save(&tuner.folder_of(0).join("seed_0")).unwrap();
+    trial.checkpoint(json!(Stand { values: Vec::new(), done: 3 })).unwrap();
+    std::thread::sleep(Duration::from_millis(60));
+    tuner.run(&Budget::total(1), |_, _| Progress::Continue).unwrap();
+    let record = tuner.study().snapshot();
+    assert_eq!((record.trials.len(), record.trials[0].state), (1, TrialState::Complete));
+    assert_eq!(spent.load(Ordering::Relaxed), 27);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn what_is_stopped_leaves_no_checkpoints() {
+    let (folder, spent) = (folder("stopped"), AtomicU64::new(0));
+    let study = study().with_pruner(Median { startup_trials: 3, warmup_steps: 0 });
+    let tuner = tuner(study, &folder, &spent);
+    let late = Budget::total(20).timeout(Duration::ZERO);
+    assert_eq!(tuner.run(&late, |_, _| Progress::Continue).unwrap(), Tuning::Interrupted);
+    tuner.run(&Budget::total(20).threads(2), |_, _| Progress::Continue).unwrap();
+    let record = tuner.study().snapshot();
+    let left = |state| {
+        record
+            .trials
+            .iter()
+            .filter(|trial| trial.state == state)
+            .map(|trial| tuner.folder_of(trial.number).exists())
+            .collect::<Vec<_>>()
+    };
+    assert!(left(TrialState::Complete).len() > 3 && left(TrialState::Complete).iter().all(|there| *there));
+    assert!(left(TrialState::Pruned).len() > 3 && !left(TrialState::Pruned).contains(&true));
+    let two = Study::open(Storage::memory(), "s", &[Direction::Minimize; 2]).unwrap();
+    let begin = |_: &ParamMap, _| Ok(Slope { worth: 0.0, done: 0, spent: &spent });
+    assert!(Tuner::new(two, SearchSpace::new(), Plan::every(1, 3).unwrap(), "", begin).is_err());
+    assert_eq!(Plan::every(4, 10).unwrap().points, [4, 8, 10]);
+    assert!(Plan::every(0, 1).is_err() && Plan::every(2, 1).is_err() && Plan::at(vec![0, 1]).is_err());
+    fs::remove_dir_all(folder).unwrap();
+}
