@@ -3,6 +3,7 @@
 use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, Space, StateReader};
 
+use super::way_costs::WayCosts;
 use super::{CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN};
 use crate::sine_cosine::sine_cosine;
 
@@ -27,6 +28,7 @@ pub struct FlightMemory {
     directions: Vec<[f32; 2]>,
     /// Points around the drone, ahead and left; memory that is used again.
     near: Vec<[f32; 2]>,
+    costs: WayCosts,
 }
 
 /// Where the drone thinks that it is.
@@ -43,6 +45,8 @@ const SLICE: f32 = RADIUS + 0.15;
 const ASIDE: f32 = RADIUS + 0.1;
 /// Ways are followed so far.
 const REACH: f32 = 10.0;
+/// How far away it says how much nearer the end of the map is.
+const STEPS: [f32; 2] = [1.0, 2.5];
 /// Directions in half of the view and beyond it, to one side, and the angle between two of the latter.
 const INNER: usize = 8;
 const OUTER: usize = 14;
@@ -64,6 +68,7 @@ impl Default for FlightMemory {
             next: 0,
             directions: (0..Self::WAYS).map(direction).collect(),
             near: Vec::with_capacity(Self::FRAMES * SIDE),
+            costs: WayCosts::default(),
         }
     }
 }
@@ -74,15 +79,16 @@ impl FlightMemory {
     /// Directions in which it says how far it could fly: 22.5 degrees to both sides in 16 steps, then on to 101 degrees in steps of 5.6.
     pub const WAYS: usize = 2 * (INNER + OUTER) + 1;
     /// How many numbers it writes.
-    pub const LEN: usize = Self::WAYS + 7;
+    pub const LEN: usize = 3 * Self::WAYS + 8;
 
     /// The space of what it writes.
     ///
     /// # Errors
     /// None; a space is checked when it is made.
     pub fn space() -> Result<Space> {
-        let low = [vec![0.0; Self::WAYS], vec![f32::NEG_INFINITY; 5], vec![-1.0; 2]].concat();
-        let high = [vec![1.0; Self::WAYS], vec![f32::INFINITY; 5], vec![1.0; 2]].concat();
+        let (ways, rest) = (Self::WAYS, f32::INFINITY);
+        let low = [vec![0.0; ways], vec![-1.0; 2 * ways], vec![-rest; 6], vec![-1.0; 2]].concat();
+        let high = [vec![1.0; 3 * ways], vec![rest; 6], vec![1.0; 2]].concat();
         Space::bounded(low, high, vec![Self::LEN])
     }
 
@@ -113,15 +119,28 @@ impl FlightMemory {
         self.place = Some(place);
         self.remember(place);
         self.gather(place);
+        let (sine, cosine) = sine_cosine(place.yaw);
+        let (sine, cosine) = (sine as f32, cosine as f32);
         let (ways, rest) = known.split_at_mut(Self::WAYS);
         for (way, direction) in ways.iter_mut().zip(&self.directions) {
             *way = free_way(&self.near, *direction) / REACH;
         }
-        let (sine, cosine) = sine_cosine(place.yaw);
+        let (offset, left) = (place.y as f32, FINISH - place.x as f32);
+        let turned = |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
+        self.costs.find(self.near.iter().copied().map(turned), offset, left);
+        let here = self.costs.at([0.0; 2]);
+        let (nearer, rest) = rest.split_at_mut(2 * Self::WAYS);
+        for (nearer, far) in nearer.chunks_exact_mut(Self::WAYS).zip(STEPS) {
+            for (nearer, direction) in nearer.iter_mut().zip(&self.directions) {
+                let there = self.costs.at(turned(direction.map(|part| far * part)));
+                *nearer = ((here - there) / far).clamp(-1.0, 1.0);
+            }
+        }
+        let detour = here - left.clamp(0.0, REACH);
         let advance = (place.x as f32 - START) / (FINISH - START);
         let [heading, turn] = self.action;
-        let offset = place.y as f32 / HALF_TRACK;
-        rest.copy_from_slice(&[offset, sine as f32, cosine as f32, advance, self.sight.target[2], heading, turn]);
+        let up = self.sight.target[2];
+        rest.copy_from_slice(&[detour / REACH, offset / HALF_TRACK, sine, cosine, advance, up, heading, turn]);
         Ok(())
     }
 

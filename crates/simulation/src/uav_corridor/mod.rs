@@ -17,6 +17,7 @@ mod sight;
 #[cfg(test)]
 mod tests;
 mod variants;
+mod way_costs;
 mod world;
 
 pub use controllers::{CorridorController, PotentialField, Reactive, Straight};
