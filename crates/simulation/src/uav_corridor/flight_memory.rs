@@ -4,7 +4,9 @@ use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, Space, StateReader};
 
 use super::way_costs::WayCosts;
-use super::{CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN};
+use super::{
+    CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
+};
 use crate::sine_cosine::sine_cosine;
 
 /// Turns observations of the corridor, one after the other, into what is known of the surroundings.
@@ -40,9 +42,9 @@ struct Place {
 }
 
 /// Half the thickness of the slice of the world that the drone flies through.
-const SLICE: f32 = RADIUS + 0.15;
+const SLICE: f32 = RADIUS + 0.05;
 /// What is kept free to both sides of a way.
-const ASIDE: f32 = RADIUS + 0.1;
+const ASIDE: f32 = RADIUS + 0.05;
 /// Ways are followed so far.
 const REACH: f32 = 10.0;
 /// How far away it says how much nearer the end of the map is.
@@ -126,7 +128,8 @@ impl FlightMemory {
             *way = free_way(&self.near, *direction) / REACH;
         }
         let (offset, left) = (place.y as f32, FINISH - place.x as f32);
-        let turned = |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
+        let turned =
+            |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
         self.costs.find(self.near.iter().copied().map(turned), offset, left);
         let here = self.costs.at([0.0; 2]);
         let (nearer, rest) = rest.split_at_mut(2 * Self::WAYS);
@@ -140,7 +143,16 @@ impl FlightMemory {
         let advance = (place.x as f32 - START) / (FINISH - START);
         let [heading, turn] = self.action;
         let up = self.sight.target[2];
-        rest.copy_from_slice(&[detour / REACH, offset / HALF_TRACK, sine, cosine, advance, up, heading, turn]);
+        rest.copy_from_slice(&[
+            detour / REACH,
+            offset / HALF_TRACK,
+            sine,
+            cosine,
+            advance,
+            up,
+            heading,
+            turn,
+        ]);
         Ok(())
     }
 
@@ -156,7 +168,8 @@ impl FlightMemory {
             }
         }
         let (sine, cosine) = sine_cosine(place.yaw);
-        let ([x, y], [sine, cosine]) = ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
+        let ([x, y], [sine, cosine]) =
+            ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
         let frame = &mut self.points[self.next * SIDE..(self.next + 1) * SIDE];
         for (column, (point, ahead)) in frame.iter_mut().zip(nearest).enumerate() {
             let left = ahead * slope(column);
@@ -173,13 +186,14 @@ impl FlightMemory {
     /// The points within reach, as seen from the drone.
     fn gather(&mut self, place: Place) {
         let (sine, cosine) = sine_cosine(place.yaw);
-        let ([x, y], [sine, cosine]) = ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
+        let ([x, y], [sine, cosine]) =
+            ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
         let around = self.points.iter().map(|[east, north]| [east - x, north - y]);
-        let within = around.filter(|[east, north]| east * east + north * north < (REACH + ASIDE) * (REACH + ASIDE));
+        let within =
+            around.filter(|[east, north]| east * east + north * north < (REACH + ASIDE) * (REACH + ASIDE));
         self.near.clear();
-        self.near.extend(within.map(|[east, north]| {
-            [cosine * east + sine * north, cosine * north - sine * east]
-        }));
+        self.near
+            .extend(within.map(|[east, north]| [cosine * east + sine * north, cosine * north - sine * east]));
     }
 
     pub(super) fn save(&self, snapshot: &mut Snapshot) {

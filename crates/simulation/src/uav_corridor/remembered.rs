@@ -38,7 +38,10 @@ impl<E: Environment> Remembered<E> {
     fn show(&mut self, known: &mut [f32]) -> Result<()> {
         let length = known.len();
         let known = known.as_mut_array().ok_or_else(|| {
-            Error::invalid_input(format!("room for {length} numbers; observations have {}", FlightMemory::LEN))
+            Error::invalid_input(format!(
+                "room for {length} numbers; observations have {}",
+                FlightMemory::LEN
+            ))
         })?;
         self.memory.see(&self.inner.spec().observation, &self.observation, known)
     }

@@ -23,8 +23,8 @@ const ASIDE: usize = 25;
 const COLUMNS: usize = BEHIND + 1 + AHEAD;
 const ROWS: usize = 2 * ASIDE + 1;
 /// Centres of cells nearer to something than this cannot, or better should not, be flown over, and what that costs.
-const BLOCKED: (f32, f32) = (RADIUS + 0.1, 10.0);
-const NARROW: (f32, f32) = (RADIUS + 0.4, 2.5);
+const BLOCKED: (f32, f32) = (RADIUS + 0.05, 10.0);
+const NARROW: (f32, f32) = (RADIUS + 0.3, 2.0);
 /// Cells from whose middle a narrow one may lie.
 const SPREAD: usize = 3;
 
