@@ -105,7 +105,9 @@ impl PpoConfig {
         Ok((1..=longest).rev().find(divides).unwrap_or(1))
     }
 
-    /// The settings of rl-zoo for an environment, where it has some that need nothing but PPO; a pendulum has twice as many steps.
+    /// The settings of rl-zoo for an environment, where it has some that need nothing but PPO (a pendulum
+    /// has twice as many steps); and our own for
+    /// `UavDepthCorridor-v1`, made for what a [`Remembered`](opendr_simulation::uav_corridor::Remembered) corridor shows.
     pub fn preset(id: &str) -> Option<Preset<Self>> {
         let base = Self::default();
         let (environments, timesteps, config) = match id {
@@ -145,6 +147,17 @@ impl PpoConfig {
                     gae_lambda: 0.98,
                     n_epochs: 4,
                     norm_obs: true,
+                    norm_reward: true,
+                    ..base
+                },
+            ),
+            "UavDepthCorridor-v1" => (
+                8,
+                300_000,
+                Self {
+                    n_steps: 128,
+                    learning_rate_schedule: Schedule::Linear,
+                    log_std_init: -1.0,
                     norm_reward: true,
                     ..base
                 },

@@ -7,19 +7,24 @@
 mod controllers;
 mod environment;
 mod flight;
+mod flight_memory;
 mod options;
 mod picture;
 mod quadrotor;
 mod range_camera;
+mod remembered;
 mod sight;
 #[cfg(test)]
 mod tests;
 mod variants;
+mod way_costs;
 mod world;
 
 pub use controllers::{CorridorController, PotentialField, Reactive, Straight};
 pub use environment::UavDepthCorridor;
+pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
+pub use remembered::Remembered;
 pub use sight::CorridorSight;
 pub(crate) use variants::registrations;
 pub use variants::{Dense, Discrete, Dynamic, Noisy};

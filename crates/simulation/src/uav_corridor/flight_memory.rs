@@ -1,0 +1,251 @@
+//! What a drone knows of its surroundings from all that it saw: a memory for policies without one.
+
+use opendr_engine::Result;
+use opendr_engine::environment::{Snapshot, Space, StateReader};
+
+use super::way_costs::WayCosts;
+use super::{
+    CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
+};
+use crate::sine_cosine::sine_cosine;
+
+/// Turns observations of the corridor, one after the other, into what is known of the surroundings.
+///
+/// The camera sees 45 degrees, and most collisions happen beside it. So the drone remembers, in a map of points at the
+/// height of its flight, what it saw in the last [`FRAMES`](Self::FRAMES) steps. It keeps account of where it is by its own actions, and of its yaw and its
+/// offset from the middle of the corridor by the way to the target. It has nothing that is not in OpenDR's observation.
+///
+/// What it writes are [`LEN`](Self::LEN) numbers: how far it could fly in each of [`WAYS`](Self::WAYS) directions, from the left to the right, as a
+/// share of 10 m; then offset, sine and cosine of the yaw, how far it came, height to gain, and its last action.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlightMemory {
+    sight: CorridorSight,
+    place: Option<Place>,
+    action: [f32; 2],
+    /// Of the last frames, frame after frame; what was not seen is infinitely far away.
+    points: Vec<[f32; 2]>,
+    /// Where the next frame goes.
+    next: usize,
+    /// Cosine and sine of the directions.
+    directions: Vec<[f32; 2]>,
+    /// Points around the drone, ahead and left; memory that is used again.
+    near: Vec<[f32; 2]>,
+    costs: WayCosts,
+}
+
+/// Where the drone thinks that it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Place {
+    x: f64,
+    y: f64,
+    yaw: f64,
+}
+
+/// Half the thickness of the slice of the world that the drone flies through.
+const SLICE: f32 = RADIUS + 0.05;
+/// What is kept free to both sides of a way.
+const ASIDE: f32 = RADIUS + 0.05;
+/// Ways are followed so far.
+const REACH: f32 = 10.0;
+/// How far away it says how much nearer the end of the map is.
+const STEPS: [f32; 2] = [1.0, 2.5];
+/// Directions in half of the view and beyond it, to one side, and the angle between two of the latter.
+const INNER: usize = 8;
+const OUTER: usize = 14;
+
+impl Default for FlightMemory {
+    fn default() -> Self {
+        let direction = |number: usize| {
+            let (steps, half_view) = (number as f64 - (Self::WAYS / 2) as f64, TURN);
+            let inner = steps.clamp(-(INNER as f64), INNER as f64);
+            let angle = -(inner * half_view / INNER as f64 + (steps - inner) * half_view / 4.0);
+            let (sine, cosine) = sine_cosine(angle);
+            [cosine as f32, sine as f32]
+        };
+        Self {
+            sight: CorridorSight::default(),
+            place: None,
+            action: [0.0; 2],
+            points: vec![[f32::INFINITY; 2]; Self::FRAMES * SIDE],
+            next: 0,
+            directions: (0..Self::WAYS).map(direction).collect(),
+            near: Vec::with_capacity(Self::FRAMES * SIDE),
+            costs: WayCosts::default(),
+        }
+    }
+}
+
+impl FlightMemory {
+    /// How many steps it remembers.
+    pub const FRAMES: usize = 10;
+    /// Directions in which it says how far it could fly: 22.5 degrees to both sides in 16 steps, then on to 101 degrees in steps of 5.6.
+    pub const WAYS: usize = 2 * (INNER + OUTER) + 1;
+    /// How many numbers it writes.
+    pub const LEN: usize = 3 * Self::WAYS + 8;
+
+    /// The space of what it writes.
+    ///
+    /// # Errors
+    /// None; a space is checked when it is made.
+    pub fn space() -> Result<Space> {
+        let (ways, rest) = (Self::WAYS, f32::INFINITY);
+        let low = [vec![0.0; ways], vec![-1.0; 2 * ways], vec![-rest; 6], vec![-1.0; 2]].concat();
+        let high = [vec![1.0; 3 * ways], vec![rest; 6], vec![1.0; 2]].concat();
+        Space::bounded(low, high, vec![Self::LEN])
+    }
+
+    /// Forgets the flight.
+    pub fn reset(&mut self) {
+        self.place = None;
+        self.action = [0.0; 2];
+        self.points.fill([f32::INFINITY; 2]);
+        self.next = 0;
+    }
+
+    /// Notes what the drone was told to do: heading and change of yaw, each within [-1, 1].
+    pub fn acted(&mut self, action: [f32; 2]) {
+        self.action = action.map(|part| part.clamp(-1.0, 1.0));
+        if let Some(place) = &mut self.place {
+            *place = place.moved(self.action);
+        }
+    }
+
+    /// Takes in an observation of `space`, that of the environment, and writes what is known then.
+    ///
+    /// # Errors
+    /// `InvalidInput` for what is no observation of the corridor.
+    pub fn see(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
+        self.sight.read(space, observation)?;
+        let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
+        let place = expected.corrected(self.sight.target);
+        self.place = Some(place);
+        self.remember(place);
+        self.gather(place);
+        let (sine, cosine) = sine_cosine(place.yaw);
+        let (sine, cosine) = (sine as f32, cosine as f32);
+        let (ways, rest) = known.split_at_mut(Self::WAYS);
+        for (way, direction) in ways.iter_mut().zip(&self.directions) {
+            *way = free_way(&self.near, *direction) / REACH;
+        }
+        let (offset, left) = (place.y as f32, FINISH - place.x as f32);
+        let turned =
+            |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
+        self.costs.find(self.near.iter().copied().map(turned), offset, left);
+        let here = self.costs.at([0.0; 2]);
+        let (nearer, rest) = rest.split_at_mut(2 * Self::WAYS);
+        for (nearer, far) in nearer.chunks_exact_mut(Self::WAYS).zip(STEPS) {
+            for (nearer, direction) in nearer.iter_mut().zip(&self.directions) {
+                let there = self.costs.at(turned(direction.map(|part| far * part)));
+                *nearer = ((here - there) / far).clamp(-1.0, 1.0);
+            }
+        }
+        let detour = here - left.clamp(0.0, REACH);
+        let advance = (place.x as f32 - START) / (FINISH - START);
+        let [heading, turn] = self.action;
+        let up = self.sight.target[2];
+        rest.copy_from_slice(&[
+            detour / REACH,
+            offset / HALF_TRACK,
+            sine,
+            cosine,
+            advance,
+            up,
+            heading,
+            turn,
+        ]);
+        Ok(())
+    }
+
+    /// Puts the nearest point of each column of the picture, at the height of the flight, on the map.
+    fn remember(&mut self, place: Place) {
+        let slope = |at: usize| HALF_WIDTH * (1.0 - 2.0 * (at as f32 + 0.5) / SIDE as f32);
+        let mut nearest = [f32::INFINITY; SIDE];
+        for (row, depths) in self.sight.depths.chunks_exact(SIDE).enumerate() {
+            let up = slope(row);
+            for (nearest, depth) in nearest.iter_mut().zip(depths) {
+                let is_met = (depth * up + CAMERA_HEIGHT).abs() < SLICE;
+                *nearest = nearest.min(if is_met { *depth } else { f32::INFINITY });
+            }
+        }
+        let (sine, cosine) = sine_cosine(place.yaw);
+        let ([x, y], [sine, cosine]) =
+            ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
+        let frame = &mut self.points[self.next * SIDE..(self.next + 1) * SIDE];
+        for (column, (point, ahead)) in frame.iter_mut().zip(nearest).enumerate() {
+            let left = ahead * slope(column);
+            // What lies at the end of the range may be nothing.
+            let is_seen = ahead < 0.98 * RANGE;
+            *point = match is_seen {
+                true => [x + cosine * ahead - sine * left, y + sine * ahead + cosine * left],
+                false => [f32::INFINITY; 2],
+            };
+        }
+        self.next = (self.next + 1) % Self::FRAMES;
+    }
+
+    /// The points within reach, as seen from the drone.
+    fn gather(&mut self, place: Place) {
+        let (sine, cosine) = sine_cosine(place.yaw);
+        let ([x, y], [sine, cosine]) =
+            ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
+        let around = self.points.iter().map(|[east, north]| [east - x, north - y]);
+        let within =
+            around.filter(|[east, north]| east * east + north * north < (REACH + ASIDE) * (REACH + ASIDE));
+        self.near.clear();
+        self.near
+            .extend(within.map(|[east, north]| [cosine * east + sine * north, cosine * north - sine * east]));
+    }
+
+    pub(super) fn save(&self, snapshot: &mut Snapshot) {
+        let place = self.place.map_or([f64::NAN; 3], |Place { x, y, yaw }| [x, y, yaw]);
+        snapshot.extend_numbers(place);
+        snapshot.push(self.next as u64);
+        let points = self.points.iter().flatten();
+        snapshot.extend_numbers(self.action.iter().chain(points).map(|number| f64::from(*number)));
+    }
+
+    pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        let [x, y, yaw] = [state.number()?, state.number()?, state.number()?];
+        self.place = (x.is_finite() && y.is_finite() && yaw.is_finite()).then_some(Place { x, y, yaw });
+        self.next = state.count(Self::FRAMES - 1)?;
+        for number in self.action.iter_mut().chain(self.points.iter_mut().flatten()) {
+            *number = state.number()? as f32;
+        }
+        Ok(())
+    }
+}
+
+impl Place {
+    /// Where a step of one metre leads.
+    fn moved(self, [heading, turn]: [f32; 2]) -> Self {
+        let right_angle = std::f64::consts::FRAC_PI_2;
+        let (sine, cosine) = sine_cosine(self.yaw + f64::from(heading) * TURN);
+        let yaw = (self.yaw + f64::from(turn) * TURN).clamp(-right_angle, right_angle);
+        Self { x: self.x + cosine, y: self.y + sine, yaw }
+    }
+
+    /// With offset and yaw by the way to the target, which lies a known way along the corridor, in its middle. Its
+    /// distance tells the offset but for the side, which is the one that fits what was expected.
+    fn corrected(self, [ahead, left, _]: [f32; 3]) -> Self {
+        let [ahead, left, along] = [ahead, left, TARGET].map(f64::from);
+        let offset = (ahead * ahead + left * left - along * along).max(0.0).sqrt();
+        let on = |y: f64| Self { y, yaw: (-y).atan2(along) - left.atan2(ahead), ..self };
+        let [one, other] = [on(offset), on(-offset)];
+        if self.error(one) <= self.error(other) { one } else { other }
+    }
+
+    fn error(self, other: Self) -> f64 {
+        (self.y - other.y).abs() + (self.yaw - other.yaw).abs()
+    }
+}
+
+/// How far a ball of radius [`ASIDE`] could fly in a direction before it meets a point, at most [`REACH`].
+fn free_way(points: &[[f32; 2]], [cosine, sine]: [f32; 2]) -> f32 {
+    let met = |[ahead, left]: &[f32; 2]| {
+        let (along, across) = (cosine * ahead + sine * left, cosine * left - sine * ahead);
+        // A parabola for the ball's front: near enough, and without a root.
+        let front = along - ASIDE + across * across / ASIDE;
+        if along > 0.0 && across.abs() < ASIDE { front } else { REACH }
+    };
+    points.iter().map(met).fold(REACH, f32::min).max(0.0)
+}
