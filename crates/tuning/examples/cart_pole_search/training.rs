@@ -7,6 +7,7 @@ use opendr_engine::Result;
 use opendr_engine::environment::Environment;
 use opendr_engine::params::{ParamMap, Params as _};
 use opendr_rl::{Algorithm as _, EvaluationProtocol, Ppo, PpoConfig, evaluate};
+use opendr_runlog::Checkpoints;
 use opendr_simulation::vector::{Autoreset, VecEnvironment, VectorOptions};
 use opendr_simulation::{make, make_vec};
 use opendr_tuning::{Distribution, SearchSpace, Training};
@@ -45,11 +46,11 @@ impl Training for CartPoleTraining<'_> {
     }
 
     fn save(&self, folder: &Path) -> Result<()> {
-        self.ppo.save(folder, &*self.carts)
+        self.ppo.save(&Checkpoints::new(folder, 1)?, &*self.carts).map(drop)
     }
 
     fn load(&mut self, folder: &Path) -> Result<()> {
-        self.ppo.load(folder, &mut *self.carts)
+        self.ppo.load(&Checkpoints::new(folder, 1)?, &mut *self.carts).map(drop)
     }
 }
 

@@ -53,7 +53,10 @@ fn units(study: &StudyRecord) -> u64 {
     study.trials.iter().filter_map(|trial| trial.last_report()).map(|(step, _)| step as u64).sum()
 }
 
-fn told(study: &StudyRecord) -> Vec<(TrialState, Vec<f64>, Vec<(i64, f64)>)> {
+/// State, values, and reports by step.
+type Told = (TrialState, Vec<f64>, Vec<(i64, f64)>);
+
+fn told(study: &StudyRecord) -> Vec<Told> {
     let of = |trial: &TrialRecord| {
         (
             trial.state,
