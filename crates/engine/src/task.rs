@@ -34,6 +34,7 @@ impl Task {
     pub const fn package(self) -> &'static str {
         match self {
             Self::ReinforcementLearning => "control",
+            Self::EndToEndPlanning => "planning",
             _ => "perception",
         }
     }
@@ -54,6 +55,8 @@ tasks! {
     SpeechRecognition = "speech_recognition";
     /// What a robot does, learnt by acting.
     ReinforcementLearning = "reinforcement_learning";
+    /// Where a robot goes, from its camera to its motion.
+    EndToEndPlanning = "end_to_end_planning";
 }
 
 impl fmt::Display for Task {

@@ -53,6 +53,6 @@ pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use {
     opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
-    opendr_metrics as metrics, opendr_optimize as optimize, opendr_rl as rl, opendr_simulation as simulation,
-    opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
+    opendr_metrics as metrics, opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,
+    opendr_simulation as simulation, opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
 };

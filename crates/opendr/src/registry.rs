@@ -10,6 +10,7 @@ use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
 use opendr_perception::speech_recognition::MatchboxNet;
+use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 
 /// Every learner: those compiled in, and those that the program adds.
@@ -33,6 +34,7 @@ pub fn registry() -> &'static Registry {
             SacLearner,
             Td3Learner,
             DqnLearner,
+            EndToEndPlanningRl,
             #[cfg(feature = "test-learner")] opendr_engine::learner::counter::Counter,
         ]
     })

@@ -1,5 +1,3 @@
 //! Planning of motion.
 
-mod end_to_end;
-
-pub use end_to_end::{DepthPilot, EndToEndPlanning, EndToEndPlanningParams, SternRewards};
+pub mod end_to_end;

@@ -1,12 +1,12 @@
 //! From a depth camera to heading and yaw of a drone: OpenDR's end-to-end planning (Ugurlu, Pham and Kayacan, Sim-to-real
 //! deep reinforcement learning for safe end-to-end planning of aerial robots, 2022).
 
-mod depth_pilot;
+mod dense_episodes;
 mod learner;
-mod params;
+mod method;
 mod stern_rewards;
 
-pub use depth_pilot::DepthPilot;
-pub use learner::EndToEndPlanning;
-pub use params::EndToEndPlanningParams;
+pub use dense_episodes::DenseEpisodes;
+pub use learner::{EndToEndPlanningRl, FlightState};
+pub use method::{EndToEndPlanningFitParams, PpoInCorridors};
 pub use stern_rewards::SternRewards;

@@ -1,5 +1,8 @@
 //! Controllers without learning, to compare policies with and to build them on.
 
+use opendr_engine::environment::{Controller, Space};
+use opendr_engine::{Error, Result};
+
 use super::{CorridorSight, SIDE, TURN};
 
 /// Flies by what is seen, and by what it remembers of the flight.
@@ -9,6 +12,37 @@ pub trait CorridorController {
 
     /// Heading and change of yaw, each within [-1, 1] as in `UavDepthCorridor-v1`.
     fn act(&mut self, sight: &CorridorSight) -> [f32; 2];
+}
+
+/// A controller that reads observations: for evaluations, and where any [`Controller`] is taken.
+#[derive(Debug, Clone)]
+pub struct BySight<C> {
+    controller: C,
+    space: Space,
+    sight: CorridorSight,
+}
+
+impl<C: CorridorController> BySight<C> {
+    /// `controller`, for observations of `space`.
+    pub fn new(controller: C, space: Space) -> Self {
+        Self { controller, space, sight: CorridorSight::default() }
+    }
+}
+
+impl<C: CorridorController> Controller for BySight<C> {
+    fn reset(&mut self) {
+        self.controller.begin();
+    }
+
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        self.sight.read(&self.space, observation)?;
+        let length = action.len();
+        let action = action.as_mut_array().ok_or_else(|| {
+            Error::invalid_input(format!("room for {length} numbers of an action; it has 2, heading and yaw"))
+        })?;
+        *action = self.controller.act(&self.sight);
+        Ok(())
+    }
 }
 
 /// Straight ahead, whatever comes.

@@ -20,7 +20,7 @@ mod variants;
 mod way_costs;
 mod world;
 
-pub use controllers::{CorridorController, PotentialField, Reactive, Straight};
+pub use controllers::{BySight, CorridorController, PotentialField, Reactive, Straight};
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};

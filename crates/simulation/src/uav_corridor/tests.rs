@@ -49,12 +49,13 @@ fn successes(controller: &mut dyn CorridorController) -> u32 {
     successes
 }
 
-/// Of 500; a few more or less where a system rounds sines otherwise.
+/// Of 500; a few more or less where a system rounds sines otherwise. Of 5000 worlds the rules by hand pass 71.1 %, those of
+/// the prototype 71.9 % of its own.
 #[test]
 fn controllers_succeed_as_often_as_measured() {
-    assert!((90..=102).contains(&successes(&mut Straight)));
-    assert!((340..=400).contains(&successes(&mut Reactive::default())));
-    assert!((358..=378).contains(&successes(&mut PotentialField::default())));
+    assert!((92..=100).contains(&successes(&mut Straight)));
+    assert!((345..=355).contains(&successes(&mut Reactive::default())));
+    assert!((363..=373).contains(&successes(&mut PotentialField::default())));
 }
 
 #[test]
@@ -218,4 +219,70 @@ fn names_have_defaults_of_their_own() {
     assert_eq!(make("UavDepthCorridor-noisy-v1").unwrap().spec().id, "UavDepthCorridor-noisy-v1");
     assert_eq!(make("UavDepthCorridor-discrete").unwrap().spec().action, Space::discrete(7));
     assert!(UavDepthCorridorParams::default().check().is_ok());
+}
+
+/// A memory that was told the actions knows offset and yaw, and how far the drone came.
+#[test]
+fn a_memory_keeps_account_of_the_flight() {
+    let (mut environment, mut seen) = empty(CorridorForm::default());
+    let (mut memory, mut known) = (FlightMemory::default(), [0.0; FlightMemory::LEN]);
+    let space = environment.spec().observation.clone();
+    memory.see(&space, &seen, &mut known).unwrap();
+    for step in 0..20 {
+        let action = [0.7 * ((step % 3) as f32 - 1.0), if step % 8 < 4 { 0.5 } else { -0.5 }];
+        environment.step(&action, &mut seen).unwrap();
+        memory.acted(action);
+        memory.see(&space, &seen, &mut known).unwrap();
+        let [_, offset, sine, _, advance, _, heading, _] = *known.last_chunk().unwrap();
+        let [x, y, _] = environment.position();
+        assert!((offset * HALF_TRACK - y).abs() < 5e-3, "{step}: {offset} {y}");
+        assert!((f64::from(sine) - environment.yaw().sin()).abs() < 5e-3, "{step}: {sine}");
+        assert!((advance * (FINISH - START) + START - x).abs() < 0.05, "{step}: {advance} {x}");
+        assert_eq!(heading, action[0]);
+    }
+    assert!(known[..FlightMemory::WAYS].iter().all(|way| *way == 1.0), "nothing is there");
+    assert!(FlightMemory::space().unwrap().contains(&known));
+    assert!(memory.see(&space, &seen[1..], &mut known).is_err());
+}
+
+/// What was ahead and is now beside the drone is out of sight, and known.
+#[test]
+fn a_memory_knows_what_is_out_of_sight() {
+    let (mut environment, mut seen) = empty(CorridorForm::default());
+    environment.reset(Some(1), &options(&[("walls", 1.0.into())]), &mut seen).unwrap();
+    let space = environment.spec().observation.clone();
+    let (mut memory, mut known) = (FlightMemory::default(), [0.0; FlightMemory::LEN]);
+    for _ in 0..9 {
+        memory.see(&space, &seen, &mut known).unwrap();
+        environment.step(&[0.0, 0.0], &mut seen).unwrap();
+        memory.acted([0.0, 0.0]);
+    }
+    memory.see(&space, &seen, &mut known).unwrap();
+    let mut fresh = FlightMemory::default();
+    let mut ahead = [0.0; FlightMemory::LEN];
+    fresh.see(&space, &seen, &mut ahead).unwrap();
+    let sideways = FlightMemory::WAYS / 2 - 8 - 12;
+    let wall = environment.world().walls().unwrap() - environment.position()[1] - RADIUS;
+    assert!((known[sideways] * 10.0 - wall).abs() < 0.2, "{} {wall}", known[sideways] * 10.0);
+    assert_eq!(ahead[sideways], 1.0);
+    memory.reset();
+    memory.see(&space, &seen, &mut known).unwrap();
+    assert_eq!(known[sideways], 1.0);
+}
+
+#[test]
+fn remembered_corridors_come_back() {
+    let mut corridor = Remembered::new(make("UavDepthCorridor-v1").unwrap()).unwrap();
+    let mut seen = [0.0; FlightMemory::LEN];
+    corridor.reset(Some(5), &ResetOptions::new(), &mut seen).unwrap();
+    for _ in 0..3 {
+        corridor.step(&[0.2, -0.1], &mut seen).unwrap();
+    }
+    let snapshot = corridor.snapshot().unwrap();
+    let first = corridor.step(&[-0.3, 0.4], &mut seen).unwrap();
+    let (there, mut again) = (seen, seen);
+    corridor.restore(&snapshot).unwrap();
+    assert_eq!((corridor.step(&[-0.3, 0.4], &mut again).unwrap(), again), (first, there));
+    assert!(Remembered::new(make("UavDepthCorridor-discrete-v1").unwrap()).is_err());
+    assert!(corridor.step(&[0.0; 2], &mut seen[1..]).is_err());
 }

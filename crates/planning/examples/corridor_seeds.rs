@@ -1,0 +1,89 @@
+//! How often drones arrive that were trained with several seeds, between few and many obstacles, with a noisy camera, and
+//! with inertia and wind: `cargo run --release -p opendr-planning --example corridor_seeds [SEEDS [EPISODES]]`.
+
+use std::path::Path;
+use std::time::Instant;
+
+use opendr_engine::data::Observation;
+use opendr_engine::learner::{FitJob, Handle};
+use opendr_engine::{Device, Error, Result};
+use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
+use opendr_rl::{
+    EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
+};
+use opendr_simulation::{RegisteredSource, make};
+
+const EVALUATED: [&str; 4] = [
+    "UavDepthCorridor-v1",
+    "UavDepthCorridor-dense-v1",
+    "UavDepthCorridor-noisy-v1",
+    "UavDepthCorridor-dyn-v1",
+];
+
+fn main() -> Result<()> {
+    let mut arguments = std::env::args().skip(1).map(|text| text.parse::<u64>());
+    let mut next = |default| arguments.next().unwrap_or(Ok(default));
+    let (Ok(seeds), Ok(episodes)) = (next(5), next(500)) else {
+        return Err(Error::invalid_param("give two whole numbers: seeds and episodes"));
+    };
+    let mut rates: [Vec<SuccessRate>; EVALUATED.len()] = Default::default();
+    for seed in 0..seeds {
+        let folder = std::env::temp_dir().join(format!("opendr-corridor-{}-{seed}", std::process::id()));
+        let begun = Instant::now();
+        let mut learner = trained(seed, &folder)?;
+        println!("seed {seed}: {:.1} s", begun.elapsed().as_secs_f64());
+        for (id, rates) in EVALUATED.iter().zip(&mut rates) {
+            rates.extend(measured(&mut learner, id, episodes)?);
+            if let Some(success) = rates.last() {
+                let [low, high] = success.interval.map(|share| 100.0 * share);
+                println!("  {id}: {:.1} % (95 %: {low:.1} to {high:.1})", 100.0 * success.rate);
+            }
+        }
+        std::fs::remove_dir_all(folder)?;
+    }
+    for (id, rates) in EVALUATED.iter().zip(&mut rates) {
+        rates.sort_by(|one, other| one.rate.total_cmp(&other.rate));
+        if let [first, .., last] = &rates[..] {
+            let median = 100.0 * rates[rates.len() / 2].rate;
+            println!("{id}: median {median:.1} %, {:.1} to {:.1}", 100.0 * first.rate, 100.0 * last.rate);
+        }
+    }
+    Ok(())
+}
+
+fn trained(seed: u64, folder: &Path) -> Result<Handle<EndToEndPlanningRl>> {
+    let mut learner = Handle::<EndToEndPlanningRl>::new(PolicyParams::default(), Device::Cpu)?;
+    let corridors = RegisteredSource::new(EVALUATED[0], &Default::default())?;
+    let params = EndToEndPlanningFitParams { seed, ..Default::default() };
+    learner.fit_in(&params, &corridors, None, &FitJob::new(folder))?;
+    Ok(learner)
+}
+
+fn measured(
+    learner: &mut Handle<EndToEndPlanningRl>,
+    id: &str,
+    episodes: u64,
+) -> Result<Option<SuccessRate>> {
+    let mut corridor = make(id)?;
+    let space = corridor.spec().observation.clone();
+    let mut pilot = Pilot { learner, see: &|numbers| observation_from_numbers(&space, numbers) };
+    let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
+    let success = |step: &opendr_engine::environment::Step| step.info.get("success").map(|share| share > 0.5);
+    Ok(evaluate_controller(&mut pilot, &mut *corridor, &protocol, &success)?.success)
+}
+
+struct Pilot<'a> {
+    learner: &'a mut Handle<EndToEndPlanningRl>,
+    see: &'a dyn Fn(&[f32]) -> Result<Observation>,
+}
+
+impl opendr_engine::environment::Controller for Pilot<'_> {
+    fn reset(&mut self) {
+        self.learner.reset();
+    }
+
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        action.copy_from_slice(&self.learner.infer(&(self.see)(observation)?)?.values);
+        Ok(())
+    }
+}

@@ -1,0 +1,59 @@
+//! Some flights between more obstacles.
+
+use opendr_engine::Result;
+use opendr_engine::data::Image;
+use opendr_engine::environment::{
+    Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, StateReader, Step,
+};
+
+/// A corridor in which every second flight has 8 to 10 obstacles, whatever else it has: who trains in it also finds
+/// the way where there is little room.
+#[derive(Debug, Clone)]
+pub struct DenseEpisodes<E> {
+    inner: E,
+    episodes: u64,
+}
+
+/// The options of a reset, and what they are then.
+const DENSE: [(&str, i64); 2] = [("min_obstacles", 8), ("max_obstacles", 10)];
+
+impl<E: Environment> DenseEpisodes<E> {
+    /// `inner`, a corridor.
+    pub fn new(inner: E) -> Self {
+        Self { inner, episodes: 0 }
+    }
+}
+
+impl<E: Environment> Environment for DenseEpisodes<E> {
+    fn spec(&self) -> &EnvironmentSpec {
+        self.inner.spec()
+    }
+
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
+        self.episodes += 1;
+        if self.episodes.is_multiple_of(2) {
+            let mut options = options.clone();
+            options.extend(DENSE.map(|(name, value)| (name.to_owned(), value.into())));
+            return self.inner.reset(seed, &options, observation);
+        }
+        self.inner.reset(seed, options, observation)
+    }
+
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
+        self.inner.step(action, observation)
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        snapshot.push(self.episodes);
+        self.inner.save_state(snapshot)
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.episodes = state.word()?;
+        self.inner.load_state(state)
+    }
+
+    fn render(&mut self) -> Result<Option<Image>> {
+        self.inner.render()
+    }
+}

@@ -1,0 +1,84 @@
+//! How it is trained.
+
+use opendr_engine::Result;
+use opendr_engine::environment::{Environment, EnvironmentSpec};
+use opendr_engine::learner::{Learner as _, Spec};
+use opendr_engine::params::Params;
+use opendr_kernels::Compute;
+use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
+use opendr_simulation::uav_corridor::Remembered;
+
+use super::{DenseEpisodes, EndToEndPlanningRl, SternRewards};
+
+/// What a user may set of the training, with OpenDR's names and defaults where OpenDR has them.
+#[derive(Debug, Clone, PartialEq, Params)]
+pub struct EndToEndPlanningFitParams {
+    /// Learning rate of Adam at the beginning; it falls evenly to zero.
+    #[param(default = 3e-4, range = 0.0..=1.0, log)]
+    pub lr: f32,
+    /// Steps of all environments together between two updates.
+    #[param(default = 1024, range = 1..=1_000_000, log)]
+    pub n_steps: usize,
+    /// Steps in a minibatch.
+    #[param(default = 64, range = 1..=1_000_000, log)]
+    pub batch_size: usize,
+    /// What fixes everything random.
+    #[param(default = 0)]
+    pub seed: u64,
+    /// Of any training in environments.
+    #[param(
+        flatten,
+        total_timesteps = 300_000,
+        n_envs = 8,
+        num_workers = 2,
+        eval_freq = 0,
+        n_eval_episodes = 100
+    )]
+    pub training: RlTrainingParams,
+}
+
+/// PPO on what a drone remembers of its flight, with rewards that make it worth while to arrive.
+#[derive(Debug, Clone, Copy)]
+pub struct PpoInCorridors;
+
+impl Method for PpoInCorridors {
+    const SPEC: Spec = EndToEndPlanningRl::SPEC;
+    type FitParams = EndToEndPlanningFitParams;
+    type Algorithm = Ppo;
+
+    fn for_environment(params: &EndToEndPlanningFitParams, _: &str) -> EndToEndPlanningFitParams {
+        params.clone()
+    }
+
+    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+        Ok(match in_training {
+            true => Box::new(SternRewards(Remembered::new(DenseEpisodes::new(environment))?)),
+            false => Box::new(Remembered::new(environment)?),
+        })
+    }
+
+    fn training(params: &EndToEndPlanningFitParams) -> &RlTrainingParams {
+        &params.training
+    }
+
+    fn algorithm(
+        params: &EndToEndPlanningFitParams,
+        spec: &EnvironmentSpec,
+        compute: Compute,
+        base: Option<&Policy>,
+    ) -> Result<Ppo> {
+        let config = PpoConfig {
+            learning_rate: params.lr,
+            learning_rate_schedule: Schedule::Linear,
+            n_steps: (params.n_steps / params.training.n_envs).max(1),
+            batch_size: params.batch_size,
+            log_std_init: -1.0,
+            norm_reward: true,
+            seed: params.seed,
+            ..PpoConfig::default()
+        };
+        let mut ppo = Ppo::new(&config, spec)?.with_compute(compute);
+        base.map_or(Ok(()), |base| ppo.set_policy(base))?;
+        Ok(ppo)
+    }
+}
