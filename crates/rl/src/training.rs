@@ -1,5 +1,6 @@
 //! The training of a policy, with its log, checkpoints and measurements: what `fit` does.
 
+use std::cmp::Ordering;
 use std::time::Instant;
 
 use opendr_engine::environment::{Environment, EnvironmentSource};
@@ -89,7 +90,7 @@ pub fn fit_policy<M: Method>(
     training.log = RunLog::open(job.logging_path, resumed)?;
     training.run()?;
     let policy = training.best_policy()?;
-    write_model::<M>(&policy, &id, params, training.measured.last(), job)?;
+    write_model::<M>(&policy, &id, params, best_of(&training.measured), job)?;
     Ok(training.statistics(begun))
 }
 
@@ -186,7 +187,7 @@ impl<A: Algorithm> Training<'_, A> {
         Ok(())
     }
 
-    /// Measures the policy; the best is kept, the later one of two that are as good.
+    /// Measures the policy; the best is kept.
     fn measure(&mut self) -> Result<()> {
         let now = self.algorithm.report().timesteps;
         let Some(val_env) = &mut self.val_env else { return Ok(()) };
@@ -203,12 +204,10 @@ impl<A: Algorithm> Training<'_, A> {
         if let Some(rate) = success {
             self.log.scalar("val_success_rate", now, rate)?;
         }
-        let score = |success: Option<f64>, earned: f64| (success.unwrap_or(0.0), earned);
-        let mut earlier = self.measured.iter().map(|(_, earned, success)| score(*success, *earned));
-        if earlier.all(|earlier| earlier <= score(success, mean_return)) {
+        self.measured.push((now, mean_return, success));
+        if best_of(&self.measured).is_some_and(|(step, ..)| *step == now) {
             self.best = Some(self.algorithm.policy().to_bytes()?);
         }
-        self.measured.push((now, mean_return, success));
         Ok(())
     }
 
@@ -256,6 +255,12 @@ impl<A: Algorithm> Training<'_, A> {
     }
 }
 
+/// What succeeded most often, then what earned most; the last of those that are as good.
+fn best_of(measured: &Measured) -> Option<&(u64, f64, Option<f64>)> {
+    let score = |(_, earned, success): &(u64, f64, Option<f64>)| (success.unwrap_or(0.0), *earned);
+    measured.iter().max_by(|one, other| score(one).partial_cmp(&score(other)).unwrap_or(Ordering::Equal))
+}
+
 /// Writes the container: the policy, the same as ONNX where it has that form, and what it was trained in.
 fn write_model<M: Method>(
     policy: &Policy,
@@ -269,7 +274,10 @@ fn write_model<M: Method>(
     manifest.params = params.clone();
     manifest.inputs.insert(ENVIRONMENT.to_owned(), environment.into());
     if let Some((_, earned, success)) = measured {
-        let numbers = serde_json::json!({"val_return": earned, "val_success_rate": success});
+        let mut numbers = serde_json::json!({"val_return": earned});
+        if let Some(success) = success {
+            numbers["val_success_rate"] = (*success).into();
+        }
         manifest.metrics.insert(environment.to_owned(), numbers);
     }
     let mut writer = ModelWriter::new(job.model(), manifest)?;
