@@ -36,7 +36,9 @@ fn weights(folder: &Path) -> io::Result<String> {
         let mut learners =
             fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
         learners.sort();
-        let found = learners.iter().flat_map(|learner| ["json", "onnx"].map(|ending| files(learner, ending)));
+        let found = learners
+            .iter()
+            .flat_map(|learner| ["json", "onnx", "safetensors"].map(|ending| files(learner, ending)));
         for path in found.collect::<io::Result<Vec<_>>>()?.concat() {
             let name = path.strip_prefix(&folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             let _ = writeln!(code, "({name:?}, include_bytes!({path:?})),");
