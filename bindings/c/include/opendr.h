@@ -1457,4 +1457,38 @@ static inline opendr_status opendr_infer_dqn(const opendr_learner *learner,
     return status_;
 }
 
+/*
+ * EndToEndPlanningRLLearner: Flies a drone between obstacles, from its depth camera to heading and yaw.
+ *
+ * Parameters:
+ *   deterministic (a bool, may change while it runs, default true): Whether it takes its most likely actions, else some by chance.
+ *   seed (an int, default 0): What fixes those by chance, from the beginning of a stream on.
+ *
+ * Inputs:
+ *   observation (Observation)
+ *
+ * Outputs:
+ *   target (RlTarget)
+ */
+static inline opendr_status opendr_load_end_to_end_planning(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("end_to_end_planning", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_end_to_end_planning(const opendr_learner *learner,
+    const opendr_observation *observation,
+    opendr_rl_target **target) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "observation";
+    inputs_[0].value = (const opendr_value *)observation;
+    outputs_[0].name = "target";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (target != NULL) *target = (opendr_rl_target *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
 #endif /* OPENDR_H */

@@ -1,0 +1,53 @@
+"""Learners of the task end_to_end_planning. Made by bindings/python/stubs.py; do not edit."""
+
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, NamedTuple, Optional, Union, overload
+
+from numpy.typing import ArrayLike, NDArray
+from opendr._native_learner import PathLike
+from opendr._native_learner_rl import NativeLearnerRL
+from opendr.engine.data import Observation
+from opendr.engine.target import RlTarget
+
+class EndToEndPlanningRLLearner(NativeLearnerRL):
+    """Flies a drone between obstacles, from its depth camera to heading and yaw.
+
+    Task: end_to_end_planning. ``infer`` takes:
+
+        observation: Observation.
+
+    and gives: RlTarget.
+
+    Args:
+        deterministic: Whether it takes its most likely actions, else some by chance. (default True; may change
+            while running, also for one call of infer)
+        seed: What fixes those by chance, from the beginning of a stream on. (default 0)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        lr: Learning rate of Adam at the beginning; it falls evenly to zero. (default 0.0003; 0 to 1)
+        n_steps: Steps of all environments together between two updates. (default 1024; 1 to 1e+06)
+        batch_size: Steps in a minibatch. (default 64; 1 to 1e+06)
+        total_timesteps: Steps of all environments together. (default 300000; 1 to 2e+09; in OpenDR iters)
+        n_envs: How many environments are stepped together. (default 8; 1 to 65536)
+        num_workers: Threads that step environments and learn; they change no bit. (default 2; 1 to 256)
+        eval_freq: Steps between two measurements of the policy; 0 measures it at the end only. (default 0; 0 to
+            1e+09)
+        n_eval_episodes: Episodes of a measurement. (default 100; 1 to 1e+06)
+        checkpoint_after_iter: Steps between two checkpoints. (default 20000; 1 to 1e+09)
+        checkpoints_kept: How many checkpoints are kept. (default 2; 1 to 1000)
+        preset: Whether settings that are known to solve the environment stand in for those that have their
+            default. (default True)
+    """
+
+    deterministic: bool
+    seed: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, n_steps: int = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ...) -> None: ...
+    @overload
+    def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> list[RlTarget]: ...
+    @overload
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., output: Optional[PathLike] = ..., resume: bool = ..., lr: float = ..., n_steps: int = ..., batch_size: int = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...  # type: ignore[override]
