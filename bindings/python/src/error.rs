@@ -1,7 +1,7 @@
 //! Errors as exceptions: one class per kind, made in `opendr/_errors.py`.
 
 use opendr::Error;
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyNotImplementedError, PyRuntimeError};
 use pyo3::prelude::*;
 
 /// The exception of an error, with the error's kind as its class and its message as its text.
@@ -21,6 +21,9 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
 /// The error that a Python exception is, with the exception as its source.
 pub fn error_from_exception(py: Python<'_>, raised: PyErr) -> Error {
     let text = raised.value(py).to_string();
+    if raised.is_instance_of::<PyNotImplementedError>(py) {
+        return Error::unsupported(text).with_source(raised);
+    }
     let name = raised.get_type(py).name().map(|name| name.to_string()).unwrap_or_default();
     Error::internal(format!("{name}: {text}")).with_source(raised)
 }

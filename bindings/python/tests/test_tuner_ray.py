@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 
 import pytest
 from opendr.engine.learners import Learner
@@ -14,7 +15,8 @@ SPACE = [{"name": "x", "type": "uniform", "low": -1.0, "high": 1.0}]
 
 @pytest.fixture(scope="module")
 def cluster():
-    context = ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False)
+    paths = {"env_vars": {"PYTHONPATH": os.pathsep.join(sys.path)}}
+    context = ray.init(num_cpus=2, include_dashboard=False, log_to_driver=False, runtime_env=paths)
     yield context.address_info["address"]
     ray.shutdown()
 

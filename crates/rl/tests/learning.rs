@@ -105,17 +105,15 @@ fn carts(count: usize) -> Box<dyn VecEnvironment> {
 #[test]
 fn poles_are_balanced_longer_and_longer() {
     let preset = PpoConfig::preset("CartPole-v1").unwrap();
-    let mut config = PpoConfig { n_epochs: 10, ..preset.config };
-    config.network.net_arch = vec![32];
     let mut carts = carts(preset.environments);
-    let mut ppo = Ppo::new(&config, carts.spec()).unwrap();
-    while ppo.report().timesteps < 10_000 {
+    let mut ppo = Ppo::new(&preset.config, carts.spec()).unwrap();
+    while ppo.report().timesteps < 30_000 {
         ppo.iterate(&mut *carts, preset.timesteps).unwrap();
     }
     let mut cart = make("CartPole-v1").unwrap();
     let protocol = EvaluationProtocol { episodes: 20, ..EvaluationProtocol::default() };
     let report = evaluate(ppo.policy(), &mut *cart, &protocol).unwrap();
-    assert!(report.mean_return > 80.0, "{report:?}");
+    assert!(report.mean_return > 200.0, "{}", report.mean_return);
     assert!(evaluate(ppo.policy(), &mut *make("Pendulum-v1").unwrap(), &protocol).is_err());
 }
 

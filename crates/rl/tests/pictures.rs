@@ -11,13 +11,13 @@ use opendr_rl::{
 use support::assert_resumes;
 use support::dots::dots;
 
-fn small(config: OffPolicyConfig) -> OffPolicyConfig {
+fn small(config: OffPolicyConfig, learning_starts: u64) -> OffPolicyConfig {
     OffPolicyConfig {
-        buffer_size: 400,
+        buffer_size: 2000,
         batch_size: 16,
-        learning_starts: 20,
+        learning_starts,
         gamma: 0.0,
-        learning_rate: 3e-3,
+        learning_rate: 1e-3,
         tau: 0.1,
         ..config
     }
@@ -27,22 +27,24 @@ fn networks(config: NetworkConfig) -> NetworkConfig {
     NetworkConfig { net_arch: vec![16], ..config }
 }
 
-fn sac(compute: Compute) -> Sac {
+fn sac(compute: Compute, learning_starts: u64) -> Sac {
     let mut config = SacConfig { ent_coef: Some(0.01), ..SacConfig::default() };
-    (config.off_policy, config.network) = (small(config.off_policy), networks(config.network));
+    (config.off_policy, config.network) =
+        (small(config.off_policy, learning_starts), networks(config.network));
     Sac::new(&config, dots(1).spec()).unwrap().with_compute(compute)
 }
 
-fn td3(compute: Compute) -> Td3 {
+fn td3(compute: Compute, learning_starts: u64) -> Td3 {
     let mut config = Td3Config { action_noise_std: 0.3, ..Td3Config::default() };
-    (config.off_policy, config.network) = (small(config.off_policy), networks(config.network));
+    (config.off_policy, config.network) =
+        (small(config.off_policy, learning_starts), networks(config.network));
     Td3::new(&config, dots(1).spec()).unwrap().with_compute(compute)
 }
 
 #[test]
 fn they_resume_bit_for_bit() {
-    assert_resumes(dots, 30, sac);
-    assert_resumes(dots, 30, td3);
+    assert_resumes(dots, 30, |compute| sac(compute, 20));
+    assert_resumes(dots, 30, |compute| td3(compute, 20));
 }
 
 /// What a bar of brightness says is to be done.
@@ -59,11 +61,11 @@ fn answers(policy: &Policy) -> [f32; 2] {
 #[test]
 fn they_do_what_pictures_show() {
     let mut learners: [Box<dyn Algorithm>; 2] =
-        [Box::new(sac(Compute::single())), Box::new(td3(Compute::single()))];
+        [Box::new(sac(Compute::single(), 200)), Box::new(td3(Compute::single(), 200))];
     for learner in &mut learners {
         let mut worlds = dots(1);
-        let iterations = (0..400).position(|_| {
-            learner.iterate(&mut *worlds, 1000).unwrap();
+        let iterations = (0..5000).position(|_| {
+            learner.iterate(&mut *worlds, 10_000).unwrap();
             let [left, right] = answers(learner.policy());
             left < -0.8 && right > 0.8
         });

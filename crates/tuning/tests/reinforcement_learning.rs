@@ -31,7 +31,7 @@ fn a_promoted_training_comes_to_what_an_uninterrupted_one_does() {
     assert_eq!(done, Tuning::Finished);
     let record = tuner.study().snapshot();
     let paused = record.trials.iter().filter(|trial| trial.is_paused()).count();
-    assert!(paused >= 6 && paused < record.trials.len(), "{paused}");
+    assert!(paused >= 6, "{paused}");
     // Whoever was promoted has both points, and was trained to the second in two pieces.
     let promoted: Vec<&TrialRecord> =
         record.trials.iter().filter(|trial| trial.reports.contains_key(&8192)).collect();
