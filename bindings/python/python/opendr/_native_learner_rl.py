@@ -19,7 +19,7 @@ class NativeLearnerRL(NativeBase, LearnerRL):
     one to measure in.
     """
 
-    def fit(  # type: ignore[override]
+    def fit(
         self,
         env: Any = None,
         val_env: Any = None,

@@ -59,7 +59,7 @@ class Environment(gymnasium.Env[Any, Any]):
         reward, terminated, truncated, info = self._native.step()
         return self._read(), reward, terminated, truncated, info
 
-    def render(self) -> Optional[NDArray[np.uint8]]:  # type: ignore[override]
+    def render(self) -> Optional[NDArray[np.uint8]]:
         """A picture, ``[height, width, 3]``, where the render mode asks for one."""
         pixels = None if self.render_mode is None else self._native.render()
         return None if pixels is None else np.ascontiguousarray(np.transpose(np.asarray(pixels), (1, 2, 0)))

@@ -91,7 +91,7 @@ class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
         infos = self._native.reset(single, seeds, options, None if mask is None else mask.tolist())
         return self._read(), self._infos(infos)
 
-    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], Flags, Flags, dict[str, Any]]:  # type: ignore[override]
+    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], Flags, Flags, dict[str, Any]]:
         """Takes a step everywhere: observations, rewards, terminations, truncations, infos.
 
         Raises:
@@ -125,7 +125,7 @@ class VectorEnvironment(VectorEnv[Any, Any, NDArray[Any]]):
     def _ends(self, over: Flags, infos: dict[str, tuple[Any, Any]]) -> dict[str, Any]:
         last = np.full(self.num_envs, None, dtype=object)
         for index in np.flatnonzero(over):
-            last[index] = element(self.single_observation_space, self._final_observations, index)
+            last[index] = element(self.single_observation_space, self._final_observations, int(index))
         return {
             "final_obs": last,
             "_final_obs": over,

@@ -48,9 +48,11 @@ class RayTrials:
         self, job: Job, slots: int, where: Union[bool, str], resources: Optional[dict[str, Any]] = None
     ) -> None:
         try:
-            import ray  # type: ignore[import-not-found,unused-ignore]
+            import ray as library  # type: ignore[import-not-found,unused-ignore]
         except ImportError as error:
             raise Unsupported("trials on Ray take the package ray: pip install ray") from error
+        # What it makes of functions and classes is beyond its annotations.
+        ray: Any = library
         self._ray = ray
         self._begun = not ray.is_initialized()
         if self._begun:

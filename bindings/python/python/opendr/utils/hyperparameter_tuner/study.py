@@ -14,18 +14,23 @@ class AnyStudy(Protocol):
 
     def ask(self, hyperparameters: list[dict[str, Any]]) -> tuple[int, dict[str, Any]]:
         """The next trial: its number and its parameters."""
+        ...
 
     def report(self, number: int, step: int, value: float) -> bool:
         """Notes what a trial measured; whether it is to stop."""
+        ...
 
     def tell(self, number: int, value: Optional[float] = None, failed: Optional[str] = None) -> None:
         """Ends a trial: with its value, without one as pruned, or with the reason why it failed."""
+        ...
 
     def best(self) -> Optional[dict[str, Any]]:
         """The best complete trial: ``number``, ``value`` and ``params``."""
+        ...
 
     def table(self, rows: int = 10) -> str:
         """The newest trials, for the terminal."""
+        ...
 
 
 class Study:
