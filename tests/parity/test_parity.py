@@ -76,8 +76,11 @@ class Case:
         self.learner = self.table["learner"]
         self.params = self.table.get("params", {})
         self.inputs = [file_of(name, test_data, folder) for name in self.table["inputs"]]
+        entry = opendr.learners()[self.learner.partition("/")[0]]._entry
         #: The port that they go into.
-        self.port = opendr.learners()[self.learner.partition("/")[0]]._entry["ports"][0]["name"]
+        self.port = entry["ports"][0]["name"]
+        #: Whether what comes later depends on what came before: the command must be told that files belong together.
+        self.stateful = entry["stateful"]
         self.targets = self.table.get("ports", {})
         self.folder = folder
         #: A container of the case's own, for a learner that has none in the zoo.
@@ -127,7 +130,9 @@ def by_command(case):
     command = [program("OPENDR_BIN"), "infer", case.learner, *case.inputs, "--json", "--quiet"]
     command += [f"--{name.replace('_', '-')}={value}" for name, value in case.params.items()]
     if case.model:
-        command += ["--model", case.model, "--sequence"]
+        command += ["--model", case.model]
+    if case.stateful:
+        command += ["--sequence"]
     for port, targets in case.targets.items():
         file = case.folder / f"{port}.jsonl"
         file.write_text("".join(json.dumps(target) + "\n" for target in targets))
