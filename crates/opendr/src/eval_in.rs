@@ -85,8 +85,7 @@ pub fn eval_in(
         }
         let first_seed = protocol.first_seed.wrapping_add(index);
         let one = EvaluationProtocol { episodes: 1, first_seed, ..protocol.clone() };
-        let success =
-            |step: &opendr_engine::environment::Step| step.info.get("success").map(|share| share > 0.5);
+        let success = |step: &opendr_engine::environment::Step| step.info.success();
         let report = evaluate_controller(acting, environment, &one, &success);
         episodes.extend(report.inspect_err(|_| progress.end())?.episodes);
         progress.advance(1);

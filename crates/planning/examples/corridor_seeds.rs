@@ -68,7 +68,7 @@ fn measured(
     let space = corridor.spec().observation.clone();
     let mut pilot = Pilot { learner, see: &|numbers| observation_from_numbers(&space, numbers) };
     let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-    let success = |step: &opendr_engine::environment::Step| step.info.get("success").map(|share| share > 0.5);
+    let success = |step: &opendr_engine::environment::Step| step.info.success();
     Ok(evaluate_controller(&mut pilot, &mut *corridor, &protocol, &success)?.success)
 }
 

@@ -87,7 +87,7 @@ fn the_pretrained_policy_arrives() {
         ("UavDepthCorridor-dyn-v1", 0.84),
     ] {
         let protocol = EvaluationProtocol { episodes: 100, ..EvaluationProtocol::default() };
-        let success = |step: &Step| step.info.get("success").map(|share| share > 0.5);
+        let success = |step: &Step| step.info.success();
         let report =
             evaluate_controller(&mut Pilot(&mut learner), &mut *make(id).unwrap(), &protocol, &success);
         let success = report.unwrap().success.unwrap();

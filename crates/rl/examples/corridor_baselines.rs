@@ -43,9 +43,8 @@ fn fly(
 ) -> Result<()> {
     let mut environment = make(id)?;
     let mut controller = BySight::new(controller, environment.spec().observation.clone());
-    let report = evaluate_controller(&mut controller, &mut *environment, protocol, &|step| {
-        step.info.get("success").map(|success| success > 0.5)
-    })?;
+    let report =
+        evaluate_controller(&mut controller, &mut *environment, protocol, &|step| step.info.success())?;
     let Some(success) = report.success else { return Ok(()) };
     let [rate, low, high] =
         [success.rate, success.interval[0], success.interval[1]].map(|share| 100.0 * share);

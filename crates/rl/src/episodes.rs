@@ -39,7 +39,7 @@ impl Episodes {
             *earned += batch.rewards[index];
             *length += 1;
             if batch.terminated[index] || batch.truncated[index] {
-                let success = batch.final_infos[index].get("success").map(|success| success > 0.5);
+                let success = batch.final_infos[index].success();
                 if self.last.len() == KEPT {
                     self.last.pop_front();
                 }

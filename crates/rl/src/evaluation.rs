@@ -6,6 +6,7 @@ use opendr_engine::environment::{Controller, Environment, ResetOptions, Step};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
 use opendr_kernels::Compute;
+use opendr_metrics::{Interval, wilson_interval};
 
 use crate::policy::{Acting, Policy, PolicyMemory};
 
@@ -95,7 +96,7 @@ pub fn evaluate(
         memory: PolicyMemory::default(),
         random: (!protocol.deterministic).then(|| Random::at([protocol.first_seed, 1])),
     };
-    let success = |step: &Step| step.info.get("success").map(|success| success > 0.5);
+    let success = |step: &Step| step.info.success();
     evaluate_controller(&mut player, environment, protocol, &success)
 }
 
@@ -190,16 +191,8 @@ fn run(
 impl SuccessRate {
     /// The share of `successes` among `episodes`; none where there are no episodes.
     pub fn of(successes: u64, episodes: u64) -> Option<Self> {
-        if episodes == 0 {
-            return None;
-        }
-        let (count, z) = (episodes as f64, 1.959_963_984_540_054);
-        let rate = successes as f64 / count;
-        let centre = rate + z * z / (2.0 * count);
-        let width = z * (rate * (1.0 - rate) / count + z * z / (4.0 * count * count)).sqrt();
-        let scale = 1.0 + z * z / count;
-        let interval = [((centre - width) / scale).max(0.0), ((centre + width) / scale).min(1.0)];
-        Some(Self { rate, interval, episodes })
+        let Interval { value, low, high } = wilson_interval(successes, episodes)?;
+        Some(Self { rate: value, interval: [low, high], episodes })
     }
 }
 

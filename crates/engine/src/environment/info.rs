@@ -14,6 +14,11 @@ impl Info {
         self.entries.iter().find_map(|(name, value)| (*name == key).then_some(*value))
     }
 
+    /// Whether the episode reached its goal: a `success` above 0.5; `None` where that is not told.
+    pub fn success(&self) -> Option<bool> {
+        self.get("success").map(|success| success > 0.5)
+    }
+
     /// Sets the number under `key`.
     pub fn set(&mut self, key: &'static str, value: f64) {
         match self.entries.iter_mut().find(|(name, _)| *name == key) {
