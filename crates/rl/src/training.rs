@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use opendr_engine::environment::{Environment, EnvironmentSource};
 use opendr_engine::learner::FitJob;
-use opendr_engine::model::{Manifest, ModelWriter};
+use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::{ParamMap, Params as _};
 use opendr_engine::{Error, ErrorKind, Result, ResultExt as _, Statistics, Unit};
 use opendr_kernels::Compute;
@@ -51,13 +51,14 @@ struct Training<'a, A> {
 /// # Errors
 /// As [`LearnerRl::fit`](opendr_engine::learner::LearnerRl::fit).
 pub fn fit_policy<M: Method>(
-    base: Option<&Policy>,
+    base: Option<&Model>,
     params: &ParamMap,
     fit_params: &M::FitParams,
     env: &dyn EnvironmentSource,
     val_env: Option<&dyn EnvironmentSource>,
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
+    let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
     let begun = Instant::now();
     let first = env.make()?;
     let id = first.spec().id.clone();
@@ -75,7 +76,7 @@ pub fn fit_policy<M: Method>(
         Compute::single()
     };
     let mut training = Training {
-        algorithm: M::algorithm(&fit_params, &spec, compute, base)?,
+        algorithm: M::algorithm(&fit_params, &spec, compute, base.as_ref())?,
         environments,
         params: training,
         val_env: to_measure_in::<M>(env, val_env)?,

@@ -106,7 +106,6 @@ impl LearnerRl for EndToEndPlanningRl {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
-        fit_policy::<PpoInCorridors>(base.as_ref(), &params.to_map(), fit_params, env, val_env, job)
+        fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, env, val_env, job)
     }
 }

@@ -99,7 +99,6 @@ impl<M: Method> LearnerRl for PolicyLearner<M> {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
-        fit_policy::<M>(base.as_ref(), &params.to_map(), fit_params, env, val_env, job)
+        fit_policy::<M>(base, &params.to_map(), fit_params, env, val_env, job)
     }
 }
