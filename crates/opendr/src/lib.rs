@@ -37,6 +37,7 @@ mod export;
 mod fit;
 mod registry;
 mod smaller;
+mod tune;
 
 pub use by_name::{download, learner, learner_with};
 pub use eval_in::{ActingStream, eval_in, trained_in};
@@ -51,6 +52,7 @@ pub use opendr_perception::{
 };
 pub use registry::registry;
 pub use smaller::optimize_loaded;
+pub use tune::{LearnerTraining, TuneData, TuneOptions, Tuned, search_space, tune};
 pub use {
     opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
     opendr_metrics as metrics, opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,

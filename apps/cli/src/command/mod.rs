@@ -13,6 +13,7 @@ mod optimize;
 mod runtime;
 mod score;
 mod sim;
+mod tune;
 
 use std::ffi::{OsStr, OsString};
 
@@ -45,6 +46,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         infer::grammar(),
         eval::grammar(),
         fit::grammar(),
+        tune::grammar(),
         export::grammar(),
         optimize::grammar(),
         score::grammar(),
@@ -60,9 +62,14 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         && let Some(command) = commands.iter_mut().find(|command| command.get_name() == name)
         && let Some(entry) = named_learner(command, rest)?
     {
-        let add = if name == "fit" { learner_flags::add_for_fit } else { learner_flags::add };
+        let add = if ["fit", "tune"].iter().any(|trains| name == trains) {
+            learner_flags::add_for_fit
+        } else {
+            learner_flags::add
+        };
         *command = add(std::mem::take(command), entry);
-        if ["eval", "fit"].iter().any(|acting| name == acting) && environment_flags::is_policy(entry) {
+        if ["eval", "fit", "tune"].iter().any(|acting| name == acting) && environment_flags::is_policy(entry)
+        {
             *command = environment_flags::add(std::mem::take(command));
         }
     }
@@ -86,6 +93,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "infer" => infer::run(matches),
         "eval" => eval::run(matches),
         "fit" => fit::run(matches),
+        "tune" => tune::run(matches),
         "export" => export::run(matches),
         "optimize" => optimize::run(matches),
         "score" => score::run(matches),
@@ -144,7 +152,7 @@ mod tests {
     #[test]
     fn grammar_of_every_learner_is_sound() {
         for entry in opendr::registry().entries() {
-            for command in ["infer", "bench", "eval", "fit"] {
+            for command in ["infer", "bench", "eval", "fit", "tune"] {
                 grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();
             }
         }

@@ -1,0 +1,150 @@
+//! `opendr tune`: the parameters of a training, searched.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use opendr::dataset::{DatasetRef, ExternalDataset};
+use opendr::rl::EvaluationProtocol;
+use opendr::{Error, FitOptions, Progress, Result, TuneData, TuneOptions, Tuned};
+
+use crate::exit::Outcome;
+use crate::progress_bar::Bar;
+use crate::{dataset_flags, environment_flags, learner_flags, loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr tune ppo --env CartPole-v1 --search learning_rate=1e-5..1e-2 --search n_steps=32,64,128,256 --length 50000
+  opendr tune image_classifier digits/ --val-split test --search lr --search width=8,16,32 --length 500
+  opendr tune ppo --env CartPole-v1 --search gamma --output runs/tuned --trials 100     go on in the same folder
+
+A trial is paused where others do better, and goes on from its checkpoint when it turns out to be worth it. OUTPUT/study.log
+is a journal that Optuna reads. Ctrl-C leaves the study whole; the same command goes on. Several processes may share it.";
+
+pub fn grammar() -> Command {
+    Command::new("tune")
+        .about("Search the parameters of a learner's training")
+        .arg(loading::learner())
+        .arg(dataset_flags::dataset())
+        .args(dataset_flags::flags())
+        .arg(
+            Arg::new("val-split")
+                .long("val-split")
+                .value_name("NAME")
+                .help("The part of DATASET to measure on"),
+        )
+        .args(search_flags())
+        .args(loading::flags())
+        .after_help(EXAMPLES)
+}
+
+fn number(name: &'static str, default: &'static str, help: &'static str) -> Arg {
+    let parser = value_parser!(u64).range(1..=1_000_000_000);
+    Arg::new(name).long(name).default_value(default).value_parser(parser).value_name("N").help(help)
+}
+
+fn search_flags() -> [Arg; 10] {
+    [
+        Arg::new("search")
+            .long("search")
+            .action(ArgAction::Append)
+            .value_name("NAME[=LOW..HIGH|=A,B]")
+            .help("A parameter of the training, over its own range, another, or some values; once for each"),
+        number("trials", "30", "Configurations in all, those of earlier calls counted"),
+        number("tuning-seeds", "3", "Seeds of each configuration that comes to the end"),
+        number("length", "100000", "Steps of a whole training"),
+        number("points", "9", "Measurements in the course of a training"),
+        number("jobs", "1", "Trials at a time"),
+        Arg::new("pruner")
+            .long("pruner")
+            .default_value("asha")
+            .value_parser(["asha", "median", "hyperband", "none"])
+            .help("Who stops or pauses trials"),
+        Arg::new("timeout")
+            .long("timeout")
+            .value_parser(value_parser!(f64))
+            .value_name("SECONDS")
+            .help("Begin nothing after this time"),
+        Arg::new("output")
+            .long("output")
+            .short('o')
+            .value_parser(value_parser!(PathBuf))
+            .value_name("DIR")
+            .help("The folder of the study [default: runs/tune-LEARNER-DATE]"),
+        Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print one object of JSON"),
+    ]
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
+    let entry = loading::entry(spec)?;
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let options = options(entry, matches)?;
+    let output = match matches.get_one::<PathBuf>("output") {
+        Some(output) => output.clone(),
+        None => FitOptions::default().output_folder(&format!("tune-{}", entry.spec.name))?,
+    };
+    bar.note(&format!("output: {}", output.display()));
+    let table = |text: &str| bar.note(text.trim_end());
+    let tuned = if environment_flags::is_policy(entry) {
+        let env = environment_flags::source(matches, None)?;
+        let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(20);
+        let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
+        let data = TuneData::Environment { env: &env, protocol: &protocol };
+        opendr::tune(entry, data, &options, &output, &table, &bar)?
+    } else {
+        let external = dataset_flags::external(matches);
+        let (split, val_split) = (dataset_flags::split(matches), matches.get_one::<String>("val-split"));
+        let data = dataset(&external, split.as_deref(), val_split.map(String::as_str))?;
+        opendr::tune(entry, data, &options, &output, &table, &bar)?
+    };
+    tell(&tuned, matches, &bar)
+}
+
+fn dataset<'a>(
+    external: &'a ExternalDataset,
+    split: Option<&'a str>,
+    val_split: Option<&'a str>,
+) -> Result<TuneData<'a>> {
+    let val_split = val_split.ok_or_else(|| {
+        Error::invalid_param("name the part to measure on by --val-split: what is trained on tells nothing")
+    })?;
+    let dataset = DatasetRef::External(external);
+    Ok(TuneData::Dataset { dataset, val_dataset: dataset, split, val_split: Some(val_split) })
+}
+
+fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Result<TuneOptions> {
+    let number = |name: &str| matches.get_one::<u64>(name).copied().unwrap_or(1);
+    let small = |name: &str| usize::try_from(number(name)).unwrap_or(usize::MAX);
+    let fit_params = learner_flags::fit_params(entry, matches)?;
+    let seed = fit_params.get("seed").and_then(|seed| seed.as_float()).unwrap_or(0.0);
+    let length = number("length");
+    Ok(TuneOptions {
+        search: matches.get_many::<String>("search").into_iter().flatten().cloned().collect(),
+        fit_params,
+        params: learner_flags::params(entry, matches)?,
+        trials: small("trials"),
+        seeds: small("tuning-seeds"),
+        length,
+        interval: length.div_ceil(number("points")),
+        pruner: matches.get_one::<String>("pruner").cloned().unwrap_or_default(),
+        jobs: small("jobs"),
+        timeout: matches.get_one::<f64>("timeout").map(|seconds| Duration::from_secs_f64(seconds.max(0.0))),
+        seed: seed as u64,
+        device: loading::device(matches)?,
+    })
+}
+
+fn tell(tuned: &Tuned, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+    if matches.get_flag("json") {
+        let json = serde_json::to_string(tuned)
+            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
+        stdout::print(json)?;
+    } else {
+        stdout::print(tuned.to_string().trim_end())?;
+    }
+    if !tuned.complete {
+        bar.note("stopped: the same command goes on");
+    }
+    Ok(Outcome::Done)
+}

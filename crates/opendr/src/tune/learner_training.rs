@@ -1,0 +1,159 @@
+//! A learner's training as something that a tuner carries out.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use opendr_engine::learner::{AnyLearner, Entry};
+use opendr_engine::params::{ParamMap, ParamValue};
+use opendr_engine::{Error, Progress, Result, ResultExt as _, Silent};
+use opendr_evaluation::EvalOptions;
+use opendr_tuning::Training;
+
+use super::until::Until;
+use super::{TuneData, TuneOptions};
+use crate::{ActingStream, FitData, FitEnvironments, FitOptions, eval_in, fit, fit_in};
+
+/// One configuration with one seed: `fit`, stopped at every point with its checkpoint, and resumed.
+pub struct LearnerTraining<'a> {
+    entry: &'static Entry,
+    data: TuneData<'a>,
+    learner: Box<dyn AnyLearner>,
+    params: ParamMap,
+    folder: PathBuf,
+    progress: &'a dyn Progress,
+}
+
+static COUNTER: AtomicU64 = AtomicU64::new(0);
+
+/// Parameters of trainings in environments by their names: length, seed, measurements of their own.
+const LENGTH: [&str; 2] = ["total_timesteps", "max_steps"];
+const SEED: &str = "seed";
+const MEASUREMENTS: &str = "eval_freq";
+
+impl<'a> LearnerTraining<'a> {
+    /// A training that has not begun; it works in a folder of its own below `work`.
+    ///
+    /// # Errors
+    /// `InvalidParam` for parameters that do not fit.
+    pub fn new(
+        entry: &'static Entry,
+        data: TuneData<'a>,
+        options: &TuneOptions,
+        trial: &ParamMap,
+        seed: u64,
+        work: &Path,
+        progress: &'a dyn Progress,
+    ) -> Result<Self> {
+        let mut params = options.fit_params.clone();
+        let has = |name: &str| entry.fit_params.iter().any(|field| field.name == name);
+        params.extend(
+            LENGTH
+                .into_iter()
+                .filter(|name| has(name))
+                .map(|name| (name.to_owned(), (options.length as i64).into())),
+        );
+        if has(SEED) {
+            params.insert(SEED.to_owned(), (seed as i64).into());
+        }
+        if has(MEASUREMENTS) {
+            params.insert(MEASUREMENTS.to_owned(), ParamValue::Int(0));
+        }
+        params.extend(trial.clone());
+        let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+        let folder = work.join(format!("{}-{number}", std::process::id()));
+        fs::remove_dir_all(&folder).ok();
+        let learner = entry.make(&options.params, options.device)?;
+        Ok(Self { entry, data, learner, params, folder, progress })
+    }
+
+    fn train(&mut self, until: u64) -> Result<()> {
+        let options = FitOptions {
+            params: self.params.clone(),
+            output: Some(self.folder.clone()),
+            resume: self.folder.exists(),
+            ..FitOptions::default()
+        };
+        let until = Until::new(self.progress, until);
+        match self.data {
+            TuneData::Environment { env, .. } => {
+                let environments = FitEnvironments { env, val_env: None };
+                fit_in(self.learner.as_mut(), self.entry, environments, &options, &until)
+            }
+            TuneData::Dataset { dataset, split, .. } => {
+                let options = FitOptions { split: split.map(str::to_owned), ..options };
+                fit(self.learner.as_mut(), self.entry, FitData::from(dataset), &options, &until)
+            }
+        }
+        .map(drop)
+    }
+
+    fn measure(&mut self) -> Result<f64> {
+        match self.data {
+            TuneData::Environment { env, protocol } => {
+                let mut environment = env.make()?;
+                let mut acting = ActingStream::new(self.learner.stream()?, self.entry, environment.spec())?;
+                let report = eval_in(&mut acting, environment.as_mut(), protocol, &Silent)?;
+                Ok(report.success.map_or(report.mean_return, |success| success.rate))
+            }
+            TuneData::Dataset { val_dataset, val_split, .. } => {
+                let options = EvalOptions { split: val_split.map(str::to_owned), ..EvalOptions::default() };
+                let outcome = options.run(&mut self.learner, self.entry, val_dataset, &Silent)?;
+                let (name, _) = options.metric_for(self.entry)?.numbers[0];
+                outcome.report.statistics.get(name).ok_or_else(|| {
+                    Error::invalid_input(format!("there is no {name} on these data: is anything annotated?"))
+                })
+            }
+        }
+    }
+}
+
+impl Training for LearnerTraining<'_> {
+    fn advance(&mut self, until: u64) -> Result<f64> {
+        self.train(until)?;
+        self.measure()
+    }
+
+    fn save(&self, folder: &Path) -> Result<()> {
+        copied(&self.folder, folder)
+    }
+
+    fn load(&mut self, folder: &Path) -> Result<()> {
+        copied(folder, &self.folder)
+    }
+}
+
+impl Drop for LearnerTraining<'_> {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.folder);
+    }
+}
+
+/// Copies a folder so that the copy is there whole or not at all.
+fn copied(from: &Path, to: &Path) -> Result<()> {
+    let context = || format!("copying {} to {}", from.display(), to.display());
+    let number = COUNTER.fetch_add(1, Ordering::Relaxed);
+    let beside = to.with_extension(format!("partial-{}-{number}", std::process::id()));
+    copy(from, &beside).context(context)?;
+    fs::remove_dir_all(to).ok();
+    fs::rename(&beside, to).context(context)
+}
+
+fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        match entry.file_type()?.is_dir() {
+            true => copy(&entry.path(), &target)?,
+            false => fs::copy(entry.path(), target).map(drop)?,
+        }
+    }
+    Ok(())
+}
+
+/// Whether less is better of what the learner's task is measured by.
+pub(super) fn measured_by_error(entry: &Entry) -> Result<bool> {
+    let metric = EvalOptions::default().metric_for(entry)?;
+    Ok(metric.is_error(metric.numbers[0].0))
+}
