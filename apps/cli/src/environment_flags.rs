@@ -16,14 +16,17 @@ pub fn is_policy(entry: &Entry) -> bool {
     entry.ports.iter().any(|port| port.value_type == ValueType::Observation)
 }
 
-/// Makes a command that takes a data set one that takes an environment.
+/// Makes a command that takes a data set one that measures in an environment.
+pub fn add_for_episodes(command: Command) -> Command {
+    add(command)
+        .mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false).hide(true))
+        .arg(episodes_flag())
+}
+
+/// Adds the flags of the environment.
 pub fn add(command: Command) -> Command {
     let words = "The environment to act in, e.g. CartPole-v1 (\"opendr sim list\")";
-    command
-        .mut_arg(dataset_flags::DATASET, |dataset| dataset.required(false).hide(true))
-        .arg(Arg::new(ENV).long(ENV).value_name("ID").help(words))
-        .arg(param_flag())
-        .arg(seed_flag())
+    command.arg(Arg::new(ENV).long(ENV).value_name("ID").help(words)).arg(param_flag())
 }
 
 /// The flag of the environment's own parameters.
@@ -35,7 +38,7 @@ pub fn param_flag() -> Arg {
         .help("A parameter of the environment (\"opendr sim list ID\" names them)")
 }
 
-fn seed_flag() -> Arg {
+fn episodes_flag() -> Arg {
     Arg::new("episodes")
         .long("episodes")
         .value_parser(value_parser!(u64).range(1..=1_000_000))

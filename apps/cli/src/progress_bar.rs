@@ -58,6 +58,11 @@ impl Bar {
         Self { shown: Mutex::new(Shown::Nothing), quiet }
     }
 
+    /// Whether it is drawn anew all the time, on a terminal.
+    pub fn is_live(&self) -> bool {
+        matches!(&*self.shown(), Shown::Bar(..))
+    }
+
     /// Prints to standard output or error without tearing the bar.
     pub fn suspend<R>(&self, print: impl FnOnce() -> R) -> R {
         match &*self.shown() {

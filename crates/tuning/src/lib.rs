@@ -25,6 +25,6 @@ pub use sampler::{CmaEs, Drawn, QuasiRandom, RandomSearch, Sampler, Tpe};
 pub use space::{Condition, Parameter, SearchSpace, defaults_from_fields};
 pub use storage::Storage;
 pub use study::{Budget, Outcome, Progress, Reevaluation, Study, Trial, fresh_seeds, training_seeds};
-pub use table::table_from_study;
+pub use table::{line_from_study, table_from_study};
 pub use timestamp::Timestamp;
 pub use tuner::{Plan, Training, Tuner, Tuning};

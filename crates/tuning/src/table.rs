@@ -33,6 +33,19 @@ pub fn table_from_study(study: &StudyRecord, rows: usize) -> String {
     text + &aligned(&lines)
 }
 
+/// One trial in a line: how far it is, what it measured there, its parameters; and the best value so far.
+pub fn line_from_study(study: &StudyRecord, number: usize) -> String {
+    let Some(trial) = study.trials.get(number) else { return String::new() };
+    let names: Vec<_> = trial.params.keys().map(String::as_str).collect();
+    let words = line("", trial, &names);
+    let [_, number, state, step, value] = [0, 1, 2, 3, 4].map(|at| words[at].as_str());
+    let params: Vec<_> =
+        names.iter().zip(&words[5..]).map(|(name, value)| format!("{name} {value}")).collect();
+    let measured = if step.is_empty() { String::new() } else { format!(" {value} at {step}") };
+    let best = study.best().and_then(TrialRecord::value).map(|best| format!("; best {}", short(best)));
+    format!("trial {number} {state}{measured}: {}{}", params.join(", "), best.unwrap_or_default())
+}
+
 /// The names of all parameters, in the order of their first trials.
 fn names(study: &StudyRecord) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();

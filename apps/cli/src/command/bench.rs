@@ -4,21 +4,28 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::data::{Image, Layout, PixelFormat};
+use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, ResetOptions};
 use opendr::inference::{SessionOptions, describe};
-use opendr::learner::{AnyLearner, Ports};
+use opendr::learner::{AnyLearner, Entry, Ports};
 use opendr::zoo::ItemKind;
-use opendr::{Error, Progress, Result, Unit, vision};
+use opendr::{ActingStream, Error, Progress, Result, Unit, vision};
 use serde::Serialize;
 
 use crate::exit::Outcome;
 use crate::peak_memory::peak_memory_mb;
 use crate::progress_bar::Bar;
 use crate::timings::Timings;
-use crate::{learner_flags, loading, stdout};
+use crate::{environment_flags, learner_flags, loading, stdout};
 
 /// Size of the picture when none is given, pixels.
 const WIDTH: usize = 1920;
 const HEIGHT: usize = 1080;
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr bench LEARNER
+  opendr bench LEARNER faces.jpg --threads 1 --json
+  opendr bench ppo --env CartPole-v1                a policy, in the environment that it acts in";
 
 pub fn grammar() -> Command {
     let count = |name: &'static str, default: &'static str| {
@@ -34,8 +41,8 @@ pub fn grammar() -> Command {
                 .value_name("PICTURE")
                 .help("What to run on; a sample of the zoo, or a drawn picture, at 1920x1080 otherwise"),
         )
-        .arg(count("frames", "100").help("Frames to measure"))
-        .arg(count("warmup", "10").help("Frames before that"))
+        .arg(count("frames", "100").help("Frames, or steps of a policy, to measure"))
+        .arg(count("warmup", "10").help("Frames, or steps, before that"))
         .arg(
             Arg::new("json")
                 .long("json")
@@ -43,7 +50,7 @@ pub fn grammar() -> Command {
                 .help("Print JSON (docs/command-line.md)"),
         )
         .args(loading::flags())
-        .after_help("Examples:\n  opendr bench LEARNER\n  opendr bench LEARNER faces.jpg --threads 1 --json")
+        .after_help(EXAMPLES)
 }
 
 #[derive(Serialize)]
@@ -52,7 +59,8 @@ struct Measurement {
     runtime: String,
     device: String,
     threads: usize,
-    picture: Picture,
+    #[serde(flatten)]
+    seen: Seen,
     frames: usize,
     frames_per_second: f64,
     p50_ms: Timings,
@@ -60,11 +68,14 @@ struct Measurement {
     peak_memory_mb: Option<f64>,
 }
 
+/// What was inferred from.
 #[derive(Serialize)]
-struct Picture {
-    source: String,
-    width: usize,
-    height: usize,
+#[serde(rename_all = "snake_case")]
+enum Seen {
+    /// One picture, again and again.
+    Picture { source: String, width: usize, height: usize },
+    /// What an environment showed in the course of episodes.
+    Environment(String),
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
@@ -72,22 +83,20 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let entry = loading::entry(spec)?;
     let options = SessionOptions::from(loading::device(matches)?);
     let bar = Bar::new(matches.get_flag("quiet"));
-    let further = learner_flags::port_files(entry, matches)?;
     let mut learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?;
-    let (source, image) = picture(matches, &bar)?;
-    let mut ports = Ports::one(&image);
-    for file in &further {
-        ports = ports.with(file.name(), file.value(0)?);
-    }
-    let [frames, warmup] =
-        ["frames", "warmup"].map(|name| matches.get_one::<u32>(name).map_or(1, |&count| count as usize));
-    let timings = measure(learner.as_mut(), &ports, warmup, frames, &bar)?;
+    let (seen, timings) = match environment_flags::is_policy(entry) {
+        true => acting(learner.as_ref(), entry, matches, &bar)?,
+        false => seeing(learner.as_mut(), entry, matches, &bar)?,
+    };
     let measurement = Measurement {
         learner: spec.to_owned(),
-        runtime: describe(options)?,
+        runtime: match timings.iter().any(|one| one.session > 0.0) {
+            true => describe(options)?,
+            false => "its own kernels".to_owned(),
+        },
         device: learner.device().to_string(),
         threads: options.thread_count()?,
-        picture: Picture { source, width: image.width(), height: image.height() },
+        seen,
         frames: timings.len(),
         frames_per_second: 1e3 * timings.len() as f64 / timings.iter().map(|one| one.total).sum::<f64>(),
         p50_ms: percentile(&timings, 0.50),
@@ -96,6 +105,51 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     print(&measurement, matches.get_flag("json"))?;
     Ok(Outcome::Done)
+}
+
+/// Measures a learner of pictures.
+fn seeing(
+    learner: &mut dyn AnyLearner,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &Bar,
+) -> Result<(Seen, Vec<Timings>)> {
+    let further = learner_flags::port_files(entry, matches)?;
+    let (source, image) = picture(matches, bar)?;
+    let mut ports = Ports::one(&image);
+    for file in &further {
+        ports = ports.with(file.name(), file.value(0)?);
+    }
+    let timings =
+        measure(matches, bar, || Timings::of(|| learner.infer(&ports)).map(|(_, timings)| timings))?;
+    Ok((Seen::Picture { source, width: image.width(), height: image.height() }, timings))
+}
+
+/// Measures a policy in the course of episodes; the environment's own time does not count.
+fn acting(
+    learner: &dyn AnyLearner,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &Bar,
+) -> Result<(Seen, Vec<Timings>)> {
+    let source = environment_flags::source(matches, Some(learner))?;
+    let mut environment = source.make()?;
+    let mut stream = ActingStream::new(learner.stream()?, entry, environment.spec())?;
+    let mut shown = vec![0.0; environment.spec().observation.len()];
+    let mut action = vec![0.0; environment.spec().action.len()];
+    let begin = |environment: &mut dyn Environment, seed, shown: &mut [f32]| {
+        environment.reset(seed, &ResetOptions::new(), shown).map(drop)
+    };
+    begin(environment.as_mut(), Some(0), &mut shown)?;
+    let timings = measure(matches, bar, || {
+        let ((), timings) = Timings::of(|| stream.act(&shown, &mut action))?;
+        if environment.step(&action, &mut shown)?.is_over() {
+            begin(environment.as_mut(), None, &mut shown)?;
+            stream.reset();
+        }
+        Ok(timings)
+    })?;
+    Ok((Seen::Environment(source.id().to_owned()), timings))
 }
 
 /// What to run on, and where it is from.
@@ -125,17 +179,18 @@ fn drawn_picture() -> Result<Image> {
     Image::new(samples, WIDTH, HEIGHT, PixelFormat::Rgb, Layout::Hwc)
 }
 
+/// The timings of as many calls as the user wants.
 fn measure(
-    learner: &mut dyn AnyLearner,
-    ports: &Ports<'_>,
-    warmup: usize,
-    frames: usize,
+    matches: &ArgMatches,
     bar: &Bar,
+    mut call: impl FnMut() -> Result<Timings>,
 ) -> Result<Vec<Timings>> {
+    let [frames, warmup] =
+        ["frames", "warmup"].map(|name| matches.get_one::<u32>(name).map_or(1, |&count| count as usize));
     bar.begin("measuring", Some((warmup + frames) as u64), Unit::Items);
     let mut timings = Vec::with_capacity(frames);
     for frame in 0..warmup + frames {
-        let (_, one) = Timings::of(|| learner.infer(ports))?;
+        let one = call().inspect_err(|_| bar.end())?;
         if frame >= warmup {
             timings.push(one);
         }
@@ -166,14 +221,16 @@ fn print(measurement: &Measurement, json: bool) -> Result<()> {
             text.map_err(|error| Error::internal("the figures have no JSON form").with_source(error))?,
         );
     }
-    let Measurement { learner, runtime, picture, frames, frames_per_second, p50_ms, p99_ms, .. } =
-        measurement;
-    let Picture { source, width, height } = picture;
+    let Measurement { learner, runtime, seen, frames, frames_per_second, p50_ms, p99_ms, .. } = measurement;
+    let seen = match seen {
+        Seen::Picture { source, width, height } => format!("frames of {width}x{height} ({source})"),
+        Seen::Environment(id) => format!("steps in {id}"),
+    };
     let memory =
         measurement.peak_memory_mb.map_or_else(String::new, |peak| format!("\npeak memory: {peak:.0} MB"));
     stdout::print(format_args!(
         "{learner} on {runtime}\n\
-         {frames} frames of {width}x{height} ({source}): {frames_per_second:.1} frames a second\n\
+         {frames} {seen}: {frames_per_second:.1} a second\n\
          p50: {p50_ms}\np99: {p99_ms}{memory}"
     ))
 }

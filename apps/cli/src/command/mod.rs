@@ -68,9 +68,13 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
             learner_flags::add
         };
         *command = add(std::mem::take(command), entry);
-        if ["eval", "fit", "tune"].iter().any(|acting| name == acting) && environment_flags::is_policy(entry)
-        {
-            *command = environment_flags::add(std::mem::take(command));
+        if environment_flags::is_policy(entry) {
+            let add = match name.to_str() {
+                Some("eval" | "fit" | "tune") => environment_flags::add_for_episodes,
+                Some("bench") => environment_flags::add,
+                _ => |command| command,
+            };
+            *command = add(std::mem::take(command));
         }
     }
     Ok(Command::new("opendr")

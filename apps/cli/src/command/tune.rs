@@ -1,11 +1,13 @@
 //! `opendr tune`: the parameters of a training, searched.
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::rl::EvaluationProtocol;
+use opendr::tuning::{StudyRecord, line_from_study, table_from_study};
 use opendr::{Error, FitOptions, Progress, Result, TuneData, TuneOptions, Tuned};
 
 use crate::exit::Outcome;
@@ -20,6 +22,9 @@ Examples:
 
 A trial is paused where others do better, and goes on from its checkpoint when it turns out to be worth it. OUTPUT/study.log
 is a journal that Optuna reads. Ctrl-C leaves the study whole; the same command goes on. Several processes may share it.";
+
+/// Trials in the table that is shown meanwhile.
+const LIVE_ROWS: usize = 12;
 
 pub fn grammar() -> Command {
     Command::new("tune")
@@ -85,18 +90,30 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         None => FitOptions::default().output_folder(&format!("tune-{}", entry.spec.name))?,
     };
     bar.note(&format!("output: {}", output.display()));
-    let table = |text: &str| bar.note(text.trim_end());
+    let told = Mutex::new(String::new());
+    let watch = |study: &StudyRecord, number: usize| {
+        if bar.is_live() {
+            return bar.status(&format!("\n{}", table_from_study(study, LIVE_ROWS)));
+        }
+        // On its way with a further seed a trial stands where it stood.
+        let (line, mut told) =
+            (line_from_study(study, number), told.lock().unwrap_or_else(PoisonError::into_inner));
+        if line != *told {
+            bar.note(&line);
+            *told = line;
+        }
+    };
     let tuned = if environment_flags::is_policy(entry) {
         let env = environment_flags::source(matches, None)?;
         let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(20);
         let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
         let data = TuneData::Environment { env: &env, protocol: &protocol };
-        opendr::tune(entry, data, &options, &output, &table, &bar)?
+        opendr::tune(entry, data, &options, &output, &watch, &bar)?
     } else {
         let external = dataset_flags::external(matches);
         let (split, val_split) = (dataset_flags::split(matches), matches.get_one::<String>("val-split"));
         let data = dataset(&external, split.as_deref(), val_split.map(String::as_str))?;
-        opendr::tune(entry, data, &options, &output, &table, &bar)?
+        opendr::tune(entry, data, &options, &output, &watch, &bar)?
     };
     tell(&tuned, matches, &bar)
 }

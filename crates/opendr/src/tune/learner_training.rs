@@ -67,7 +67,8 @@ impl<'a> LearnerTraining<'a> {
         Ok(Self { entry, data, learner, params, folder, progress })
     }
 
-    fn train(&mut self, until: u64) -> Result<()> {
+    /// Whether it came as far.
+    fn train(&mut self, until: u64) -> Result<bool> {
         let options = FitOptions {
             params: self.params.clone(),
             output: Some(self.folder.clone()),
@@ -85,7 +86,7 @@ impl<'a> LearnerTraining<'a> {
                 fit(self.learner.as_mut(), self.entry, FitData::from(dataset), &options, &until)
             }
         }
-        .map(drop)
+        .map(|_| !self.progress.stopped())
     }
 
     fn measure(&mut self) -> Result<f64> {
@@ -109,9 +110,11 @@ impl<'a> LearnerTraining<'a> {
 }
 
 impl Training for LearnerTraining<'_> {
-    fn advance(&mut self, until: u64) -> Result<f64> {
-        self.train(until)?;
-        self.measure()
+    fn advance(&mut self, until: u64) -> Result<Option<f64>> {
+        if !self.train(until)? {
+            return Ok(None);
+        }
+        self.measure().map(Some)
     }
 
     fn save(&self, folder: &Path) -> Result<()> {

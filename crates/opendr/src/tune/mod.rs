@@ -6,18 +6,19 @@ mod tuned;
 mod until;
 
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::environment::EnvironmentSource;
 use opendr_engine::learner::Entry;
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Device, Error, Progress, Result, ResultExt as _};
+use opendr_engine::{Device, Error, Progress, Result, ResultExt as _, Unit};
 use opendr_rl::EvaluationProtocol;
 use opendr_runlog::{svg_from_figure, write_atomically};
 use opendr_tuning::{
-    Asha, Budget, Direction, Hyperband, Median, NoPruner, Plan, Progress as Going, Storage, Study, Tpe,
-    Tuner, history_figure, importance_figure, importance_from_study,
+    Asha, Budget, Direction, Hyperband, Median, NoPruner, Plan, Progress as Going, Storage, Study,
+    StudyRecord, Tpe, TrialState, Tuner, Tuning, history_figure, importance_figure, importance_from_study,
 };
 
 pub use learner_training::LearnerTraining;
@@ -80,10 +81,12 @@ pub struct TuneOptions {
 const STUDY: &str = "study.log";
 /// The folder of trials in the output folder.
 const TRIALS: &str = "trials";
+/// The folder of trainings that are under way in the output folder.
+const WORK: &str = "work";
 
 /// Tunes the training of a learner of `entry`; everything is kept in `output`, where a later call goes on.
 ///
-/// `table` is shown the study after every measurement.
+/// `watch` sees the study, and the number of a trial, after every measurement.
 ///
 /// # Errors
 /// `Unsupported` when the learner does not train so; `InvalidParam` for parameters that there are not; those of trainings
@@ -93,7 +96,7 @@ pub fn tune(
     data: TuneData<'_>,
     options: &TuneOptions,
     output: &Path,
-    table: &(dyn Fn(&str) + Sync),
+    watch: &(dyn Fn(&StudyRecord, usize) + Sync),
     progress: &dyn Progress,
 ) -> Result<Tuned> {
     let begun = Instant::now();
@@ -110,23 +113,30 @@ pub fn tune(
     let study = study(entry, data, options, output)?;
     let plan = Plan::every(options.interval, options.length)?.with_seeds(options.seed, options.seeds);
     let begin = |params: &ParamMap, seed: u64| {
-        LearnerTraining::new(entry, data, options, params, seed, &output.join("work"), progress)
+        LearnerTraining::new(entry, data, options, params, seed, &output.join(WORK), progress)
     };
     let tuner = Tuner::new(study, space, plan, output.join(TRIALS), begin)?;
     let mut budget = Budget::total(options.trials).threads(options.jobs);
     if let Some(timeout) = options.timeout {
         budget = budget.timeout(timeout);
     }
-    tuner.run(&budget, |study, _| {
-        table(&opendr_tuning::table_from_study(study, 8));
+    progress.begin(entry.spec.name, Some(options.trials as u64), Unit::Items);
+    let known = AtomicUsize::new(0);
+    let ended = tuner.run(&budget, |study, number| {
+        let trials = study.trials.iter().filter(|trial| trial.state != TrialState::Failed).count();
+        progress.advance(trials.saturating_sub(known.fetch_max(trials, Ordering::Relaxed)) as u64);
+        watch(study, number);
         if progress.stopped() { Going::Stop } else { Going::Continue }
-    })?;
-    let complete = !progress.stopped();
-    let again = match complete && tuner.study().best().is_some() {
-        true => Some(tuner.reevaluate()?),
+    });
+    progress.end();
+    let ended = ended?;
+    let best = tuner.study().best();
+    let again = match ended == Tuning::Finished && best.is_some() {
+        true => tuner.reevaluate()?,
         false => None,
     };
-    let best = tuner.study().best();
+    // Empty but for what a killed process left there.
+    std::fs::remove_dir(output.join(WORK)).ok();
     for (name, figure) in [
         ("history.svg", tuner.study().inspect(history_figure)),
         ("importance.svg", tuner.study().inspect(importance_figure)),
@@ -139,10 +149,10 @@ pub fn tune(
             .as_ref()
             .map(|best| best.params.iter().map(|(name, it)| (name.clone(), it.value())).collect()),
         value: best.and_then(|best| best.value()),
+        complete: again.is_some(),
         fresh_values: again.map(|again| again.values).unwrap_or_default(),
         importance: tuner.study().inspect(importance_from_study).into_iter().collect(),
         trials: tuner.study().inspect(|study| study.trials.len()),
-        complete,
         seconds: begun.elapsed().as_secs_f64(),
         output: output.to_owned(),
     })

@@ -35,14 +35,14 @@ impl<'a> CartPoleTraining<'a> {
 
 impl Training for CartPoleTraining<'_> {
     /// The mean return of twenty episodes, always the same.
-    fn advance(&mut self, until: u64) -> Result<f64> {
+    fn advance(&mut self, until: u64) -> Result<Option<f64>> {
         let before = self.ppo.report().timesteps;
         while self.ppo.report().timesteps < until {
             self.ppo.iterate(&mut *self.carts, LENGTH)?;
         }
         self.steps.fetch_add(self.ppo.report().timesteps - before, Ordering::Relaxed);
         let protocol = EvaluationProtocol { episodes: 20, ..EvaluationProtocol::default() };
-        Ok(evaluate(self.ppo.policy(), &mut *self.cart, &protocol)?.mean_return)
+        Ok(Some(evaluate(self.ppo.policy(), &mut *self.cart, &protocol)?.mean_return))
     }
 
     fn save(&self, folder: &Path) -> Result<()> {

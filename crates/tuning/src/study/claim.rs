@@ -13,8 +13,9 @@ use crate::storage::{NewTrial, Notes, Operation, is_dead};
 use crate::study::{FIXED, Study, Trial, check_compatible, last_sign, outcome};
 
 impl Study {
-    /// The next trial: an interrupted one, a paused one that should go on, one of the queue, or a new one where `may_begin` allows it. Choice
-    /// and parameters are written while no other worker can write, so no two get the same, and each knows of all others.
+    /// The next trial: an interrupted one, a paused one that should go on, one of the queue, a new one where `may_begin`
+    /// allows it, or the one to be finished. Choice and parameters are written while no other worker can write, so no two get
+    /// the same, and each knows of all others.
     pub(super) fn claim(
         &self,
         space: &SearchSpace,
@@ -32,14 +33,16 @@ impl Study {
             let queued =
                 || study.trials.iter().find(|trial| trial.state == TrialState::Waiting && !trial.is_paused());
             let promoted = || self.pruner.promotable(study).and_then(|number| study.trials.get(number));
-            let (number, id, known) = match interrupted.or_else(promoted).or_else(queued) {
+            let known = interrupted.or_else(promoted).or_else(queued);
+            let begins = known.is_none() && may_begin(study);
+            let (number, id, known) = match known.or_else(|| if begins { None } else { to_finish(study) }) {
                 Some(trial) => {
                     let (state, values, at) = (TrialState::Running, Vec::new(), Timestamp::now());
                     operations.extend(trial.is_interrupted().then(|| outcome::go_on(trial)));
                     operations.push(Operation::SetState { trial: trial.id, state, values, at });
                     (trial.number, trial.id, Some(trial))
                 }
-                None if may_begin(study) => {
+                None if begins => {
                     let trial = Box::new(NewTrial::new(TrialState::Running));
                     operations.push(Operation::CreateTrial { study: self.id, trial });
                     (study.trials.len(), replay.next_trial(), None)
@@ -119,6 +122,20 @@ impl Study {
         }
         Ok(operations)
     }
+}
+
+/// The one to carry to its end when no trial ever came there, and none is under way: of the paused that came furthest the
+/// best, so that a study whose budget is used up has a result.
+fn to_finish(study: &StudyRecord) -> Option<&TrialRecord> {
+    let ends = |trial: &TrialRecord| matches!(trial.state, TrialState::Complete | TrialState::Running);
+    if study.directions.len() != 1 || study.trials.iter().any(ends) {
+        return None;
+    }
+    let stand =
+        |trial: &TrialRecord| trial.last_report().map(|(step, value)| (-step, study.direction().loss(value)));
+    let paused = study.trials.iter().filter(|trial| trial.is_paused());
+    let stands = paused.filter_map(|trial| Some((stand(trial)?, trial)));
+    stands.min_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1))).map(|(_, trial)| trial)
 }
 
 /// Whether a parameter's condition holds.

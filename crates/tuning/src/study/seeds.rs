@@ -87,15 +87,16 @@ impl Trial<'_> {
 }
 
 impl Study {
-    /// Measures the best trial again, with seeds by which it was not chosen, and notes what came of it beside the study.
+    /// Measures the best trial again, with seeds by which it was not chosen, and notes what came of it beside the study;
+    /// nothing once `measure` says none, as after Ctrl-C.
     ///
     /// # Errors
     /// `InvalidParam` when no trial is complete, or there are no seeds; that of `measure`; `Io` and `Format` of the storage.
     pub fn reevaluate_best(
         &self,
         seeds: &[u64],
-        measure: impl FnMut(&TrialRecord, u64) -> Result<f64>,
-    ) -> Result<Reevaluation> {
+        measure: impl FnMut(&TrialRecord, u64) -> Result<Option<f64>>,
+    ) -> Result<Option<Reevaluation>> {
         let best = self.best().and_then(|best| best.value().map(|value| (best, value)));
         let (Some((best, chosen_by)), false) = (best, seeds.is_empty()) else {
             return Err(Error::invalid_param(
@@ -103,12 +104,13 @@ impl Study {
             ));
         };
         let mut measure = measure;
-        let values = seeds.iter().map(|seed| measure(&best, *seed)).collect::<Result<Vec<_>>>()?;
+        let values = seeds.iter().map(|seed| measure(&best, *seed)).collect::<Result<Option<Vec<_>>>>()?;
+        let Some(values) = values else { return Ok(None) };
         let told = Reevaluation { number: best.number, chosen_by, values };
         self.note_of_study(
             REEVALUATION,
             json!({"trial": told.number, "chosen_by": chosen_by, "seeds": seeds, "values": told.values, "mean": told.mean()}),
         )?;
-        Ok(told)
+        Ok(Some(told))
     }
 }

@@ -56,7 +56,7 @@ fn wrong_use_is_told() {
     assert!(Study::open(Storage::memory(), "s", &[]).is_err());
     let two = Study::open(Storage::memory(), "s", &[Direction::Minimize; 2]).unwrap();
     assert!(two.ask(&space()).unwrap().report(0, 1.0).is_err());
-    assert!(study.reevaluate_best(&[1], |_, _| Ok(0.0)).is_err());
+    assert!(study.reevaluate_best(&[1], |_, _| Ok(Some(0.0))).is_err());
 }
 
 #[test]
@@ -170,8 +170,11 @@ fn a_configuration_counts_after_all_its_seeds() {
     assert!((best.value().unwrap() - mean).abs() < 1e-12);
     let fresh = fresh_seeds(1, 5);
     assert!(fresh.iter().all(|seed| !seeds.contains(seed)));
-    let again =
-        study.reevaluate_best(&fresh, |trial, seed| Ok(trial.params["x"].number + noise(seed))).unwrap();
+    assert_eq!(study.reevaluate_best(&fresh, |_, _| Ok(None)).unwrap(), None);
+    let again = study
+        .reevaluate_best(&fresh, |trial, seed| Ok(Some(trial.params["x"].number + noise(seed))))
+        .unwrap()
+        .unwrap();
     assert_eq!((again.number, again.values.len()), (best.number, 5));
     assert!((again.mean() - again.chosen_by).abs() < 0.2 && again.deviation() > 0.0);
     assert_eq!(study.snapshot().user_attributes["reevaluation"]["trial"], json!(best.number));

@@ -60,6 +60,31 @@ struct Stand {
     done: u64,
 }
 
+/// Who sees the study after every measurement, and what ends a run early.
+struct Watch<'w> {
+    watch: &'w (dyn Fn(&StudyRecord, usize) -> Progress + Sync),
+    end: Option<Instant>,
+    stopped: AtomicBool,
+}
+
+impl Watch<'_> {
+    /// Shows the study. Whether this is the end.
+    fn look(&self, study: &StudyRecord, number: usize) -> bool {
+        if (self.watch)(study, number) == Progress::Stop {
+            self.stop();
+        }
+        self.stopped()
+    }
+
+    fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    fn stopped(&self) -> bool {
+        self.stopped.load(Ordering::Relaxed) || self.end.is_some_and(|end| Instant::now() >= end)
+    }
+}
+
 impl<'a> Tuner<'a> {
     /// A tuner that keeps checkpoints in `folder`, which is the study's alone, and is made when there is none.
     ///
@@ -85,8 +110,8 @@ impl<'a> Tuner<'a> {
     }
 
     /// Carries out trials until the budget is used up. `watch` sees the study, and the number of a trial, after every
-    /// measurement, as for a live table; once it says [`Progress::Stop`], as after Ctrl-C, or the budget's time is over, all
-    /// trials wait at their next point, and nothing is lost.
+    /// measurement, as for a live table; once it says [`Progress::Stop`], or the budget's time is over, all trials wait at
+    /// their next point, and nothing is lost. A training that is stopped before, as after Ctrl-C, goes on from its last.
     ///
     /// # Errors
     /// As [`Study::optimize`].
@@ -95,41 +120,30 @@ impl<'a> Tuner<'a> {
         budget: &Budget,
         watch: impl Fn(&StudyRecord, usize) -> Progress + Sync,
     ) -> Result<Tuning> {
-        let stopped = AtomicBool::new(false);
-        let end = budget.end();
-        let watched = |number: usize| {
-            let stop = self.study.inspect(|study| watch(study, number)) == Progress::Stop;
-            if stop || end.is_some_and(|end| Instant::now() >= end) {
-                stopped.store(true, Ordering::Relaxed);
-            }
-            stopped.load(Ordering::Relaxed)
-        };
-        let objective = |trial: &Trial<'_>| self.carry_out(trial, &watched);
+        let watch = Watch { watch: &watch, end: budget.end(), stopped: AtomicBool::new(false) };
+        let objective = |trial: &Trial<'_>| self.carry_out(trial, &watch);
         self.study.optimize(&self.space, budget, objective, |study, number| {
             // What was measured last was shown already; what failed was not.
             let failed = study.trials.get(number).is_some_and(|trial| trial.state == TrialState::Failed);
-            match stopped.load(Ordering::Relaxed) || (failed && watch(study, number) == Progress::Stop) {
-                true => Progress::Stop,
-                false => Progress::Continue,
-            }
+            let stop = if failed { watch.look(study, number) } else { watch.stopped() };
+            if stop { Progress::Stop } else { Progress::Continue }
         })?;
-        let interrupted = stopped.into_inner() || end.is_some_and(|end| Instant::now() >= end);
-        Ok(if interrupted { Tuning::Interrupted } else { Tuning::Finished })
+        Ok(if watch.stopped() { Tuning::Interrupted } else { Tuning::Finished })
     }
 
     /// Trains the best configuration anew, with seeds by which it was not chosen, and notes what came of it beside the
-    /// study: what was chosen as the best of many is not that good again.
+    /// study: what was chosen as the best of many is not that good again. None when a training was stopped.
     ///
     /// # Errors
     /// `InvalidParam` when no trial is complete; those of the learner; `Io` and `Format` of the storage.
-    pub fn reevaluate(&self) -> Result<Reevaluation> {
+    pub fn reevaluate(&self) -> Result<Option<Reevaluation>> {
         self.study.reevaluate_best(&self.plan.fresh_seeds, |trial, seed| {
             let mut training = (self.begin)(&trial.param_map()?, seed)?;
             training.advance(self.plan.length())
         })
     }
 
-    fn carry_out(&self, trial: &Trial<'_>, watched: &dyn Fn(usize) -> bool) -> Result<Outcome> {
+    fn carry_out(&self, trial: &Trial<'_>, watch: &Watch<'_>) -> Result<Outcome> {
         let params = trial.param_map()?;
         let mut stand = match trial.resumed_from() {
             Some(state) => Stand::deserialize(state).map_err(|error| {
@@ -146,7 +160,10 @@ impl<'a> Tuner<'a> {
             }
             let before = stand.done;
             for point in self.plan.points.iter().filter(|point| **point > before) {
-                let value = training.advance(*point)?;
+                let Some(value) = training.advance(*point)? else {
+                    watch.stop();
+                    return Ok(Outcome::Interrupted(json!(stand)));
+                };
                 if !value.is_finite() {
                     return Ok(Outcome::Failed(format!(
                         "it measured {value} after {point}, with seed {seed}"
@@ -162,7 +179,7 @@ impl<'a> Tuner<'a> {
                     }
                     false => stand.done = *point,
                 }
-                if let Some(outcome) = self.judged(trial, &stand, value, watched)? {
+                if let Some(outcome) = self.judged(trial, &stand, value, watch)? {
                     return Ok(outcome);
                 }
             }
@@ -176,7 +193,7 @@ impl<'a> Tuner<'a> {
         trial: &Trial<'_>,
         stand: &Stand,
         value: f64,
-        watched: &dyn Fn(usize) -> bool,
+        watch: &Watch<'_>,
     ) -> Result<Option<Outcome>> {
         let last = stand.values.len() == self.plan.seeds.len();
         // Between its ends, a further seed says less than those before have said.
@@ -187,7 +204,7 @@ impl<'a> Tuner<'a> {
         };
         // After the report: whoever dies between the two measures, and reports, the same again.
         trial.checkpoint(json!(stand))?;
-        let stop = watched(trial.number());
+        let stop = self.study.inspect(|study| watch.look(study, trial.number()));
         Ok(match advice {
             _ if last => None,
             Advice::Pause => Some(Outcome::Paused(json!(stand))),

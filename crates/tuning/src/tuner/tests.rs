@@ -13,10 +13,10 @@ struct Slope<'a> {
 }
 
 impl Training for Slope<'_> {
-    fn advance(&mut self, until: u64) -> Result<f64> {
+    fn advance(&mut self, until: u64) -> Result<Option<f64>> {
         self.spent.fetch_add(until.saturating_sub(self.done), Ordering::Relaxed);
         self.done = self.done.max(until);
-        Ok(self.worth + 1.0 / self.done as f64)
+        Ok(Some(self.worth + 1.0 / self.done as f64))
     }
 
     fn save(&self, folder: &Path) -> Result<()> {
@@ -83,7 +83,7 @@ fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
     let noise = tuner.plan.seeds().iter().map(|seed| (seed % 1000) as f64 * 1e-5).sum::<f64>() / 3.0;
     let wanted = best.params["x"].number + noise + 1.0 / 9.0;
     assert!((best.value().unwrap() - wanted).abs() < 1e-12, "the mean of three seeds");
-    let again = tuner.reevaluate().unwrap();
+    let again = tuner.reevaluate().unwrap().unwrap();
     assert_eq!((again.number, again.chosen_by, again.values.len()), (best.number, best.value().unwrap(), 3));
     assert_ne!(again.mean(), again.chosen_by);
     fs::remove_dir_all(folder).unwrap();
@@ -126,13 +126,65 @@ fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
 }
 
 #[test]
+fn a_study_without_a_complete_trial_finishes_the_best() {
+    let (folder, spent) = (folder("finish"), AtomicU64::new(0));
+    let tuner = tuner(study(), &folder, &spent);
+    assert_eq!(tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
+    let record = tuner.study().snapshot();
+    let worth = |number: usize| record.trials[number].params["x"].number;
+    let (best, other) = if worth(0) < worth(1) { (0, 1) } else { (1, 0) };
+    assert_eq!(record.trials[best].state, TrialState::Complete);
+    assert_eq!((record.trials[other].is_paused(), record.trials.len()), (true, 2));
+    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was done twice");
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// Stops, as by Ctrl-C, on its way to 9, until it is let go on.
+struct Stopping<'a>(Slope<'a>, &'a AtomicBool);
+
+impl Training for Stopping<'_> {
+    fn advance(&mut self, until: u64) -> Result<Option<f64>> {
+        if until == 9 && !self.1.load(Ordering::Relaxed) { Ok(None) } else { self.0.advance(until) }
+    }
+
+    fn save(&self, folder: &Path) -> Result<()> {
+        self.0.save(folder)
+    }
+
+    fn load(&mut self, folder: &Path) -> Result<()> {
+        self.0.load(folder)
+    }
+}
+
+#[test]
+fn a_training_that_is_stopped_goes_on_from_its_last_point() {
+    let (folder, spent, on) = (folder("halted"), AtomicU64::new(0), AtomicBool::new(false));
+    let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
+    let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
+    let begin = |_: &ParamMap, _| Ok(Stopping(Slope { worth: 0.0, done: 0, spent: &spent }, &on));
+    let plan = Plan::at(vec![1, 3, 9]).unwrap().with_seeds(0, 1);
+    let tuner = Tuner::new(study, space, plan, &folder, begin).unwrap();
+    let run = || tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap();
+    assert_eq!(run(), Tuning::Interrupted);
+    let record = tuner.study().snapshot();
+    assert!(record.trials.len() == 1 && record.trials[0].is_interrupted());
+    assert_eq!(record.trials[0].last_report().unwrap().0, 3);
+    on.store(true, Ordering::Relaxed);
+    assert_eq!(run(), Tuning::Finished);
+    assert_eq!((tuner.study().snapshot().complete().count(), spent.load(Ordering::Relaxed)), (2, 18));
+    on.store(false, Ordering::Relaxed);
+    assert_eq!(tuner.reevaluate().unwrap(), None);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
 fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
     let (folder, spent) = (folder("dead"), AtomicU64::new(0));
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
     let tuner = tuner(study.with_abandoned_after(Duration::from_millis(50)), &folder, &spent);
     let trial = tuner.study().ask(&tuner.space).unwrap();
     let mut training = (tuner.begin)(&trial.param_map().unwrap(), tuner.plan.seeds()[0]).unwrap();
-    trial.report(3, training.advance(3).unwrap()).unwrap();
+    trial.report(3, training.advance(3).unwrap().unwrap()).unwrap();
     training.save(&tuner.folder_of(0).join("seed_0")).unwrap();
     trial.checkpoint(json!(Stand { values: Vec::new(), done: 3 })).unwrap();
     std::thread::sleep(Duration::from_millis(60));

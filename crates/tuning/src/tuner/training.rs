@@ -9,13 +9,13 @@ use opendr_engine::Result;
 /// How much of it was done is counted in whatever the [`Plan`](crate::Plan) counts: steps of environments, epochs, batches.
 pub trait Training {
     /// Goes on until `until` units are done in all, and measures. Where so many, or more, are done already, it only
-    /// measures.
+    /// measures. None when it was stopped from outside before it came there, as by Ctrl-C.
     ///
     /// All trainings should be measured by the same data or episodes: differences are then less of luck.
     ///
     /// # Errors
     /// Those of the learner; they fail the trial.
-    fn advance(&mut self, until: u64) -> Result<f64>;
+    fn advance(&mut self, until: u64) -> Result<Option<f64>>;
 
     /// Saves all that decides the future, in a folder of its own, which appears whole or not at all.
     ///
