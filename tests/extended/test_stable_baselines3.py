@@ -5,12 +5,15 @@ import numpy as np
 import opendr.simulation
 import pytest
 import torch
+from opendr.control.reinforcement_learning import PpoLearner
 from stable_baselines3 import PPO
 from stable_baselines3.common.env_checker import check_env
 from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 
 STEPS = 30_000
+#: Enough for hopping to begin.
+HOPPER_STEPS = 60_000
 #: RL Zoo's for CartPole.
 SETTINGS = {"n_steps": 32, "batch_size": 256, "gae_lambda": 0.8, "gamma": 0.98, "n_epochs": 20, "learning_rate": 1e-3}
 
@@ -49,3 +52,25 @@ def test_it_learns_from_pictures_and_numbers():
     model.learn(256)
     assert any(not torch.equal(old, new) for old, new in zip(before, model.policy.parameters()))
     assert all(torch.isfinite(parameter).all() for parameter in model.policy.parameters())
+
+
+def hopping_by_stable_baselines3(seed):
+    envs = make_vec_env("Hopper-v5", n_envs=4, seed=seed)
+    model = PPO("MlpPolicy", envs, n_steps=512, seed=seed, device="cpu").learn(HOPPER_STEPS)
+    return evaluate_policy(model, make_vec_env("Hopper-v5", seed=1000), n_eval_episodes=20)[0]
+
+
+def hopping_by_ours(seed, folder):
+    """The same with Stable-Baselines3's default settings, which are ours too."""
+    learner = PpoLearner(n_envs=4, n_steps=512, total_timesteps=HOPPER_STEPS, seed=seed, eval_freq=0)
+    learner.fit(env=lambda: gymnasium.make("Hopper-v5"), output=folder, silent=True)
+    return learner.eval(env=lambda: gymnasium.make("Hopper-v5"), episodes=20)["mean_return"]
+
+
+def test_ours_trains_on_gymnasiums_hopper_as_well(tmp_path):
+    ours = [hopping_by_ours(seed, tmp_path / str(seed)) for seed in range(5)]
+    theirs = [hopping_by_stable_baselines3(seed) for seed in range(5)]
+    print(f"ours {np.round(ours)}, Stable-Baselines3 {np.round(theirs)}")
+    # Falling at once comes to some 20.
+    assert min(ours) > 100
+    assert np.mean(ours) >= np.mean(theirs) - np.std(theirs, ddof=1)
