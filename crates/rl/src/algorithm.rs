@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use opendr_engine::environment::{Info, Snapshot};
-use opendr_engine::{Error, ErrorKind, Result};
+use opendr_engine::{Error, ErrorKind, Result, ResultExt as _};
 use opendr_runlog::{Checkpoint, Checkpoints};
 use opendr_simulation::vector::VecEnvironment;
 
@@ -87,7 +87,21 @@ pub trait Algorithm {
     /// # Errors
     /// As [`Self::saved_state`], and `Io` when the disk is full: the other checkpoints are untouched then.
     fn save(&self, checkpoints: &Checkpoints, environments: &dyn VecEnvironment) -> Result<PathBuf> {
-        let files = self.saved_state(environments)?.files()?;
+        self.save_with(checkpoints, environments, Vec::new())
+    }
+
+    /// The same with further files in the checkpoint.
+    ///
+    /// # Errors
+    /// As [`Self::save`].
+    fn save_with(
+        &self,
+        checkpoints: &Checkpoints,
+        environments: &dyn VecEnvironment,
+        further: Vec<(String, Vec<u8>)>,
+    ) -> Result<PathBuf> {
+        let mut files = self.saved_state(environments)?.files()?;
+        files.extend(further);
         let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
         checkpoints.save(self.report().timesteps, &files)
     }
@@ -102,8 +116,9 @@ pub trait Algorithm {
         environments: &mut dyn VecEnvironment,
     ) -> Result<Option<Checkpoint>> {
         let Some(checkpoint) = checkpoints.latest()? else { return Ok(None) };
-        let state = SavedState::from_files(&|name| checkpoint.file(name), self.rows())?;
-        self.restore(&state, environments)?;
+        SavedState::from_files(&|name| checkpoint.file(name), self.rows())
+            .and_then(|state| self.restore(&state, environments))
+            .context(|| format!("resuming from {}", checkpoint.path().display()))?;
         Ok(Some(checkpoint))
     }
 

@@ -17,7 +17,6 @@ use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate};
 use crate::learner::{Method, RlTrainingParams};
 use crate::onnx::onnx_from_policy;
 use crate::policy::Policy;
-use crate::saved_state::SavedState;
 
 /// The file of the policy in a container.
 pub const POLICY: &str = "policy.safetensors";
@@ -112,17 +111,15 @@ fn to_measure_in<M: Method>(
 impl<A: Algorithm> Training<'_, A> {
     /// Goes on from the last checkpoint, where the job says so and there is one; the step of it.
     fn resume(&mut self) -> Result<Option<u64>> {
-        let Some(checkpoint) = self.job.resume.then(|| self.checkpoints.latest()).transpose()?.flatten()
-        else {
-            return Ok(None);
+        let loaded = match self.job.resume {
+            true => self.algorithm.load(&self.checkpoints, &mut self.environments)?,
+            false => None,
         };
-        let context = || format!("resuming from {}", checkpoint.path().display());
-        let state = SavedState::from_files(&|name| checkpoint.file(name), self.algorithm.rows());
-        state.and_then(|state| self.algorithm.restore(&state, &mut self.environments)).context(context)?;
-        let measured = serde_json::from_slice(&checkpoint.file(MEASURED)?);
-        self.measured = measured
-            .map_err(|error| Error::format("no list of measurements").with_source(error))
-            .context(context)?;
+        let Some(checkpoint) = loaded else { return Ok(None) };
+        self.measured = serde_json::from_slice(&checkpoint.file(MEASURED)?).map_err(|error| {
+            let path = checkpoint.path().display();
+            Error::format(format!("{path} has no list of measurements")).with_source(error)
+        })?;
         if checkpoint.names().any(|name| name == BEST) {
             self.best = Some(checkpoint.file(BEST)?);
         }
@@ -218,13 +215,11 @@ impl<A: Algorithm> Training<'_, A> {
             return Ok(());
         }
         self.log.flush()?;
-        let mut files = self.algorithm.saved_state(&self.environments)?.files()?;
         let measured = serde_json::to_vec(&self.measured)
             .map_err(|error| Error::internal("measurements have no JSON form").with_source(error))?;
-        files.push((MEASURED.to_owned(), measured));
-        files.extend(self.best.clone().map(|best| (BEST.to_owned(), best)));
-        let files: Vec<_> = files.iter().map(|(name, bytes)| (name.as_str(), &bytes[..])).collect();
-        self.checkpoints.save(now, &files)?;
+        let best = self.best.clone().map(|best| (BEST.to_owned(), best));
+        let further = std::iter::once((MEASURED.to_owned(), measured)).chain(best).collect();
+        self.algorithm.save_with(&self.checkpoints, &self.environments, further)?;
         self.saved_at = now;
         Ok(())
     }

@@ -1,9 +1,11 @@
 //! Environments both ways: those of the toolkit for Python, those of Python for the toolkit.
 
+mod locked;
 mod parts;
 mod python_environment;
 mod shared_array;
 mod single;
+mod snapshot_text;
 mod source;
 mod space;
 mod vector;

@@ -1,16 +1,15 @@
 //! One environment for Python.
 
-use std::sync::{Mutex, PoisonError};
-
-use opendr::environment::{Environment as World, EnvironmentSpec, Info, ResetOptions, Snapshot};
+use opendr::environment::{Environment as World, EnvironmentSpec, Info, ResetOptions};
 use opendr::simulation::Registry;
 use opendr::simulation::wrappers::Checked;
-use opendr::{Error, Result};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use super::locked::Locked;
 use super::parts::Parts;
 use super::python_environment::PythonEnvironment;
+use super::snapshot_text::{snapshot_from_text, text_from_snapshot};
 use super::spec_table;
 use crate::error::ToPython;
 use crate::param::params_from_python;
@@ -20,7 +19,7 @@ use crate::pixels::Pixels;
 /// and leaves the observation there. `opendr.simulation.Environment` is Gymnasium's form of it.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct Environment {
-    state: Mutex<State>,
+    state: Locked<State>,
     spec: EnvironmentSpec,
     observation: Parts,
     action: Parts,
@@ -32,31 +31,19 @@ struct State {
     action: Vec<f32>,
 }
 
-/// The longest snapshot that is read, in bytes.
-const MAX_SNAPSHOT: usize = 1 << 28;
-
 impl Environment {
     fn of(py: Python<'_>, world: Box<dyn World>) -> PyResult<Self> {
         let spec = world.spec().clone();
         Ok(Self {
             observation: Parts::of_observations(py, &spec.observation, None)?,
             action: Parts::of_actions(py, &spec.action, None)?,
-            state: Mutex::new(State {
+            state: Locked::new(State {
                 world,
                 observation: vec![0.0; spec.observation.len()],
                 action: vec![0.0; spec.action.len()],
             }),
             spec,
         })
-    }
-
-    /// Works on the world with the interpreter's lock released.
-    fn with<T: Send>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(&mut State) -> Result<T> + Send,
-    ) -> PyResult<T> {
-        py.detach(|| work(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))).to_python(py)
     }
 }
 
@@ -103,7 +90,7 @@ impl Environment {
         options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let options = options.map_or_else(|| Ok(ResetOptions::new()), params_from_python)?;
-        let info = self.with(py, |state| {
+        let info = self.state.with(py, |state| {
             let info = state.world.reset(seed, &options, &mut state.observation)?;
             self.observation.write(&state.observation);
             Ok(info)
@@ -113,7 +100,7 @@ impl Environment {
 
     /// Takes a step: reward, terminated, truncated, what else is known.
     fn step<'py>(&self, py: Python<'py>) -> PyResult<(f64, bool, bool, Bound<'py, PyDict>)> {
-        let step = self.with(py, |state| {
+        let step = self.state.with(py, |state| {
             self.action.read(&mut state.action);
             let step = state.world.step(&state.action, &mut state.observation)?;
             self.observation.write(&state.observation);
@@ -124,35 +111,19 @@ impl Environment {
 
     /// A picture of the world as it is.
     fn render(&self, py: Python<'_>) -> PyResult<Option<Pixels>> {
-        let picture = self.with(py, |state| state.world.render())?;
+        let picture = self.state.with(py, |state| state.world.render())?;
         picture.map(Pixels::new).transpose().to_python(py)
     }
 
     /// The state of now as text.
     fn snapshot(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |state| {
-            let snapshot = state.world.snapshot()?;
-            serde_json::to_string(&snapshot).map_err(|error| Error::internal(error.to_string()))
-        })
+        self.state.with(py, |state| text_from_snapshot(&state.world.snapshot()?))
     }
 
     /// Goes back to the state of a text.
     fn restore(&self, py: Python<'_>, snapshot: &str) -> PyResult<()> {
-        self.with(py, |state| state.world.restore(&snapshot_of_text(snapshot)?))
+        self.state.with(py, |state| state.world.restore(&snapshot_from_text(snapshot)?))
     }
-}
-
-/// The snapshot that a text is.
-pub fn snapshot_of_text(text: &str) -> Result<Snapshot> {
-    if text.len() > MAX_SNAPSHOT {
-        return Err(Error::format(format!(
-            "a snapshot of {} bytes; it has at most {MAX_SNAPSHOT}",
-            text.len()
-        )));
-    }
-    serde_json::from_str(text).map_err(|error| {
-        Error::format("this is no snapshot; give what snapshot() returned").with_source(error)
-    })
 }
 
 fn python_from_info<'py>(py: Python<'py>, info: &Info) -> PyResult<Bound<'py, PyDict>> {

@@ -1,7 +1,5 @@
 //! Many environments for Python.
 
-use std::sync::{Mutex, PoisonError};
-
 use opendr::environment::{EnvironmentSpec, Info, ResetOptions};
 use opendr::simulation::Registry;
 use opendr::simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment, VectorOptions};
@@ -9,9 +7,10 @@ use opendr::{Error, Result};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use super::locked::Locked;
 use super::parts::Parts;
 use super::shared_array::{Number, SharedArray};
-use super::single::snapshot_of_text;
+use super::snapshot_text::{snapshot_from_text, text_from_snapshot};
 use super::spec_table;
 use crate::error::ToPython;
 use crate::param::params_from_python;
@@ -20,7 +19,7 @@ use crate::param::params_from_python;
 /// done in Python for each of them. `opendr.simulation.VectorEnvironment` is Gymnasium's form of it.
 #[pyclass(frozen, module = "opendr._opendr")]
 pub struct VectorEnvironment {
-    state: Mutex<State>,
+    state: Locked<State>,
     spec: EnvironmentSpec,
     observations: Parts,
     final_observations: Parts,
@@ -66,7 +65,7 @@ impl VectorEnvironment {
             rewards: array(Number::F64)?,
             terminations: array(Number::Bool)?,
             truncations: array(Number::Bool)?,
-            state: Mutex::new(State {
+            state: Locked::new(State {
                 batch: Batch::new(&spec, count),
                 actions: vec![0.0; spec.action.len() * count],
                 worlds,
@@ -128,7 +127,7 @@ impl VectorEnvironment {
         mask: Option<Vec<bool>>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let options = options.map_or_else(|| Ok(ResetOptions::new()), params_from_python)?;
-        let infos = self.with(py, |State { worlds, batch, .. }| {
+        let infos = self.state.with(py, |State { worlds, batch, .. }| {
             let seeds = match (&seeds, seed) {
                 (Some(seeds), _) => Seeds::Each(seeds),
                 (None, Some(seed)) => Seeds::From(seed),
@@ -143,7 +142,7 @@ impl VectorEnvironment {
 
     /// Takes a step everywhere: what else is known, and of the ends of episodes, where observations were kept.
     fn step<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyDict>, Option<Bound<'py, PyDict>>)> {
-        let (infos, ends) = self.with(py, |State { worlds, batch, actions }| {
+        let (infos, ends) = self.state.with(py, |State { worlds, batch, actions }| {
             self.actions.read(actions);
             worlds.step(actions, batch)?;
             self.write(batch);
@@ -161,28 +160,16 @@ impl VectorEnvironment {
 
     /// The state of now as text.
     fn snapshot(&self, py: Python<'_>) -> PyResult<String> {
-        self.with(py, |state| {
-            let snapshot = state.worlds.snapshot()?;
-            serde_json::to_string(&snapshot).map_err(|error| Error::internal(error.to_string()))
-        })
+        self.state.with(py, |state| text_from_snapshot(&state.worlds.snapshot()?))
     }
 
     /// Goes back to the state of a text.
     fn restore(&self, py: Python<'_>, snapshot: &str) -> PyResult<()> {
-        self.with(py, |state| state.worlds.restore(&snapshot_of_text(snapshot)?))
+        self.state.with(py, |state| state.worlds.restore(&snapshot_from_text(snapshot)?))
     }
 }
 
 impl VectorEnvironment {
-    /// Works on the worlds with the interpreter's lock released.
-    fn with<T: Send>(
-        &self,
-        py: Python<'_>,
-        work: impl FnOnce(&mut State) -> Result<T> + Send,
-    ) -> PyResult<T> {
-        py.detach(|| work(&mut self.state.lock().unwrap_or_else(PoisonError::into_inner))).to_python(py)
-    }
-
     fn write(&self, batch: &Batch) {
         self.observations.write(&batch.observations);
         self.rewards.get().write_doubles(batch.rewards.iter().copied());
