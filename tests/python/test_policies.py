@@ -23,6 +23,21 @@ def test_a_policy_is_trained_measured_and_filmed(opendr, tmp_path):
     assert done.stdout.startswith("seed 0: return ") and film.read_bytes().startswith(b"GIF89a")
 
 
+def test_a_policy_acts_on_files_and_is_timed(opendr, tmp_path):
+    (tmp_path / "left.csv").write_text("0,0,-0.1,-0.5")
+    (tmp_path / "right.csv").write_text("0,0,0.1,0.5")
+    lines = opendr.infer("ppo", tmp_path)
+    assert [line["outputs"]["target"]["values"] for line in lines] == [[0.0], [1.0]]
+    (tmp_path / "left.csv").write_text("0,0")
+    done = opendr.run("infer", "ppo", tmp_path / "left.csv")
+    assert done.returncode not in (0, 101) and "2 numbers" in done.stderr
+
+    done = opendr.run("bench", "ppo", "--frames", "50", "--json", "--quiet")
+    assert done.returncode == 0, done.stderr
+    report = json.loads(done.stdout)
+    assert report["environment"] == "CartPole-v1" and report["frames"] == 50 and report["p50_ms"]["total"] >= 0
+
+
 def test_environments_are_listed(opendr):
     listed = opendr.run("sim", "list").stdout
     assert "CartPole-v1" in listed and "UavDepthCorridor-v1" in listed

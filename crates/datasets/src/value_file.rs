@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use opendr_engine::data::Timeseries;
+use opendr_engine::data::{Observation, Timeseries};
 use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 
 use crate::folder::{has_extension, names_in, read_bytes};
@@ -16,7 +16,7 @@ const fn extensions(kind: ValueType) -> &'static [&'static str] {
     match kind {
         ValueType::Image => &["jpg", "jpeg", "png", "bmp", "webp"],
         ValueType::Audio => &["wav"],
-        ValueType::Timeseries => &["csv", "tsv", "txt", "npy"],
+        ValueType::Timeseries | ValueType::Observation => &["csv", "tsv", "txt", "npy"],
         ValueType::PointCloud => &["bin"],
         kind if kind.is_target() => &["json"],
         _ => &[],
@@ -29,6 +29,7 @@ const fn extensions(kind: ValueType) -> &'static [&'static str] {
 /// * `Audio`: WAVE;
 /// * `Timeseries`: a table of numbers, a line a moment and a column a feature, with commas, semicolons, tabs or blanks
 ///   between them and perhaps a line of names above, or a `.npy` of one or two axes;
+/// * `Observation`: such a table, one number after the other;
 /// * `PointCloud`: scans as KITTI has them;
 /// * targets: their JSON.
 ///
@@ -45,6 +46,10 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
         ValueType::Timeseries => {
             timeseries_from_table(&read_bytes(path, MAX_BYTES)?).map(Value::Timeseries).context(opening)
         }
+        ValueType::Observation => timeseries_from_table(&read_bytes(path, MAX_BYTES)?)
+            .and_then(|table| Observation::from_data(table.as_slice().to_vec()))
+            .map(Value::Observation)
+            .context(opening),
         kind if kind.is_target() => {
             let value: Value = serde_json::from_slice(&read_bytes(path, MAX_BYTES)?)
                 .map_err(|error| Error::format(format!("no JSON of a target: {error}")).context(opening()))?;
@@ -57,7 +62,7 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
             }
         }
         kind => Err(Error::unsupported(format!(
-            "a {} is in no file of its own; make it of its parts in Rust, Python or C",
+            "{} is in no file of its own; make it of its parts in Rust, Python or C",
             kind.name()
         ))),
     }

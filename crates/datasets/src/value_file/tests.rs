@@ -57,9 +57,19 @@ fn files_are_read_as_what_is_wanted() {
     assert!(error.contains("Category where a PoseList"), "{error}");
     let error = open_value(ValueType::Timeseries, folder.path().join("none.csv")).unwrap_err().to_string();
     assert!(error.contains("none.csv"), "{error}");
-    assert!(open_value(ValueType::Observation, folder.path().join("beat.csv")).is_err());
+    assert!(open_value(ValueType::SkeletonSequence, folder.path().join("beat.csv")).is_err());
     assert_eq!(value_files(ValueType::Audio, folder.path()).unwrap(), [folder.path().join("yes.wav")]);
     assert_eq!(value_files(ValueType::Audio, &folder.path().join("beat.csv")).unwrap().len(), 1);
     assert!(value_files(ValueType::PointCloud, folder.path()).is_err());
     assert!(value_files(ValueType::Audio, &folder.path().join("none.wav")).is_err());
+}
+
+#[test]
+fn an_observation_is_the_numbers_of_a_table() {
+    let folder = TemporaryFolder::new().with("seen.csv", "1,2\n3,4\n").with("bad.csv", "1,NaN\n");
+    let open = |name| open_value(ValueType::Observation, folder.path().join(name));
+    let Value::Observation(seen) = open("seen.csv").unwrap() else { panic!() };
+    assert_eq!((seen.as_slice(), seen.parts().len()), (&[1.0, 2.0, 3.0, 4.0][..], 0));
+    let error = open("bad.csv").unwrap_err().to_string();
+    assert!(error.contains("bad.csv") && error.contains("NaN"), "{error}");
 }
