@@ -85,6 +85,7 @@ fn the_pretrained_policy_arrives() {
         ("UavDepthCorridor-v1", 0.88),
         ("UavDepthCorridor-noisy-v1", 0.88),
         ("UavDepthCorridor-dyn-v1", 0.84),
+        ("UavDepthCorridor-dense-v1", 0.8),
     ] {
         let protocol = EvaluationProtocol { episodes: 100, ..EvaluationProtocol::default() };
         let success = |step: &Step| step.info.success();
