@@ -34,9 +34,9 @@ pub struct FlightMemory {
     directions: Vec<[f32; 2]>,
     /// Points around the drone, ahead and left; memory that is used again.
     near: Vec<[f32; 2]>,
-    costs: WayCosts,
-    /// Those along the corridor and to the left.
+    /// The same, along the corridor and to the left.
     along: Vec<[f32; 2]>,
+    costs: WayCosts,
     lookahead: Lookahead,
 }
 
@@ -78,8 +78,8 @@ impl Default for FlightMemory {
             next: 0,
             directions: (0..Self::WAYS).map(direction).collect(),
             near: Vec::with_capacity(Self::FRAMES * SIDE),
-            costs: WayCosts::default(),
             along: Vec::with_capacity(Self::FRAMES * SIDE),
+            costs: WayCosts::default(),
             lookahead: Lookahead::default(),
         }
     }
