@@ -1,16 +1,18 @@
-//! How often drones arrive that were trained with several seeds, between few and many obstacles, with a noisy camera, and
-//! with inertia and wind: `cargo run --release -p opendr-planning --example corridor_seeds [SEEDS [EPISODES]]`.
+//! How often drones arrive that were trained with several seeds, and one that learnt nothing and flies as its memory
+//! proposes, between few and many obstacles, with a noisy camera, and with inertia and wind: `cargo run --release -p opendr-planning --example corridor_seeds [SEEDS [EPISODES]]`.
 
 use std::path::Path;
 use std::time::Instant;
 
 use opendr_engine::data::Observation;
+use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{Device, Error, Result};
 use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
 };
+use opendr_simulation::uav_corridor::Remembered;
 use opendr_simulation::{RegisteredSource, make};
 
 const EVALUATED: [&str; 4] = [
@@ -26,6 +28,10 @@ fn main() -> Result<()> {
     let (Ok(seeds), Ok(episodes)) = (next(5), next(500)) else {
         return Err(Error::invalid_param("give two whole numbers: seeds and episodes"));
     };
+    println!("without learning");
+    for id in EVALUATED {
+        shown(id, measured(&mut Unchanged, &mut Remembered::new(make(id)?)?, episodes)?);
+    }
     let mut rates: [Vec<SuccessRate>; EVALUATED.len()] = Default::default();
     for seed in 0..seeds {
         let folder = std::env::temp_dir().join(format!("opendr-corridor-{}-{seed}", std::process::id()));
@@ -33,11 +39,11 @@ fn main() -> Result<()> {
         let mut learner = trained(seed, &folder)?;
         println!("seed {seed}: {:.1} s", begun.elapsed().as_secs_f64());
         for (id, rates) in EVALUATED.iter().zip(&mut rates) {
-            rates.extend(measured(&mut learner, id, episodes)?);
-            if let Some(success) = rates.last() {
-                let [low, high] = success.interval.map(|share| 100.0 * share);
-                println!("  {id}: {:.1} % (95 %: {low:.1} to {high:.1})", 100.0 * success.rate);
-            }
+            let mut corridor = make(id)?;
+            let space = corridor.spec().observation.clone();
+            let see = |numbers: &[f32]| observation_from_numbers(&space, numbers);
+            let mut pilot = Pilot { learner: &mut learner, see: &see };
+            rates.extend(shown(id, measured(&mut pilot, &mut *corridor, episodes)?));
         }
         std::fs::remove_dir_all(folder)?;
     }
@@ -60,16 +66,33 @@ fn trained(seed: u64, folder: &Path) -> Result<Handle<EndToEndPlanningRl>> {
 }
 
 fn measured(
-    learner: &mut Handle<EndToEndPlanningRl>,
-    id: &str,
+    pilot: &mut dyn Controller,
+    corridor: &mut dyn Environment,
     episodes: u64,
 ) -> Result<Option<SuccessRate>> {
-    let mut corridor = make(id)?;
-    let space = corridor.spec().observation.clone();
-    let mut pilot = Pilot { learner, see: &|numbers| observation_from_numbers(&space, numbers) };
     let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-    let success = |step: &opendr_engine::environment::Step| step.info.success();
-    Ok(evaluate_controller(&mut pilot, &mut *corridor, &protocol, &success)?.success)
+    let success = |step: &Step| step.info.success();
+    Ok(evaluate_controller(pilot, corridor, &protocol, &success)?.success)
+}
+
+fn shown(id: &str, success: Option<SuccessRate>) -> Option<SuccessRate> {
+    if let Some(success) = &success {
+        let [low, high] = success.interval.map(|share| 100.0 * share);
+        println!("  {id}: {:.1} % (95 %: {low:.1} to {high:.1})", 100.0 * success.rate);
+    }
+    success
+}
+
+/// Corrects nothing.
+struct Unchanged;
+
+impl Controller for Unchanged {
+    fn reset(&mut self) {}
+
+    fn act(&mut self, _: &[f32], correction: &mut [f32]) -> Result<()> {
+        correction.fill(0.0);
+        Ok(())
+    }
 }
 
 struct Pilot<'a> {
@@ -77,7 +100,7 @@ struct Pilot<'a> {
     see: &'a dyn Fn(&[f32]) -> Result<Observation>,
 }
 
-impl opendr_engine::environment::Controller for Pilot<'_> {
+impl Controller for Pilot<'_> {
     fn reset(&mut self) {
         self.learner.reset();
     }

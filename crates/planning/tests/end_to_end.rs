@@ -65,7 +65,7 @@ fn flight(learner: &mut Handle<EndToEndPlanningRl>) -> Vec<Vec<f32>> {
     actions
 }
 
-/// Of the first hundred of the 500 worlds of the table of results.
+/// Of the first hundred of the 500 worlds of the table of results; between many obstacles, of all of them.
 #[test]
 fn the_pretrained_policy_arrives() {
     struct Pilot<'a>(&'a mut Handle<EndToEndPlanningRl>);
@@ -81,12 +81,13 @@ fn the_pretrained_policy_arrives() {
     }
     let folder = Folder::new("arrives");
     let mut learner = pretrained(&folder.0);
-    for (id, least) in [
-        ("UavDepthCorridor-v1", 0.88),
-        ("UavDepthCorridor-noisy-v1", 0.88),
-        ("UavDepthCorridor-dyn-v1", 0.84),
+    for (id, least, episodes) in [
+        ("UavDepthCorridor-v1", 0.88, 100),
+        ("UavDepthCorridor-noisy-v1", 0.88, 100),
+        ("UavDepthCorridor-dyn-v1", 0.84, 100),
+        ("UavDepthCorridor-dense-v1", 0.8, 500),
     ] {
-        let protocol = EvaluationProtocol { episodes: 100, ..EvaluationProtocol::default() };
+        let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
         let success = |step: &Step| step.info.success();
         let report =
             evaluate_controller(&mut Pilot(&mut learner), &mut *make(id).unwrap(), &protocol, &success);

@@ -14,7 +14,7 @@ use opendr_simulation::uav_corridor::FlightMemory;
 use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
 
 /// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`): PPO on what the drone
-/// remembers of its flight.
+/// remembers of its flight, which corrects what two steps of looking ahead propose.
 ///
 /// An observation is OpenDR's dictionary: `depth_cam`, 64 x 64 bytes of depth, 255 for 15 m, and `moving_target`, the way to
 /// the target in metres: ahead, left, up. The answer is heading and change of yaw, each in [-1, 1] for +-22.5
@@ -81,13 +81,14 @@ impl Learner for EndToEndPlanningRl {
     fn infer_into(&self, state: &mut FlightState, seen: &Observation, target: &mut RlTarget) -> Result<()> {
         let FlightState { flight, memory, numbers, random } = state;
         numbers_from_observation(&self.space, seen, numbers)?;
-        let (mut known, mut action) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
+        let (mut known, mut correction) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
         flight.see(&self.space, numbers, &mut known)?;
         let acting = match self.params.deterministic {
             true => Acting::Deterministic,
             false => Acting::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
         };
-        self.policy.act(&self.compute, &known, acting, memory, &mut action)?;
+        self.policy.act(&self.compute, &known, acting, memory, &mut correction)?;
+        let action = flight.corrected(correction);
         flight.acted(action);
         target.values.clear();
         target.values.extend_from_slice(&action);

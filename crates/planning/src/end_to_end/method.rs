@@ -37,7 +37,7 @@ pub struct EndToEndPlanningFitParams {
     pub training: RlTrainingParams,
 }
 
-/// PPO on what a drone remembers of its flight, with rewards that make it worth while to arrive.
+/// PPO on what a drone remembers of its flight and proposes, with rewards that make it worth while to arrive.
 #[derive(Debug, Clone, Copy)]
 pub struct PpoInCorridors;
 
@@ -72,7 +72,8 @@ impl Method for PpoInCorridors {
             learning_rate_schedule: Schedule::Linear,
             n_steps: (params.n_steps / params.training.n_envs).max(1),
             batch_size: params.batch_size,
-            log_std_init: -1.0,
+            // The proposals are good: to try much else would spoil them.
+            log_std_init: -2.0,
             norm_reward: true,
             seed: params.seed,
             ..PpoConfig::default()

@@ -3,6 +3,7 @@
 use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, Space, StateReader};
 
+use super::lookahead::Lookahead;
 use super::way_costs::WayCosts;
 use super::{
     CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
@@ -16,12 +17,15 @@ use crate::sine_cosine::sine_cosine;
 /// offset from the middle of the corridor by the way to the target. It has nothing that is not in OpenDR's observation.
 ///
 /// What it writes are [`LEN`](Self::LEN) numbers: how far it could fly in each of [`WAYS`](Self::WAYS) directions, from the left to the right, as a
-/// share of 10 m; then offset, sine and cosine of the yaw, how far it came, height to gain, and its last action.
+/// share of 10 m; how much nearer the end of the map comes there; what it proposes to do; then the detour, offset, sine and cosine of the yaw, how
+/// far it came, height to gain, and its last action. A policy need not find the way: what it answers is added to the
+/// proposal, [`corrected`](Self::corrected) (residual reinforcement learning; Silver et al., 2018, Johannink et al., 2019).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightMemory {
     sight: CorridorSight,
     place: Option<Place>,
     action: [f32; 2],
+    proposal: [f32; 2],
     /// Of the last frames, frame after frame; what was not seen is infinitely far away.
     points: Vec<[f32; 2]>,
     /// Where the next frame goes.
@@ -30,7 +34,10 @@ pub struct FlightMemory {
     directions: Vec<[f32; 2]>,
     /// Points around the drone, ahead and left; memory that is used again.
     near: Vec<[f32; 2]>,
+    /// The same, along the corridor and to the left.
+    along: Vec<[f32; 2]>,
     costs: WayCosts,
+    lookahead: Lookahead,
 }
 
 /// Where the drone thinks that it is.
@@ -66,11 +73,14 @@ impl Default for FlightMemory {
             sight: CorridorSight::default(),
             place: None,
             action: [0.0; 2],
+            proposal: [0.0; 2],
             points: vec![[f32::INFINITY; 2]; Self::FRAMES * SIDE],
             next: 0,
             directions: (0..Self::WAYS).map(direction).collect(),
             near: Vec::with_capacity(Self::FRAMES * SIDE),
+            along: Vec::with_capacity(Self::FRAMES * SIDE),
             costs: WayCosts::default(),
+            lookahead: Lookahead::default(),
         }
     }
 }
@@ -81,7 +91,7 @@ impl FlightMemory {
     /// Directions in which it says how far it could fly: 22.5 degrees to both sides in 16 steps, then on to 101 degrees in steps of 5.6.
     pub const WAYS: usize = 2 * (INNER + OUTER) + 1;
     /// How many numbers it writes.
-    pub const LEN: usize = 3 * Self::WAYS + 8;
+    pub const LEN: usize = 3 * Self::WAYS + 10;
 
     /// The space of what it writes.
     ///
@@ -89,8 +99,8 @@ impl FlightMemory {
     /// None; a space is checked when it is made.
     pub fn space() -> Result<Space> {
         let (ways, rest) = (Self::WAYS, f32::INFINITY);
-        let low = [vec![0.0; ways], vec![-1.0; 2 * ways], vec![-rest; 6], vec![-1.0; 2]].concat();
-        let high = [vec![1.0; 3 * ways], vec![rest; 6], vec![1.0; 2]].concat();
+        let low = [vec![0.0; ways], vec![-1.0; 2 * ways + 2], vec![-rest; 6], vec![-1.0; 2]].concat();
+        let high = [vec![1.0; 3 * ways + 2], vec![rest; 6], vec![1.0; 2]].concat();
         Space::bounded(low, high, vec![Self::LEN])
     }
 
@@ -98,8 +108,15 @@ impl FlightMemory {
     pub fn reset(&mut self) {
         self.place = None;
         self.action = [0.0; 2];
+        self.proposal = [0.0; 2];
         self.points.fill([f32::INFINITY; 2]);
         self.next = 0;
+    }
+
+    /// The action that a policy means: what was proposed when the drone last saw something, and the policy's correction.
+    pub fn corrected(&self, correction: [f32; 2]) -> [f32; 2] {
+        let [heading, turn] = self.proposal;
+        [heading + correction[0], turn + correction[1]].map(|part| part.clamp(-1.0, 1.0))
     }
 
     /// Notes what the drone was told to do: heading and change of yaw, each within [-1, 1].
@@ -130,7 +147,10 @@ impl FlightMemory {
         let (offset, left) = (place.y as f32, FINISH - place.x as f32);
         let turned =
             |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
-        self.costs.find(self.near.iter().copied().map(turned), offset, left);
+        self.along.clear();
+        self.along.extend(self.near.iter().copied().map(turned));
+        self.costs.find(self.along.iter().copied(), offset, left);
+        self.proposal = self.lookahead.action(&self.costs, &self.along, place.yaw);
         let here = self.costs.at([0.0; 2]);
         let (nearer, rest) = rest.split_at_mut(2 * Self::WAYS);
         for (nearer, far) in nearer.chunks_exact_mut(Self::WAYS).zip(STEPS) {
@@ -144,6 +164,8 @@ impl FlightMemory {
         let [heading, turn] = self.action;
         let up = self.sight.target[2];
         rest.copy_from_slice(&[
+            self.proposal[0],
+            self.proposal[1],
             detour / REACH,
             offset / HALF_TRACK,
             sine,
@@ -201,14 +223,16 @@ impl FlightMemory {
         snapshot.extend_numbers(place);
         snapshot.push(self.next as u64);
         let points = self.points.iter().flatten();
-        snapshot.extend_numbers(self.action.iter().chain(points).map(|number| f64::from(*number)));
+        let told = self.action.iter().chain(&self.proposal);
+        snapshot.extend_numbers(told.chain(points).map(|number| f64::from(*number)));
     }
 
     pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
         let [x, y, yaw] = [state.number()?, state.number()?, state.number()?];
         self.place = (x.is_finite() && y.is_finite() && yaw.is_finite()).then_some(Place { x, y, yaw });
         self.next = state.count(Self::FRAMES - 1)?;
-        for number in self.action.iter_mut().chain(self.points.iter_mut().flatten()) {
+        let told = self.action.iter_mut().chain(&mut self.proposal);
+        for number in told.chain(self.points.iter_mut().flatten()) {
             *number = state.number()? as f32;
         }
         Ok(())

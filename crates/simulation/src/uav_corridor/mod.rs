@@ -8,6 +8,7 @@ mod controllers;
 mod environment;
 mod flight;
 mod flight_memory;
+mod lookahead;
 mod options;
 mod picture;
 mod quadrotor;

@@ -8,7 +8,8 @@ use opendr_engine::{Error, Result};
 
 use super::FlightMemory;
 
-/// A corridor that shows what a [`FlightMemory`] writes instead of the last picture alone; what policies are trained in.
+/// A corridor that shows what a [`FlightMemory`] writes instead of the last picture alone, and whose actions correct what
+/// the memory proposes: what policies are trained in. Who always answers zero flies as the memory proposes.
 #[derive(Debug, Clone)]
 pub struct Remembered<E> {
     inner: E,
@@ -60,10 +61,15 @@ impl<E: Environment> Environment for Remembered<E> {
     }
 
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
-        let step = self.inner.step(action, &mut self.observation)?;
-        if let [heading, turn] = action {
-            self.memory.acted([*heading, *turn]);
-        }
+        let &[heading, turn] = action else {
+            return Err(Error::invalid_input(format!(
+                "{} numbers as action; give heading and yaw",
+                action.len()
+            )));
+        };
+        let action = self.memory.corrected([heading, turn]);
+        let step = self.inner.step(&action, &mut self.observation)?;
+        self.memory.acted(action);
         self.show(observation)?;
         Ok(step)
     }

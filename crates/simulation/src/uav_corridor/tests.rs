@@ -286,5 +286,29 @@ fn remembered_corridors_come_back() {
     corridor.restore(&snapshot).unwrap();
     assert_eq!((corridor.step(&[-0.3, 0.4], &mut again).unwrap(), again), (first, there));
     assert!(Remembered::new(make("UavDepthCorridor-discrete-v1").unwrap()).is_err());
+    assert!(corridor.step(&[0.0; 3], &mut seen).is_err());
     assert!(corridor.step(&[0.0; 2], &mut seen[1..]).is_err());
+}
+
+/// Of 100 worlds with 8 to 10 obstacles; without learning.
+#[test]
+fn proposals_lead_through_dense_corridors() {
+    let mut corridor = Remembered::new(make("UavDepthCorridor-dense-v1").unwrap()).unwrap();
+    let mut seen = [0.0; FlightMemory::LEN];
+    let mut flies = |seed: u64, corrections: &dyn Fn(&[f32]) -> [f32; 2]| {
+        corridor.reset(Some(seed), &ResetOptions::new(), &mut seen).unwrap();
+        loop {
+            let step = corridor.step(&corrections(&seen), &mut seen).unwrap();
+            if step.is_over() {
+                break step.info.success() == Some(true);
+            }
+        }
+    };
+    let arrived = (0..100).filter(|seed| flies(*seed, &|_| [0.0; 2])).count();
+    assert!(arrived >= 80, "{arrived}");
+    // What undoes the proposals flies straight on, and rarely arrives.
+    let proposal = 3 * FlightMemory::WAYS;
+    let straight =
+        (0..100).filter(|seed| flies(*seed, &|seen| [-seen[proposal], -seen[proposal + 1]])).count();
+    assert!(straight < 20, "{straight}");
 }

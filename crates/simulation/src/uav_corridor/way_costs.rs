@@ -112,6 +112,15 @@ impl WayCosts {
         }
     }
 
+    /// What a metre costs at a place, ahead and left of the drone.
+    pub fn weight(&self, [ahead, left]: [f32; 2]) -> f32 {
+        let cell = |metres: f32, before: usize, count: usize| {
+            // Below zero saturates.
+            ((metres / CELL + before as f32 + 0.5) as usize).min(count - 1)
+        };
+        self.weights[cell(ahead, BEHIND, COLUMNS) * ROWS + cell(left, ASIDE, ROWS)]
+    }
+
     /// What it costs to fly on from a place, ahead and left of the drone, between the cells around it.
     pub fn at(&self, [ahead, left]: [f32; 2]) -> f32 {
         let place = |metres: f32, before: usize, count: usize| {

@@ -1,0 +1,137 @@
+//! What a drone that cannot stop should do next.
+
+use super::way_costs::WayCosts;
+use super::{RADIUS, TURN};
+use crate::sine_cosine::sine_cosine;
+
+/// The cheapest of all flights of two steps, by the drone's own rules: each step leads a metre on, at most 22.5 degrees from where the
+/// drone looks, and only then it looks elsewhere. What lies behind them costs what [`WayCosts`] say, which know of no such
+/// rules, so that they alone lead into gaps from which nothing leads out.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lookahead {
+    /// Directions ahead and left, from the right to the left.
+    fan: [[f32; 2]; FAN],
+}
+
+/// Directions in [`TURN`].
+const PARTS: usize = 4;
+/// Directions of the first step.
+const HEADINGS: usize = 2 * PARTS + 1;
+/// Directions of any step: after a turn and with a heading.
+const FAN: usize = 2 * HEADINGS - 1;
+/// Every second direction is tried in the second step: so many after each turn.
+const ONWARD: usize = PARTS + 1;
+/// Changes of yaw: to the right, none, to the left.
+const TURNS: usize = 3;
+/// Where a metre is looked at.
+const SAMPLES: u8 = 5;
+/// What it costs to touch something, to use a rudder fully, and to look aside by [`TURN`].
+const TOUCH: f32 = 100.0;
+const RUDDER: f32 = 0.05;
+const ASIDE: f32 = 0.1;
+/// Points nearer to a way than this are touched.
+const TOUCHED: f32 = RADIUS + 0.02;
+
+impl Default for Lookahead {
+    fn default() -> Self {
+        let direction = |at: usize| {
+            let parts = at as f64 - (FAN / 2) as f64;
+            let (sine, cosine) = sine_cosine(parts * TURN / PARTS as f64);
+            [cosine as f32, sine as f32]
+        };
+        Self { fan: std::array::from_fn(direction) }
+    }
+}
+
+impl Lookahead {
+    /// Heading and change of yaw of the cheapest flight, each within [-1, 1], for a drone in the middle of `costs` and of
+    /// `points`, given along the corridor and to the left as the costs are.
+    pub fn action(&self, costs: &WayCosts, points: &[[f32; 2]], yaw: f64) -> [f32; 2] {
+        let (sine, cosine) = sine_cosine(yaw);
+        let (sine, cosine) = (sine as f32, cosine as f32);
+        let fan = self.fan.map(|[ahead, left]| [cosine * ahead - sine * left, sine * ahead + cosine * left]);
+        let (mut least, mut action) = (f32::INFINITY, [0.0; 2]);
+        for (number, direction) in fan[PARTS..][..HEADINGS].iter().enumerate() {
+            let heading = number as f32 / PARTS as f32 - 1.0;
+            let touch = if is_touched(points, *direction) { TOUCH } else { 0.0 };
+            let first = touch + metre(costs, [0.0; 2], *direction);
+            let onward: [f32; HEADINGS] = std::array::from_fn(|at| {
+                let [x, y] = fan[2 * at];
+                metre(costs, *direction, [x, y]) + costs.at([direction[0] + x, direction[1] + y])
+            });
+            for turned in 0..TURNS {
+                let turn = turned as f32 - 1.0;
+                let aside = (yaw / TURN) as f32 + turn;
+                // The yaw ends at a right angle, four times the largest change.
+                if turn != 0.0 && aside.abs() > 4.5 {
+                    continue;
+                }
+                let second = onward[2 * turned..][..ONWARD].iter().copied().fold(f32::INFINITY, f32::min);
+                let ease = RUDDER * (heading.abs() + turn.abs()) + ASIDE * aside.abs();
+                let cost = first + second + ease;
+                if cost < least {
+                    (least, action) = (cost, [heading, turn]);
+                }
+            }
+        }
+        action
+    }
+}
+
+/// What it costs to fly a metre on.
+fn metre(costs: &WayCosts, [x, y]: [f32; 2], [ahead, left]: [f32; 2]) -> f32 {
+    let part = 1.0 / f32::from(SAMPLES);
+    let far = |sample| part * f32::from(sample);
+    let weights = (1..=SAMPLES).map(far).map(|far| costs.weight([x + far * ahead, y + far * left]));
+    part * weights.sum::<f32>()
+}
+
+/// Whether the drone would touch one of the points on the next metre.
+fn is_touched(points: &[[f32; 2]], [ahead, left]: [f32; 2]) -> bool {
+    points.iter().any(|[x, y]| {
+        let along = (ahead * x + left * y).clamp(0.0, 1.0);
+        let (x, y) = (x - along * ahead, y - along * left);
+        x * x + y * y < TOUCHED * TOUCHED
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn action(points: &[[f32; 2]], yaw: f64) -> [f32; 2] {
+        let mut costs = WayCosts::default();
+        costs.find(points.iter().copied(), 0.0, 30.0);
+        Lookahead::default().action(&costs, points, yaw)
+    }
+
+    #[test]
+    fn where_nothing_is_it_flies_straight_on() {
+        assert_eq!(action(&[], 0.0), [0.0; 2]);
+        // It looks back along the corridor as soon as it may.
+        let [heading, turn] = action(&[], TURN);
+        assert!(heading < -0.5 && turn == -1.0, "{heading} {turn}");
+        assert_eq!(action(&[], -4.0 * TURN), [1.0; 2]);
+    }
+
+    #[test]
+    fn it_turns_away_in_time() {
+        // A wall 3 m ahead, from 2 m to the right to the left border.
+        let wall: Vec<_> = (0..71).map(|step| [3.0, 0.1 * step as f32 - 2.0]).collect();
+        let [heading, turn] = action(&wall, 0.0);
+        assert!(heading < 0.0 && turn == -1.0, "{heading} {turn}");
+        let mirrored: Vec<_> = wall.iter().map(|[x, y]| [*x, -y]).collect();
+        assert_eq!(action(&mirrored, 0.0), [-heading, 1.0]);
+    }
+
+    #[test]
+    fn it_touches_nothing_that_it_can_miss() {
+        for left in [-0.2, 0.0, 0.2] {
+            let point = [1.0, left];
+            let [heading, _] = action(&[point], 0.0);
+            let (sine, cosine) = sine_cosine(f64::from(heading) * TURN);
+            let way = [cosine as f32, sine as f32];
+            assert!(!is_touched(&[point], way), "{left}: {heading}");
+        }
+    }
+}
