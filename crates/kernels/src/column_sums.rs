@@ -68,6 +68,9 @@ for_every_isa!(
     )
 );
 
+/// Rows that are taken together: they share what is read and written of the sums.
+const TOGETHER: usize = 4;
+
 #[inline(always)]
 unsafe fn both<V: Lanes>(
     activation: Activation,
@@ -76,28 +79,48 @@ unsafe fn both<V: Lanes>(
     dy: *mut f32,
     sums: *mut f32,
 ) {
+    let whole = rows / TOGETHER * TOGETHER;
     // SAFETY: by contract there are `rows` rows of `columns` numbers, and `columns` sums.
     unsafe {
-        for j in (0..columns).step_by(V::WIDTH) {
-            let count = V::WIDTH.min(columns - j);
-            if count < V::WIDTH {
-                let mut total = V::load_some(sums.add(j), count);
-                for at in (0..rows).map(|i| i * columns + j) {
-                    let before =
-                        activation.gradient(V::load_some(y.add(at), count), V::load_some(dy.add(at), count));
-                    before.store_some(dy.add(at), count);
-                    total = total.add(before);
-                }
-                total.store_some(sums.add(j), count);
-            } else {
-                let mut total = V::load(sums.add(j));
-                for at in (0..rows).map(|i| i * columns + j) {
-                    let before = activation.gradient(V::load(y.add(at)), V::load(dy.add(at)));
-                    before.store(dy.add(at));
-                    total = total.add(before);
-                }
-                total.store(sums.add(j));
+        for at in (0..whole).step_by(TOGETHER).map(|row| row * columns) {
+            both_of_rows::<V, TOGETHER>(activation, columns, y.add(at), dy.add(at), sums);
+        }
+        for at in (whole..rows).map(|row| row * columns) {
+            both_of_rows::<V, 1>(activation, columns, y.add(at), dy.add(at), sums);
+        }
+    }
+}
+
+#[inline(always)]
+unsafe fn both_of_rows<V: Lanes, const R: usize>(
+    activation: Activation,
+    columns: usize,
+    y: *const f32,
+    dy: *mut f32,
+    sums: *mut f32,
+) {
+    let whole = columns / V::WIDTH * V::WIDTH;
+    // SAFETY: by contract there are R rows of `columns` numbers, and `columns` sums.
+    unsafe {
+        for j in (0..whole).step_by(V::WIDTH) {
+            let mut total = V::load(sums.add(j));
+            for at in (0..R).map(|i| i * columns + j) {
+                let before = activation.gradient(V::load(y.add(at)), V::load(dy.add(at)));
+                before.store(dy.add(at));
+                total = total.add(before);
             }
+            total.store(sums.add(j));
+        }
+        let rest = columns - whole;
+        if rest > 0 {
+            let mut total = V::load_some(sums.add(whole), rest);
+            for at in (0..R).map(|i| i * columns + whole) {
+                let before =
+                    activation.gradient(V::load_some(y.add(at), rest), V::load_some(dy.add(at), rest));
+                before.store_some(dy.add(at), rest);
+                total = total.add(before);
+            }
+            total.store_some(sums.add(whole), rest);
         }
     }
 }

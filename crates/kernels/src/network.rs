@@ -39,6 +39,7 @@ pub struct Network {
 /// What a pass forward leaves for the pass back: memory that is used again, so that only the first passes allocate.
 #[derive(Debug, Clone, Default)]
 pub struct Tape {
+    batch: usize,
     /// The input, then what each layer gave.
     values: Vec<Vec<f32>>,
     /// The gradients of those.
@@ -115,6 +116,29 @@ impl Tape {
     /// What the last [`Network::forward`] gave; empty before one.
     pub fn output(&self) -> &[f32] {
         self.values.last().map_or(&[], |values| values)
+    }
+
+    /// Forgets all but some rows of the batch of the last [`Network::forward`], given in rising order: the way back is then
+    /// only gone for them, as if they had come alone.
+    ///
+    /// # Panics
+    /// Where there is no such row.
+    pub fn keep_rows(&mut self, rows: &[usize]) {
+        if rows.len() == self.batch {
+            return;
+        }
+        self.gradients.resize_with(self.values.len(), Vec::new);
+        for (values, gradients) in self.values.iter_mut().zip(&mut self.gradients) {
+            let width = values.len().checked_div(self.batch).unwrap_or(0);
+            // The next time other rows may be kept, or more: there is room for all of them, once and for all.
+            gradients.clear();
+            gradients.reserve(values.len());
+            for (to, &from) in rows.iter().enumerate() {
+                values.copy_within(from * width..(from + 1) * width, to * width);
+            }
+            values.truncate(rows.len() * width);
+        }
+        self.batch = rows.len();
     }
 }
 
@@ -199,6 +223,7 @@ impl Network {
         let batch = x.len() / self.inputs;
         assert_eq!(x.len(), batch * self.inputs, "no batch of {} numbers each", self.inputs);
         assert_eq!(parameters.len(), self.parameters(), "parameters of another network");
+        tape.batch = batch;
         tape.values.resize_with(self.layers.len() + 1, Vec::new);
         tape.values[0].clear();
         tape.values[0].extend_from_slice(x);
@@ -226,7 +251,7 @@ impl Network {
         mut gradients: Option<&mut [f32]>,
         wants_input: bool,
     ) -> &'t [f32] {
-        let Tape { values, gradients: flow, scratch } = tape;
+        let Tape { values, gradients: flow, scratch, .. } = tape;
         assert_eq!(values.len(), self.layers.len() + 1, "no forward pass before");
         assert_eq!(dy.len(), values[self.layers.len()].len(), "not the gradient of the output");
         flow.resize_with(values.len(), Vec::new);
@@ -244,5 +269,29 @@ impl Network {
             layer.backward(compute, &parameters[range], ends, &mut after[0], own, dx, scratch);
         }
         if wants_input { &flow[0] } else { &[] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_that_are_kept_have_the_gradients_of_the_batch() {
+        let network = Network::dense(&[3, 20, 2], Activation::Relu).unwrap();
+        let (compute, mut tape) = (Compute::single(), Tape::default());
+        let numbers = |count: usize| (0..count).map(|at| (at as f32).sin()).collect::<Vec<_>>();
+        let (parameters, x, dy) = (numbers(network.parameters()), numbers(7 * 3), numbers(7 * 2));
+        for rows in [&[0, 3, 4, 6][..], &[], &[5], &[0, 1, 2, 3, 4, 5, 6]] {
+            network.forward(&compute, &parameters, &x, &mut tape);
+            let all = network.backward(&compute, &parameters, &dy, &mut tape, None, true).to_vec();
+            let of = |numbers: &[f32], width: usize| {
+                let rows = rows.iter().flat_map(|row| &numbers[row * width..(row + 1) * width]);
+                rows.copied().collect::<Vec<_>>()
+            };
+            tape.keep_rows(rows);
+            let kept = network.backward(&compute, &parameters, &of(&dy, 2), &mut tape, None, true);
+            assert_eq!(kept, of(&all, 3));
+        }
     }
 }

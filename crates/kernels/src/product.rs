@@ -5,18 +5,21 @@ use crate::lanes::Lanes;
 use crate::matrix::{Matrix, MatrixMut};
 use crate::{Activation, lanes};
 
+mod dots;
 mod pack;
 #[cfg(test)]
 mod tests;
 mod tile;
 
+use dots::{MOST_COLUMNS, compute_dots};
 use pack::{Source, pack};
 use tile::{BiasAt, Block, Finish, VECTORS, compute_block};
 
 /// A matrix product and what is done to it in the same pass: `C = activation(alpha A B + beta C + bias)`.
 ///
-/// Each element is summed from the first to the last of its products, in blocks of 256, whatever the shapes and the
-/// number of threads. Where `beta` is 0, C is not read, so that it may hold anything; where `alpha` is 0, A and B are not.
+/// Each element is summed from the first to the last of its products, in blocks of 256; where there are at most four
+/// columns and the rows of A lie each in one piece, in the lanes of a register. Neither the number of rows nor that of
+/// threads changes that order. Where `beta` is 0, C is not read, so that it may hold anything; where `alpha` is 0, A and B are not.
 ///
 /// ```
 /// use opendr_kernels::{Activation, Bias, Compute, Matrix, MatrixMut, Product};
@@ -127,6 +130,9 @@ impl<'a> Product<'a> {
             finish,
         };
         let tile = Tile::of(compute.isa());
+        if job.is_dots() {
+            return job.run_dots(compute, tile);
+        }
         let job = if job.is_better_transposed(tile) { job.transposed() } else { job };
         job.run(compute, tile);
     }
@@ -180,6 +186,28 @@ impl Job {
         (!side_by_side && self.c_strides[0] == 1)
             || (self.columns <= tile.columns / 4 && self.rows >= tile.columns && self.a.across == 1)
             || (self.rows <= 2 && self.columns > tile.rows && self.b.across != 1)
+    }
+
+    /// Few columns leave most of a tile unused; registers then lie along the depth. This must not depend on the number of rows,
+    /// as the order of a sum does on this.
+    fn is_dots(&self) -> bool {
+        self.columns <= MOST_COLUMNS && self.depth > 1 && self.a.along == 1
+    }
+
+    fn run_dots(&self, compute: &Compute, tile: Tile) {
+        with_buffer(&RIGHT_PANELS, self.columns * self.depth, |columns| {
+            for (index, column) in columns.chunks_exact_mut(self.depth).enumerate() {
+                for (step, number) in column.iter_mut().enumerate() {
+                    // SAFETY: B has this many columns and steps of the depth.
+                    *number = unsafe { *self.b.data.add(index * self.b.across + step * self.b.along) };
+                }
+            }
+            let right = Right { data: columns.as_ptr(), strides: [1, self.depth] };
+            self.run_rows(compute, tile, |rows| {
+                // SAFETY: the block lies within the matrices; the columns of B lie one after the other.
+                unsafe { compute_dots(compute.isa(), &self.block(tile, rows, &right)) }
+            });
+        });
     }
 
     /// The same product as `C' = B' A'`.
@@ -260,7 +288,7 @@ impl Job {
         with_buffer(&RIGHT_PANELS, panels, |panels| {
             if first_packed > 0 {
                 let direct = self.part([0, first_packed], [0, self.depth]);
-                direct.run_rows(compute, tile, self.b.data, [self.b.along, tile.columns]);
+                direct.run_tiles(compute, tile, self.b.data, [self.b.along, tile.columns]);
             }
             if packed > 0 {
                 let rest = self.part([first_packed, packed], [0, self.depth]);
@@ -268,19 +296,23 @@ impl Job {
                     // SAFETY: B has `packed` columns from here on, and `depth` rows.
                     unsafe { pack(rest.b, packed, self.depth, tile.columns, panels) };
                 }
-                rest.run_rows(compute, tile, panels.as_ptr(), [tile.columns, tile.columns * self.depth]);
+                rest.run_tiles(compute, tile, panels.as_ptr(), [tile.columns, tile.columns * self.depth]);
             }
         });
     }
 
-    /// All rows in pieces, each on the thread that comes first.
-    fn run_rows(&self, compute: &Compute, tile: Tile, b: *const f32, b_strides: [usize; 2]) {
+    fn run_tiles(&self, compute: &Compute, tile: Tile, b: *const f32, b_strides: [usize; 2]) {
+        let right = Right { data: b, strides: b_strides };
+        self.run_rows(compute, tile, |rows| self.run_piece(compute.isa(), tile, rows, &right));
+    }
+
+    /// All rows in pieces, first one and number, each on the thread that comes first.
+    fn run_rows(&self, compute: &Compute, tile: Tile, run: impl Fn([usize; 2]) + Sync) {
         // Every piece reads all of B once: many rows pay for that, few spread better.
         let piece = tile.rows * if self.rows > 384 { 24 } else { 8 };
-        let right = Right { data: b, strides: b_strides };
         let work = |index: usize| {
             let first = index * piece;
-            self.run_piece(compute.isa(), tile, [first, piece.min(self.rows - first)], &right);
+            run([first, piece.min(self.rows - first)]);
         };
         let pieces = self.rows.div_ceil(piece);
         if self.rows.saturating_mul(self.columns).saturating_mul(self.depth) < PARALLEL_FROM {
@@ -290,8 +322,8 @@ impl Job {
         }
     }
 
-    fn run_piece(&self, isa: Isa, tile: Tile, [first, rows]: [usize; 2], b: &Right) {
-        let a = Source { data: self.a.data.wrapping_add(first * self.a.across), ..self.a };
+    /// Some rows, with A where it lies.
+    fn block(&self, tile: Tile, [first, rows]: [usize; 2], b: &Right) -> Block {
         let mut finish = self.finish;
         // SAFETY: the piece lies within C and within the bias.
         let c = unsafe {
@@ -300,27 +332,34 @@ impl Job {
             }
             self.c.add(first * self.c_strides[0])
         };
-        let block = Block {
+        Block {
             rows,
             columns: self.columns,
             depth: self.depth,
-            a: a.data,
-            a_strides: [a.across, a.along, a.across * tile.rows],
+            a: self.a.data.wrapping_add(first * self.a.across),
+            a_strides: [self.a.across, self.a.along, self.a.across * tile.rows],
             b: b.data,
             b_strides: b.strides,
             c,
             c_strides: self.c_strides,
             finish,
-        };
+        }
+    }
+
+    /// Packs A, unless its numbers lie side by side along the depth, or down the rows where so few columns read them that
+    /// packing does not pay.
+    fn run_piece(&self, isa: Isa, tile: Tile, [first, rows]: [usize; 2], b: &Right) {
+        let block = self.block(tile, [first, rows], b);
         let is_read_often = self.columns > 4 * tile.columns;
-        if !is_read_often || self.depth == 0 {
+        let in_place = self.a.along == 1 || (self.a.across == 1 && !is_read_often);
+        if in_place || self.depth == 0 {
             // SAFETY: the block lies within the matrices, and B is readable in whole tiles.
             return unsafe { compute_block(isa, &block) };
         }
         with_buffer(&LEFT_PANELS, rows.div_ceil(tile.rows) * tile.rows * self.depth, |panels| {
             // SAFETY: A has these rows and `depth` columns; the block then reads the panels instead.
             unsafe {
-                pack(a, rows, self.depth, tile.rows, panels);
+                pack(Source { data: block.a, ..self.a }, rows, self.depth, tile.rows, panels);
                 let a_strides = [1, tile.rows, tile.rows * self.depth];
                 compute_block(isa, &Block { a: panels.as_ptr(), a_strides, ..block });
             }

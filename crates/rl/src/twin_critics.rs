@@ -52,6 +52,8 @@ struct Critic {
     target: Vec<f32>,
     adam: Adam,
     tape: Tape,
+    /// Rows for which its value counts.
+    rows: Vec<usize>,
     dvalues: Vec<f32>,
     gradients: Vec<f32>,
     dinputs: Vec<f32>,
@@ -76,6 +78,7 @@ impl TwinCritics {
                 parameters,
                 adam: Adam::new(count, AdamOptions::default()),
                 tape: Tape::default(),
+                rows: Vec::new(),
                 dvalues: Vec::new(),
                 gradients: vec![0.0; count],
                 dinputs: Vec::new(),
@@ -152,16 +155,19 @@ impl TwinCritics {
         );
         let scale = 1.0 / rows as f32;
         let mut sum = 0.0;
-        first.dvalues.clear();
-        second.dvalues.clear();
-        for (one, other) in first.tape.output().iter().zip(second.tape.output()) {
-            sum += one.min(*other);
-            first.dvalues.push(if one <= other { -scale } else { 0.0 });
-            second.dvalues.push(if one <= other { 0.0 } else { -scale });
+        for critic in [&mut *first, &mut *second] {
+            critic.rows.clear();
+            critic.rows.reserve(rows);
         }
-        compute
-            .pool()
-            .join(|| first.differentiate(compute, network), || second.differentiate(compute, network));
+        for (row, (one, other)) in first.tape.output().iter().zip(second.tape.output()).enumerate() {
+            sum += one.min(*other);
+            let lower = if one <= other { &mut first.rows } else { &mut second.rows };
+            lower.push(row);
+        }
+        compute.pool().join(
+            || first.differentiate(compute, network, rows),
+            || second.differentiate(compute, network, rows),
+        );
         let (width, action) = (network.inputs(), actions.len() / rows);
         daction.clear();
         for (one, other) in first.dinputs.chunks_exact(width).zip(second.dinputs.chunks_exact(width)) {
@@ -184,9 +190,9 @@ impl TwinCritics {
         let values = network.forward(compute, &first.parameters, inputs, &mut first.tape);
         let scale = 1.0 / rows as f32;
         let mean = values.iter().sum::<f32>() * scale;
-        first.dvalues.clear();
-        first.dvalues.resize(rows, -scale);
-        first.differentiate(compute, network);
+        first.rows.clear();
+        first.rows.extend(0..rows);
+        first.differentiate(compute, network, rows);
         let (width, action) = (network.inputs(), actions.len() / rows);
         daction.clear();
         for row in first.dinputs.chunks_exact(width) {
@@ -311,11 +317,20 @@ impl Critic {
         self.adam.step(compute, learning_rate, &mut self.parameters, &self.gradients);
     }
 
-    /// The gradient of the inputs from that of the values.
-    fn differentiate(&mut self, compute: &Compute, network: &Network) {
-        let dinputs = network.backward(compute, &self.parameters, &self.dvalues, &mut self.tape, None, true);
-        self.dinputs.clear();
-        self.dinputs.extend_from_slice(dinputs);
+    /// The gradient by the inputs of minus the sum of the values of its `rows`, divided by `batch`: the rows of the last pass
+    /// forward. Other rows have none, and cost nothing.
+    fn differentiate(&mut self, compute: &Compute, network: &Network, batch: usize) {
+        let Self { parameters, tape, rows, dvalues, dinputs, .. } = self;
+        dvalues.clear();
+        dvalues.resize(rows.len(), -1.0 / batch as f32);
+        tape.keep_rows(rows);
+        let width = network.inputs();
+        let of_rows = network.backward(compute, parameters, dvalues, tape, None, true);
+        dinputs.clear();
+        dinputs.resize(batch * width, 0.0);
+        for (row, from) in rows.iter().zip(of_rows.chunks_exact(width)) {
+            dinputs[row * width..(row + 1) * width].copy_from_slice(from);
+        }
     }
 }
 

@@ -14,11 +14,20 @@ pub(super) struct Source {
 /// panel is filled up with zeros.
 ///
 /// # Safety
-/// `source` is readable for `count` by `depth` numbers.
+/// `width` is that of a tile: 4, 6, 8, 16 or 32. `source` is readable for `count` by `depth` numbers.
 pub(super) unsafe fn pack(source: Source, count: usize, depth: usize, width: usize, panels: &mut [f32]) {
     if source.across == 1 {
+        // A width known to the compiler becomes some moves.
         // SAFETY: the caller's promise.
-        return unsafe { copy_runs(source, count, depth, width, panels) };
+        return unsafe {
+            match width {
+                4 => copy_runs::<4>(source, count, depth, panels),
+                6 => copy_runs::<6>(source, count, depth, panels),
+                8 => copy_runs::<8>(source, count, depth, panels),
+                16 => copy_runs::<16>(source, count, depth, panels),
+                _ => copy_runs::<32>(source, count, depth, panels),
+            }
+        };
     }
     for (index, panel) in panels.chunks_exact_mut(depth * width).enumerate() {
         let first = index * width;
@@ -37,12 +46,12 @@ pub(super) unsafe fn pack(source: Source, count: usize, depth: usize, width: usi
 /// Panels that are filled at the same time: a cache line of the source is then read once or twice, not once for each.
 const TOGETHER: usize = 4;
 
-unsafe fn copy_runs(source: Source, count: usize, depth: usize, width: usize, panels: &mut [f32]) {
-    let size = depth * width;
+unsafe fn copy_runs<const WIDTH: usize>(source: Source, count: usize, depth: usize, panels: &mut [f32]) {
+    let size = depth * WIDTH;
     for (index, group) in panels.chunks_mut(TOGETHER * size).enumerate() {
-        let first = index * TOGETHER * width;
-        let whole = (count - first).min(TOGETHER * width) / width;
-        let rest = (count - first).min(TOGETHER * width) - whole * width;
+        let first = index * TOGETHER * WIDTH;
+        let whole = (count - first).min(TOGETHER * WIDTH) / WIDTH;
+        let rest = (count - first).min(TOGETHER * WIDTH) - whole * WIDTH;
         if rest > 0 {
             group[whole * size..].fill(0.0);
         }
@@ -50,30 +59,15 @@ unsafe fn copy_runs(source: Source, count: usize, depth: usize, width: usize, pa
         for step in 0..depth {
             // SAFETY: by the contract of `pack`; the group has `whole` panels, and one more where there is a rest.
             unsafe {
-                let from = source.data.add(first + step * source.along);
+                let (from, to) = (source.data.add(first + step * source.along), to.add(step * WIDTH));
                 for panel in 0..whole {
-                    copy_run(from.add(panel * width), to.add(panel * size + step * width), width);
+                    let run = from.add(panel * WIDTH).cast::<[f32; WIDTH]>().read_unaligned();
+                    to.add(panel * size).cast::<[f32; WIDTH]>().write_unaligned(run);
                 }
                 for i in 0..rest {
-                    *to.add(whole * size + step * width + i) = *from.add(whole * width + i);
+                    *to.add(whole * size + i) = *from.add(whole * WIDTH + i);
                 }
             }
-        }
-    }
-}
-
-/// Sizes known to the compiler become some moves.
-#[inline(always)]
-unsafe fn copy_run(from: *const f32, to: *mut f32, count: usize) {
-    // SAFETY: by the contract of `pack`.
-    unsafe {
-        match count {
-            4 => to.copy_from_nonoverlapping(from, 4),
-            6 => to.copy_from_nonoverlapping(from, 6),
-            8 => to.copy_from_nonoverlapping(from, 8),
-            16 => to.copy_from_nonoverlapping(from, 16),
-            32 => to.copy_from_nonoverlapping(from, 32),
-            _ => to.copy_from_nonoverlapping(from, count),
         }
     }
 }

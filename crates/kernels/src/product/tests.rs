@@ -162,15 +162,15 @@ fn large_products_do_not_depend_on_threads() {
 /// A row gives the same bits alone and in a batch.
 #[test]
 fn rows_do_not_depend_on_the_batch() {
-    let (a, b) = (random(100 * 70, 1), random(70 * 33, 2));
-    for compute in computes() {
-        let mut all = vec![0.0; 100 * 33];
-        let (left, right) = (Matrix::new(&a, 100, 70), Matrix::new(&b, 70, 33));
-        Product::new().run(&compute, left, right, MatrixMut::new(&mut all, 100, 33));
-        for (row, expected) in a.chunks(70).zip(all.chunks(33)) {
-            let mut one = [0.0; 33];
-            Product::new().run(&compute, Matrix::new(row, 1, 70), right, MatrixMut::new(&mut one, 1, 33));
-            assert_eq!(one, expected, "{}", compute.isa());
+    for (compute, columns) in computes().iter().flat_map(|compute| [1, 2, 3, 4, 33].map(|n| (compute, n))) {
+        let (a, b) = (random(100 * 70, 1), random(70 * columns, 2));
+        let mut all = vec![0.0; 100 * columns];
+        let (left, right) = (Matrix::new(&a, 100, 70), Matrix::new(&b, 70, columns));
+        Product::new().run(compute, left, right, MatrixMut::new(&mut all, 100, columns));
+        for (row, expected) in a.chunks(70).zip(all.chunks(columns)) {
+            let mut one = vec![0.0; columns];
+            Product::new().run(compute, Matrix::new(row, 1, 70), right, MatrixMut::new(&mut one, 1, columns));
+            assert_eq!(one, expected, "{} {columns}", compute.isa());
         }
     }
 }

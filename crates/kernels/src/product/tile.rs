@@ -8,6 +8,8 @@ use crate::lanes::{Lanes, MAX_WIDTH};
 
 /// Registers side by side in a tile.
 pub(super) const VECTORS: usize = 2;
+/// Steps of the depth in a turn of the loop.
+const UNROLLED: usize = 4;
 const MAX_ROWS: usize = 8;
 const MAX_COLUMNS: usize = VECTORS * MAX_WIDTH;
 
@@ -18,7 +20,7 @@ pub(super) struct Block {
     pub(super) columns: usize,
     pub(super) depth: usize,
     pub(super) a: *const f32,
-    /// Distances in A: to the next row, to the next column, to the next tile.
+    /// Distances in A: to the next row, to the next column, to the next tile. One of the first two is 1.
     pub(super) a_strides: [usize; 3],
     pub(super) b: *const f32,
     /// Distances in B: to the next row, to the next tile. A tile's columns lie side by side.
@@ -128,54 +130,90 @@ unsafe fn sums<V: Lanes, const R: usize, const N: usize>(
     // SAFETY: by the contract of `compute_block`; pointers move past the end only after the last use.
     unsafe {
         let mut sums = [[V::splat(0.0); N]; R];
-        for _ in 0..depth {
-            let mut right = [V::splat(0.0); N];
-            for (j, vector) in right.iter_mut().enumerate() {
-                *vector = V::load(b.add(j * V::WIDTH));
-            }
-            for (i, row) in sums.iter_mut().enumerate() {
-                let left = V::splat(*a.add(i * row_stride));
-                for (sum, &vector) in row.iter_mut().zip(&right) {
-                    *sum = left.mul_add(vector, *sum);
+        if row_stride == 1 {
+            for _ in 0..depth / UNROLLED {
+                for _ in 0..UNROLLED {
+                    add_step(&mut sums, std::array::from_fn(|i| a.add(i)), b);
+                    (a, b) = (a.wrapping_add(column_stride), b.wrapping_add(b_stride));
                 }
             }
-            a = a.wrapping_add(column_stride);
+            for _ in 0..depth % UNROLLED {
+                add_step(&mut sums, std::array::from_fn(|i| a.add(i)), b);
+                (a, b) = (a.wrapping_add(column_stride), b.wrapping_add(b_stride));
+            }
+            return sums;
+        }
+        let mut rows: [*const f32; R] = std::array::from_fn(|i| a.add(i * row_stride));
+        for _ in 0..depth / UNROLLED {
+            for step in 0..UNROLLED {
+                add_step(&mut sums, rows.map(|row| row.add(step)), b);
+                b = b.wrapping_add(b_stride);
+            }
+            rows = rows.map(|row| row.wrapping_add(UNROLLED));
+        }
+        for step in 0..depth % UNROLLED {
+            add_step(&mut sums, rows.map(|row| row.add(step)), b);
             b = b.wrapping_add(b_stride);
         }
         sums
     }
 }
 
+/// Adds the products of a number of each row and a row of registers.
+#[inline(always)]
+unsafe fn add_step<V: Lanes, const R: usize, const N: usize>(
+    sums: &mut [[V; N]; R],
+    left: [*const f32; R],
+    right: *const f32,
+) {
+    // SAFETY: by the contract of `compute_block`.
+    unsafe {
+        let mut vectors = [V::splat(0.0); N];
+        for (j, vector) in vectors.iter_mut().enumerate() {
+            *vector = V::load(right.add(j * V::WIDTH));
+        }
+        for (row, left) in sums.iter_mut().zip(left) {
+            let left = V::splat(*left);
+            for (sum, &vector) in row.iter_mut().zip(&vectors) {
+                *sum = left.mul_add(vector, *sum);
+            }
+        }
+    }
+}
+
 #[inline(always)]
 unsafe fn finish_tile<V: Lanes, const R: usize, const N: usize>(
-    sums: [[V; N]; R],
+    mut sums: [[V; N]; R],
     c: *mut f32,
     row_stride: usize,
     finish: &Finish,
 ) {
     // SAFETY: `c` has R rows of N registers, a bias of rows R numbers, a bias of columns N registers.
     unsafe {
-        for (i, row) in sums.iter().enumerate() {
-            for (j, &sum) in row.iter().enumerate() {
-                let at = c.add(i * row_stride + j * V::WIDTH);
-                let mut value = sum;
-                if finish.alpha != 1.0 {
-                    value = value.mul(V::splat(finish.alpha));
-                }
-                if finish.beta == 1.0 {
-                    value = value.add(V::load(at));
-                } else if finish.beta != 0.0 {
-                    value = V::load(at).mul_add(V::splat(finish.beta), value);
-                }
-                match finish.bias {
-                    BiasAt::None => (),
-                    BiasAt::Rows(bias) => value = value.add(V::splat(*bias.add(i))),
-                    BiasAt::Columns(bias) => value = value.add(V::load(bias.add(j * V::WIDTH))),
-                }
-                value.store(at);
+        if finish.alpha != 1.0 {
+            change(&mut sums, |_, _, sum| sum.mul(V::splat(finish.alpha)));
+        }
+        if finish.beta != 0.0 {
+            let before = |i, j| V::load(c.add(i * row_stride + j * V::WIDTH));
+            change(&mut sums, |i, j, sum| before(i, j).mul_add(V::splat(finish.beta), sum));
+        }
+        match finish.bias {
+            BiasAt::None => (),
+            BiasAt::Rows(bias) => change(&mut sums, |i, _, sum| sum.add(V::splat(*bias.add(i)))),
+            BiasAt::Columns(bias) => {
+                change(&mut sums, |_, j, sum| sum.add(V::load(bias.add(j * V::WIDTH))));
             }
         }
-        if finish.activation != Activation::Identity {
+        if finish.activation == Activation::Relu {
+            change(&mut sums, |_, _, sum| Activation::Relu.of(sum));
+        }
+        for (i, row) in sums.iter().enumerate() {
+            for (j, sum) in row.iter().enumerate() {
+                sum.store(c.add(i * row_stride + j * V::WIDTH));
+            }
+        }
+        // What takes many instructions is written once for all registers of a row, not for each.
+        if !matches!(finish.activation, Activation::Identity | Activation::Relu) {
             for i in 0..R {
                 apply_all::<V>(finish.activation, c.add(i * row_stride), N * V::WIDTH);
             }
@@ -183,9 +221,21 @@ unsafe fn finish_tile<V: Lanes, const R: usize, const N: usize>(
     }
 }
 
+#[inline(always)]
+fn change<V: Copy, const R: usize, const N: usize>(
+    sums: &mut [[V; N]; R],
+    to: impl Fn(usize, usize, V) -> V,
+) {
+    for (i, row) in sums.iter_mut().enumerate() {
+        for (j, sum) in row.iter_mut().enumerate() {
+            *sum = to(i, j, *sum);
+        }
+    }
+}
+
 /// Finishes a tile in a buffer of whole registers: gathers what is there, then scatters the result.
 #[inline(always)]
-unsafe fn finish_aside<V: Lanes, const R: usize, const N: usize>(
+pub(super) unsafe fn finish_aside<V: Lanes, const R: usize, const N: usize>(
     sums: [[V; N]; R],
     c: *mut f32,
     [row_stride, column_stride]: [usize; 2],
