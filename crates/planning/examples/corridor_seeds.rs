@@ -1,5 +1,9 @@
 //! How often drones arrive that were trained with several seeds, and one that learnt nothing and flies as its memory
-//! proposes, between few and many obstacles, with a noisy camera, and with inertia and wind: `cargo run --release -p opendr-planning --example corridor_seeds [SEEDS [EPISODES]]`.
+//! proposes, between few and many obstacles, with a noisy camera, and with inertia and wind:
+//!
+//! ```console
+//! $ cargo run --release -p opendr-planning --example corridor_seeds -- [SEEDS [EPISODES [PARAMETER=VALUE ...]]]
+//! ```
 
 use std::path::Path;
 use std::time::Instant;
@@ -7,6 +11,7 @@ use std::time::Instant;
 use opendr_engine::data::Observation;
 use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::learner::{FitJob, Handle};
+use opendr_engine::params::Params as _;
 use opendr_engine::{Device, Error, Result};
 use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
 use opendr_rl::{
@@ -57,11 +62,22 @@ fn main() -> Result<()> {
     Ok(())
 }
 
+/// The parameters of the training that are given behind the numbers.
+fn fit_params(seed: u64) -> Result<EndToEndPlanningFitParams> {
+    let mut params = EndToEndPlanningFitParams { seed, ..Default::default() };
+    for text in std::env::args().skip(3) {
+        let (name, value) = text.split_once('=').unwrap_or((&text, ""));
+        let field = EndToEndPlanningFitParams::FIELDS.iter().find(|field| field.name == name);
+        let field = field.ok_or_else(|| Error::invalid_param(format!("no parameter {name:?}")))?;
+        params.set(name, field.parse(value)?)?;
+    }
+    Ok(params)
+}
+
 fn trained(seed: u64, folder: &Path) -> Result<Handle<EndToEndPlanningRl>> {
     let mut learner = Handle::<EndToEndPlanningRl>::new(PolicyParams::default(), Device::Cpu)?;
     let corridors = RegisteredSource::new(EVALUATED[0], &Default::default())?;
-    let params = EndToEndPlanningFitParams { seed, ..Default::default() };
-    learner.fit_in(&params, &corridors, None, &FitJob::new(folder))?;
+    learner.fit_in(&fit_params(seed)?, &corridors, None, &FitJob::new(folder))?;
     Ok(learner)
 }
 

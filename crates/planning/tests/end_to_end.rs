@@ -109,7 +109,7 @@ fn a_flight_is_remembered_until_reset() {
 #[test]
 fn it_learns_the_same_on_any_number_of_threads() {
     let folder = Folder::new("fit");
-    let mut params = EndToEndPlanningFitParams { n_steps: 64, ..Default::default() };
+    let mut params = EndToEndPlanningFitParams { n_steps: 64, batch_size: 64, ..Default::default() };
     params.training.total_timesteps = 256;
     params.training.n_envs = 2;
     params.training.n_eval_episodes = 1;

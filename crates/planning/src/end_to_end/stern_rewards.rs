@@ -6,14 +6,13 @@ use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, StateReader, Step,
 };
 
-/// A corridor as policies are trained in it: with OpenDR's rewards, to leave the track or to collide (-10, -20) is cheaper than to squeeze
-/// between two obstacles (-12 a step). Here every end that is no success earns -60, and what a step costs on the
-/// way counts three tenths.
+/// A corridor as policies are trained in it: with OpenDR's rewards, to leave the track or to collide (-10, -20) is cheaper than
+/// to squeeze between two obstacles (-12 a step). Here every end that is no success earns -60, and no step on the way
+/// costs anything: to come near an obstacle is not wrong, and a policy that learnt that it is gave up gaps that it could pass.
 #[derive(Debug, Clone)]
 pub struct SternRewards<E>(pub E);
 
 const FAILURE: f64 = -60.0;
-const COST: f64 = 0.3;
 
 impl<E: Environment> Environment for SternRewards<E> {
     fn spec(&self) -> &EnvironmentSpec {
@@ -29,7 +28,7 @@ impl<E: Environment> Environment for SternRewards<E> {
         let has_failed = step.terminated && step.info.get("success") != Some(1.0);
         let reward = match has_failed {
             true => FAILURE,
-            false => step.reward.max(COST * step.reward),
+            false => step.reward.max(0.0),
         };
         Ok(Step { reward, ..step })
     }
