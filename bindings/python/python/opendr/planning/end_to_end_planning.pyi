@@ -26,9 +26,11 @@ class EndToEndPlanningRLLearner(NativeLearnerRL):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Parameters of ``fit``, for one call or, given here, for all of them:
-        lr: Learning rate of Adam at the beginning; it falls evenly to zero. (default 0.0003; 0 to 1)
-        n_steps: Steps of all environments together between two updates. (default 1024; 1 to 1e+06)
-        batch_size: Steps in a minibatch. (default 64; 1 to 1e+06)
+        lr: Learning rate of Adam at the beginning; it falls evenly to zero. With OpenDR's values of this and of
+            the next two (3e-4, 1024, 64) chance moves the policy away from the way that the drone proposes by
+            itself. (default 0.0001; 0 to 1)
+        n_steps: Steps of all environments together between two updates. (default 8192; 1 to 1e+06)
+        batch_size: Steps in a minibatch. (default 1024; 1 to 1e+06)
         total_timesteps: Steps of all environments together. (default 300000; 1 to 2e+09; in OpenDR iters)
         n_envs: How many environments are stepped together. (default 8; 1 to 65536)
         num_workers: Threads that step environments and learn; they change no bit. (default 2; 1 to 256)
