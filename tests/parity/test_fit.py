@@ -37,6 +37,14 @@ class Boxes(DatasetIterator):
 
 
 @pytest.fixture
+def interruptible():
+    """Ctrl-C raises, also where whoever started the tests in the background lets them ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.fixture
 def data(tmp_path):
     """The same samples as :class:`Boxes`, on disk."""
     folder = tmp_path / "data"
@@ -119,7 +127,7 @@ def test_arguments_of_the_constructor_are_those_of_fit(tmp_path):
         learner.fit(Boxes(4), momentum=0.9)
 
 
-def test_interrupt_saves(counter, tmp_path):
+def test_interrupt_saves(counter, tmp_path, interruptible):
     with pytest.raises(KeyboardInterrupt):
         counter.fit(Boxes(4, interrupt=6), silent=True, output=tmp_path / "run", epochs=3)
     report = json.loads((tmp_path / "run/report.json").read_text())
