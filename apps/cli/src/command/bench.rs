@@ -8,7 +8,7 @@ use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, 
 use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Entry, Ports};
 use opendr::zoo::ItemKind;
-use opendr::{ActingStream, Error, Progress, Result, Unit, vision};
+use opendr::{ActingStream, Progress, Result, Unit, vision};
 use serde::Serialize;
 
 use crate::exit::Outcome;
@@ -216,10 +216,7 @@ fn percentile(timings: &[Timings], part: f64) -> Timings {
 
 fn print(measurement: &Measurement, json: bool) -> Result<()> {
     if json {
-        let text = serde_json::to_string_pretty(measurement);
-        return stdout::print(
-            text.map_err(|error| Error::internal("the figures have no JSON form").with_source(error))?,
-        );
+        return stdout::print_pretty_json(measurement);
     }
     let Measurement { learner, runtime, seen, frames, frames_per_second, p50_ms, p99_ms, .. } = measurement;
     let seen = match seen {

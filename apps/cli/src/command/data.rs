@@ -139,9 +139,7 @@ fn stats(matches: &ArgMatches) -> Result<Outcome> {
     let dataset = open(matches, &problems)?;
     let stats = DatasetStats::of(dataset.as_ref(), &problems, &bar)?;
     if matches.get_flag("json") {
-        let json = serde_json::to_string(&stats)
-            .map_err(|error| Error::internal("the counts have no JSON form").with_source(error))?;
-        stdout::print(json)?;
+        stdout::print_json(&stats)?;
     } else {
         stdout::print(stats.to_string().trim_end())?;
         dataset_flags::print_problems(&problems)?;

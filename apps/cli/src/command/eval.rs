@@ -11,7 +11,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{ActingStream, Error, Progress, Result, Statistics};
+use opendr::{ActingStream, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
@@ -111,9 +111,7 @@ fn in_environment(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: 
     let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
     let statistics = Statistics::from(&report);
     if matches.get_flag("json") {
-        let json = serde_json::to_string(&statistics)
-            .map_err(|error| Error::internal("the numbers have no JSON form").with_source(error))?;
-        stdout::print(json)?;
+        stdout::print_json(&statistics)?;
     } else {
         stdout::print(format_args!("{spec} in {}", source.id()))?;
         stdout::print(statistics.to_string().trim_end())?;
@@ -136,9 +134,7 @@ pub fn metric_params(metric: &MetricEntry, matches: &ArgMatches) -> Result<Param
 /// `Io` when standard output cannot be written.
 pub fn tell(outcome: &Evaluated, matches: &ArgMatches, problems: &Problems, bar: &Bar) -> Result<Outcome> {
     if matches.get_flag("json") {
-        let json = serde_json::to_string(outcome)
-            .map_err(|error| Error::internal("the outcome has no JSON form").with_source(error))?;
-        stdout::print(json)?;
+        stdout::print_json(outcome)?;
     } else {
         stdout::print(outcome.to_string().trim_end())?;
         dataset_flags::print_problems(problems)?;

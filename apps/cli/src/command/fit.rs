@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::evaluation::Teacher;
 use opendr::params::ParamMap;
-use opendr::{Error, FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
+use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
@@ -188,9 +188,7 @@ fn load_teacher(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Teacher> 
 /// Prints how it ended, where the model lies, and how to go on.
 fn tell(fitted: &Fitted, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
     if matches.get_flag("json") {
-        let json = serde_json::to_string(fitted)
-            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
-        stdout::print(json)?;
+        stdout::print_json(fitted)?;
     } else {
         stdout::print(fitted.to_string().trim_end())?;
     }

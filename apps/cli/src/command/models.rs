@@ -3,7 +3,7 @@
 use clap::{Arg, ArgAction, ArgMatches, Command};
 use opendr::model::Licence;
 use opendr::zoo::{Item, ItemKind, Zoo, ZooOptions};
-use opendr::{Error, Result, Task};
+use opendr::{Result, Task};
 use serde::Serialize;
 
 use crate::exit::Outcome;
@@ -55,10 +55,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         .filter(|row| !matches.get_flag("cached") || row.cached)
         .collect();
     if matches.get_flag("json") {
-        let json = serde_json::to_string_pretty(&rows);
-        stdout::print(
-            json.map_err(|error| Error::internal("the list has no JSON form").with_source(error))?,
-        )?;
+        stdout::print_pretty_json(&rows)?;
     } else {
         stdout::print(table(&rows))?;
     }

@@ -7,7 +7,7 @@ use opendr::dataset::ExternalDataset;
 use opendr::model::Model;
 use opendr::optimize::{OptimizeJob, OptimizeOptions};
 use opendr::params::{Field, ParamValue, Params};
-use opendr::{Error, Opening, Progress, Result};
+use opendr::{Opening, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
@@ -113,9 +113,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     }
     .run()?;
     if matches.get_flag("json") {
-        let json = serde_json::to_string(&report)
-            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
-        stdout::print(json)?;
+        stdout::print_json(&report)?;
     } else {
         stdout::print(report.to_string().trim_end())?;
     }

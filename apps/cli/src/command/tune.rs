@@ -154,9 +154,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
 
 fn tell(tuned: &Tuned, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
     if matches.get_flag("json") {
-        let json = serde_json::to_string(tuned)
-            .map_err(|error| Error::internal("the report has no JSON form").with_source(error))?;
-        stdout::print(json)?;
+        stdout::print_json(tuned)?;
     } else {
         stdout::print(tuned.to_string().trim_end())?;
     }
