@@ -4,8 +4,11 @@ use crate::python_package;
 use crate::shell::{Result, command, root, step, target};
 use crate::test::TEST_LEARNER;
 
-/// Writes the type stubs of Python, `docs/{learners,metrics,datasets}.md` and the C headers; tests fail when these are stale.
+/// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md` and the C headers; tests fail when these are stale.
 pub fn run() -> Result<()> {
+    let mut messages = command("cargo");
+    messages.args(["test", "-p", "opendr-message-generator", "--test", "messages"]).env("OPENDR_UPDATE", "1");
+    step("ROS messages", &mut messages)?;
     let folder = target().join("generate");
     python_package::build(&folder)?;
     let mut stubs = command("python3");

@@ -1,0 +1,70 @@
+//! The checked-in sources are what the generator makes of the definitions.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use opendr_message_generator::{Library, Ros1Names, TypeName, rust_files};
+
+fn names(text: &str) -> Ros1Names {
+    let name = |text: &str| {
+        let (package, name) = text.split_once('/').unwrap();
+        TypeName::new(package, name)
+    };
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| {
+            let (ros2, ros1) = line.split_once(' ').unwrap();
+            (name(ros2), (ros1 != "-").then(|| name(ros1)))
+        })
+        .collect()
+}
+
+fn formatted(files: BTreeMap<String, String>, folder: &Path) -> BTreeMap<String, String> {
+    for (path, text) in &files {
+        let path = folder.join(path);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+    let rustfmt = Command::new("rustfmt")
+        .args(["--edition", "2024", "--config-path"])
+        .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../../rustfmt.toml"))
+        .args(
+            files
+                .keys()
+                .filter(|path| *path != "mod.rs" && *path != "ros1/mod.rs")
+                .map(|path| folder.join(path)),
+        )
+        .stdin(Stdio::null())
+        .status()
+        .unwrap();
+    assert!(rustfmt.success());
+    files.keys().map(|path| (path.clone(), fs::read_to_string(folder.join(path)).unwrap())).collect()
+}
+
+#[test]
+fn the_sources_are_what_the_generator_makes() {
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../messages"));
+    let ros2 = Library::open(&root.join("msg")).unwrap();
+    let ros1 = ros2.with_overrides(&root.join("ros1")).unwrap();
+    let names = names(&fs::read_to_string(root.join("ros1/names.txt")).unwrap());
+    let made = rust_files(&ros2, &ros1, &names).unwrap();
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("messages");
+    let _ = fs::remove_dir_all(&folder);
+    let made = formatted(made, &folder);
+    let sources = root.join("src/generated");
+    if std::env::var_os("OPENDR_UPDATE").is_some() {
+        let _ = fs::remove_dir_all(&sources);
+        for (path, text) in &made {
+            let path = sources.join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, text).unwrap();
+        }
+        return;
+    }
+    for (path, text) in &made {
+        let there = fs::read_to_string(sources.join(path)).unwrap_or_default();
+        assert!(there == *text, "{path} is not what the definitions make; run `cargo xtask generate`");
+    }
+}

@@ -1,0 +1,14 @@
+//! `opendr_msgs` as ROS 1 has them.
+
+// Made by `cargo xtask generate` from the definitions in `msg/` and `ros1/`: not edited by hand.
+
+use serde::{Deserialize, Serialize};
+
+/// `opendr_msgs/ImageWithDetections, ROS 1's`: A picture with boxes in it.
+#[allow(missing_docs)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ImageWithDetections {
+    pub header: crate::std_msgs::Header,
+    pub image: crate::sensor_msgs::Image,
+    pub detections: crate::ros1::vision_msgs::Detection2DArray,
+}

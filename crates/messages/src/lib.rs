@@ -1,0 +1,31 @@
+//! ROS messages: one struct each, for both ROS 2 (CDR) and ROS 1.
+//!
+//! The structs are made from the definitions in `msg/` (ROS 2's, and our own `opendr_msgs`) and `ros1/` (where ROS 1
+//! differs) by the crate `opendr-message-generator`. [`Message`] holds any of them, [`MessageType`] knows their names,
+//! md5 sums, hashes and texts.
+//!
+//! ```
+//! use opendr_messages::{Message, MessageType, Wire, std_msgs};
+//!
+//! let message = Message::from(std_msgs::String { data: "hello".to_owned() });
+//! let bytes = message.to_bytes(Wire::Cdr)?;
+//! assert_eq!(Message::from_bytes(MessageType::StdMsgsString, Wire::Cdr, &bytes)?, message);
+//! assert_eq!(MessageType::StdMsgsString.ros2_name(), "std_msgs/msg/String");
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
+
+#[macro_use]
+mod table;
+mod cdr;
+mod generated;
+mod long_array;
+mod message_type;
+mod ros1_format;
+mod ros1_forms;
+mod service_type;
+
+pub use cdr::{cdr_from_message, message_from_cdr};
+pub use generated::*;
+pub use message_type::{Ros1Type, RosMessage, Wire};
+pub use ros1_format::{message_from_ros1, ros1_from_message};
+pub use service_type::RosService;
