@@ -43,7 +43,8 @@ macro_rules! messages {
         /// A message of any type.
         #[derive(Debug, Clone, PartialEq)]
         #[non_exhaustive]
-        #[allow(missing_docs)]
+        // Few are held at a time, and moved less often than looked at.
+        #[allow(missing_docs, clippy::large_enum_variant)]
         pub enum Message { $($variant($package::$name),)* }
 
         impl Message {
