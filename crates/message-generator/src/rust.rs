@@ -64,17 +64,17 @@ pub fn rust_files(ros2: &Library, ros1: &Library, names: &Ros1Names) -> Result<B
         );
     }
     table.push_str("}\n");
-    let (shared, own): (Vec<_>, Vec<_>) = files.keys().cloned().partition(|path| !path.starts_with("ros1/"));
+    let (mut shared, own): (Vec<_>, Vec<_>) =
+        files.keys().cloned().partition(|path| !path.starts_with("ros1/"));
+    shared.push("ros1.rs".to_owned());
+    shared.sort();
     files.insert(
         "ros1/mod.rs".to_owned(),
         format!("//! Messages that ROS 1 has with other fields.\n\n{HEAD}{}", modules(&own)),
     );
     files.insert(
         "mod.rs".to_owned(),
-        format!(
-            "//! The messages, one module a package.\n\n{HEAD}\npub mod ros1;\n{}\n{table}",
-            modules(&shared)
-        ),
+        format!("//! The messages, one module a package.\n\n{HEAD}\n{}\n{table}", modules(&shared)),
     );
     Ok(files)
 }

@@ -1,4 +1,5 @@
 //! The checked-in sources are what the generator makes of the definitions.
+#![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeMap;
 use std::fs;
