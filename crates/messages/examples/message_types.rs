@@ -4,16 +4,8 @@
 //! $ cargo run -p opendr-messages --example message_types
 //! ```
 
-use opendr_messages::{MessageType, RosService, Wire};
+use opendr_messages::{MessageType, SERVICE_TYPES, Wire};
 use serde_json::json;
-
-fn service<S: RosService>() {
-    let (package, name) = (S::PACKAGE, S::NAME);
-    println!(
-        "{}",
-        json!({"service": format!("{package}/srv/{name}"), "md5sum": S::MD5SUM, "rihs01": S::RIHS01})
-    );
-}
 
 fn main() -> opendr_engine::Result<()> {
     for message in MessageType::ALL {
@@ -30,8 +22,9 @@ fn main() -> opendr_engine::Result<()> {
             })
         );
     }
-    service::<opendr_messages::StdSrvsEmpty>();
-    service::<opendr_messages::StdSrvsSetBool>();
-    service::<opendr_messages::StdSrvsTrigger>();
+    for service in SERVICE_TYPES {
+        let name = format!("{}/srv/{}", service.package, service.name);
+        println!("{}", json!({"service": name, "md5sum": service.md5sum, "rihs01": service.rihs01}));
+    }
     Ok(())
 }

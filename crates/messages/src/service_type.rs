@@ -9,12 +9,19 @@ pub trait RosService {
     type Request: Clone + Default + Serialize + DeserializeOwned + Send + 'static;
     /// What is answered.
     type Response: Clone + Default + Serialize + DeserializeOwned + Send + 'static;
+    /// Its names and sums.
+    const TYPE: ServiceType;
+}
+
+/// What two nodes compare before one serves the other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ServiceType {
     /// The package, e.g. `"std_srvs"`.
-    const PACKAGE: &'static str;
+    pub package: &'static str,
     /// The name, e.g. `"Trigger"`.
-    const NAME: &'static str;
+    pub name: &'static str,
     /// ROS 1's sum.
-    const MD5SUM: &'static str;
+    pub md5sum: &'static str,
     /// ROS 2's hash.
-    const RIHS01: &'static str;
+    pub rihs01: &'static str,
 }

@@ -138,7 +138,11 @@ macro_rules! messages {
 
 /// Services: a marker type each, with its names, sums and hashes.
 macro_rules! services {
-    ($($variant:ident($request:path, $response:path) = $package:literal, $name:literal, $md5:literal, $hash:literal;)*) => {$(
+    ($($variant:ident($request:path, $response:path) = $package:literal, $name:literal, $md5:literal, $hash:literal;)*) => {
+        /// Every service.
+        pub const SERVICE_TYPES: &[crate::ServiceType] = &[$(<$variant as crate::RosService>::TYPE,)*];
+
+        $(
         #[doc = concat!("`", $package, "/", $name, "`.")]
         #[derive(Debug, Clone, Copy)]
         pub struct $variant;
@@ -146,10 +150,8 @@ macro_rules! services {
         impl crate::RosService for $variant {
             type Request = $request;
             type Response = $response;
-            const PACKAGE: &'static str = $package;
-            const NAME: &'static str = $name;
-            const MD5SUM: &'static str = $md5;
-            const RIHS01: &'static str = $hash;
+            const TYPE: crate::ServiceType =
+                crate::ServiceType { package: $package, name: $name, md5sum: $md5, rihs01: $hash };
         }
     )*};
 }

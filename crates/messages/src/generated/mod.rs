@@ -6,8 +6,10 @@ pub mod audio_common_msgs;
 pub mod builtin_interfaces;
 pub mod diagnostic_msgs;
 pub mod geometry_msgs;
+pub mod lifecycle_msgs;
 pub mod nav_msgs;
 pub mod opendr_msgs;
+pub mod rcl_interfaces;
 pub mod ros1;
 pub mod rosgraph_msgs;
 pub mod sensor_msgs;
@@ -113,6 +115,18 @@ messages! {
         ros2: "RIHS01_d4829622288cbb443886e7ea94ea5671a3b1be6bab4ad04224432a65f7d7887a", "std_msgs/Header header\ngeometry_msgs/Vector3 vector\n", ["builtin_interfaces/Time", "geometry_msgs/Vector3", "std_msgs/Header"];
         ros1: same() "geometry_msgs/Vector3Stamped", "7b324c7325e683bf02a9b14b01090ec7", "std_msgs/Header header\ngeometry_msgs/Vector3 vector\n", ["builtin_interfaces/Time", "geometry_msgs/Vector3", "std_msgs/Header"];
     }
+    LifecycleMsgsState(lifecycle_msgs::State) = "lifecycle_msgs", "State" {
+        ros2: "RIHS01_dd2d02b82f3ebc858e53c431b1e6e91f3ffc71436fc81d0715214ac6ee2107a0", "uint8 PRIMARY_STATE_UNKNOWN=0\nuint8 PRIMARY_STATE_UNCONFIGURED=1\nuint8 PRIMARY_STATE_INACTIVE=2\nuint8 PRIMARY_STATE_ACTIVE=3\nuint8 PRIMARY_STATE_FINALIZED=4\nuint8 TRANSITION_STATE_CONFIGURING=10\nuint8 TRANSITION_STATE_CLEANINGUP=11\nuint8 TRANSITION_STATE_SHUTTINGDOWN=12\nuint8 TRANSITION_STATE_ACTIVATING=13\nuint8 TRANSITION_STATE_DEACTIVATING=14\nuint8 TRANSITION_STATE_ERRORPROCESSING=15\nuint8 id\nstring label\n", [];
+    }
+    LifecycleMsgsTransition(lifecycle_msgs::Transition) = "lifecycle_msgs", "Transition" {
+        ros2: "RIHS01_c65d7b31ea134cba4f54fc867b817979be799f7452035cd35fac9b7421fb3424", "uint8 TRANSITION_CREATE=0\nuint8 TRANSITION_CONFIGURE=1\nuint8 TRANSITION_CLEANUP=2\nuint8 TRANSITION_ACTIVATE=3\nuint8 TRANSITION_DEACTIVATE=4\nuint8 TRANSITION_UNCONFIGURED_SHUTDOWN=5\nuint8 TRANSITION_INACTIVE_SHUTDOWN=6\nuint8 TRANSITION_ACTIVE_SHUTDOWN=7\nuint8 TRANSITION_DESTROY=8\nuint8 TRANSITION_ON_CONFIGURE_SUCCESS=10\nuint8 TRANSITION_ON_CONFIGURE_FAILURE=11\nuint8 TRANSITION_ON_CONFIGURE_ERROR=12\nuint8 TRANSITION_ON_CLEANUP_SUCCESS=20\nuint8 TRANSITION_ON_CLEANUP_FAILURE=21\nuint8 TRANSITION_ON_CLEANUP_ERROR=22\nuint8 TRANSITION_ON_ACTIVATE_SUCCESS=30\nuint8 TRANSITION_ON_ACTIVATE_FAILURE=31\nuint8 TRANSITION_ON_ACTIVATE_ERROR=32\nuint8 TRANSITION_ON_DEACTIVATE_SUCCESS=40\nuint8 TRANSITION_ON_DEACTIVATE_FAILURE=41\nuint8 TRANSITION_ON_DEACTIVATE_ERROR=42\nuint8 TRANSITION_ON_SHUTDOWN_SUCCESS=50\nuint8 TRANSITION_ON_SHUTDOWN_FAILURE=51\nuint8 TRANSITION_ON_SHUTDOWN_ERROR=52\nuint8 TRANSITION_ON_ERROR_SUCCESS=60\nuint8 TRANSITION_ON_ERROR_FAILURE=61\nuint8 TRANSITION_ON_ERROR_ERROR=62\nuint8 TRANSITION_CALLBACK_SUCCESS=97\nuint8 TRANSITION_CALLBACK_FAILURE=98\nuint8 TRANSITION_CALLBACK_ERROR=99\nuint8 id\nstring label\n", [];
+    }
+    LifecycleMsgsTransitionDescription(lifecycle_msgs::TransitionDescription) = "lifecycle_msgs", "TransitionDescription" {
+        ros2: "RIHS01_c5f1cd4bb1ad2ba0e3329d4ac7015c52a674a72c1faf7974c37a33f4f6048b28", "lifecycle_msgs/Transition transition\nlifecycle_msgs/State start_state\nlifecycle_msgs/State goal_state\n", ["lifecycle_msgs/State", "lifecycle_msgs/Transition"];
+    }
+    LifecycleMsgsTransitionEvent(lifecycle_msgs::TransitionEvent) = "lifecycle_msgs", "TransitionEvent" {
+        ros2: "RIHS01_d5f8873a2f0146498f812d7885c7327ce27e463d36811d8792f35ee38c0d6c38", "uint64 timestamp\nlifecycle_msgs/Transition transition\nlifecycle_msgs/State start_state\nlifecycle_msgs/State goal_state\n", ["lifecycle_msgs/State", "lifecycle_msgs/Transition"];
+    }
     NavMsgsOdometry(nav_msgs::Odometry) = "nav_msgs", "Odometry" {
         ros2: "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0", "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n", ["builtin_interfaces/Time", "geometry_msgs/Point", "geometry_msgs/Pose", "geometry_msgs/PoseWithCovariance", "geometry_msgs/Quaternion", "geometry_msgs/Twist", "geometry_msgs/TwistWithCovariance", "geometry_msgs/Vector3", "std_msgs/Header"];
         ros1: same() "nav_msgs/Odometry", "cd5e73d190d741a2f92e81eda573aca7", "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\ngeometry_msgs/TwistWithCovariance twist\n", ["builtin_interfaces/Time", "geometry_msgs/Point", "geometry_msgs/Pose", "geometry_msgs/PoseWithCovariance", "geometry_msgs/Quaternion", "geometry_msgs/Twist", "geometry_msgs/TwistWithCovariance", "geometry_msgs/Vector3", "std_msgs/Header"];
@@ -168,6 +182,36 @@ messages! {
     OpendrMsgsViewAction(opendr_msgs::ViewAction) = "opendr_msgs", "ViewAction" {
         ros2: "RIHS01_2140cb919ca9f30fc7bccae2a0bc414f57f6790dbf8b1c513129a4a7b2634604", "std_msgs/Header header\nfloat32[] axes\n", ["builtin_interfaces/Time", "std_msgs/Header"];
         ros1: same() "opendr_msgs/ViewAction", "6f37860e848b28e99bba05668b254b1d", "std_msgs/Header header\nfloat32[] axes\n", ["builtin_interfaces/Time", "std_msgs/Header"];
+    }
+    RclInterfacesFloatingPointRange(rcl_interfaces::FloatingPointRange) = "rcl_interfaces", "FloatingPointRange" {
+        ros2: "RIHS01_e6af23a23c177fee5f3075c8b1e435162a9b63c863d78c06017460b49684262d", "float64 from_value\nfloat64 to_value\nfloat64 step\n", [];
+    }
+    RclInterfacesIntegerRange(rcl_interfaces::IntegerRange) = "rcl_interfaces", "IntegerRange" {
+        ros2: "RIHS01_f7b7fdc0f65f07702e099218e13288c3963bcb9345bde78b560e6cd19800fc5a", "int64 from_value\nint64 to_value\nuint64 step\n", [];
+    }
+    RclInterfacesListParametersResult(rcl_interfaces::ListParametersResult) = "rcl_interfaces", "ListParametersResult" {
+        ros2: "RIHS01_237ae3428413dcbcfb452b510c42355f3a2b021dc091afa3e18526d57022f1cd", "string[] names\nstring[] prefixes\n", [];
+    }
+    RclInterfacesLog(rcl_interfaces::Log) = "rcl_interfaces", "Log" {
+        ros2: "RIHS01_e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac", "uint8 DEBUG=10\nuint8 INFO=20\nuint8 WARN=30\nuint8 ERROR=40\nuint8 FATAL=50\nbuiltin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\nstring function\nuint32 line\n", ["builtin_interfaces/Time"];
+    }
+    RclInterfacesParameter(rcl_interfaces::Parameter) = "rcl_interfaces", "Parameter" {
+        ros2: "RIHS01_ddfe6442cffc462317adb5c92536a7b6dd55858c5c3e1e328165a6b73c2831af", "string name\nrcl_interfaces/ParameterValue value\n", ["rcl_interfaces/ParameterValue"];
+    }
+    RclInterfacesParameterDescriptor(rcl_interfaces::ParameterDescriptor) = "rcl_interfaces", "ParameterDescriptor" {
+        ros2: "RIHS01_52175dbfda6c51153101d33d2a9da05743f66f02d5ab2ca9ec4709b46b73d704", "string name\nuint8 type\nstring description\nstring additional_constraints\nbool read_only false\nbool dynamic_typing false\nrcl_interfaces/FloatingPointRange[<=1] floating_point_range\nrcl_interfaces/IntegerRange[<=1] integer_range\n", ["rcl_interfaces/FloatingPointRange", "rcl_interfaces/IntegerRange"];
+    }
+    RclInterfacesParameterEvent(rcl_interfaces::ParameterEvent) = "rcl_interfaces", "ParameterEvent" {
+        ros2: "RIHS01_043e627780fcad87a22d225bc2a037361dba713fca6a6b9f4b869a5aa0393204", "builtin_interfaces/Time stamp\nstring node\nrcl_interfaces/Parameter[] new_parameters\nrcl_interfaces/Parameter[] changed_parameters\nrcl_interfaces/Parameter[] deleted_parameters\n", ["builtin_interfaces/Time", "rcl_interfaces/Parameter", "rcl_interfaces/ParameterValue"];
+    }
+    RclInterfacesParameterType(rcl_interfaces::ParameterType) = "rcl_interfaces", "ParameterType" {
+        ros2: "RIHS01_df29ed057a834862187be24dd187d981790ff3ea6502f4cd27b432cbc42c6d46", "uint8 PARAMETER_NOT_SET=0\nuint8 PARAMETER_BOOL=1\nuint8 PARAMETER_INTEGER=2\nuint8 PARAMETER_DOUBLE=3\nuint8 PARAMETER_STRING=4\nuint8 PARAMETER_BYTE_ARRAY=5\nuint8 PARAMETER_BOOL_ARRAY=6\nuint8 PARAMETER_INTEGER_ARRAY=7\nuint8 PARAMETER_DOUBLE_ARRAY=8\nuint8 PARAMETER_STRING_ARRAY=9\n", [];
+    }
+    RclInterfacesParameterValue(rcl_interfaces::ParameterValue) = "rcl_interfaces", "ParameterValue" {
+        ros2: "RIHS01_115fc089a387e23c7ecd3525c9189c379109119d6ab82e8dfbde0fdf6a7f9b68", "uint8 type\nbool bool_value\nint64 integer_value\nfloat64 double_value\nstring string_value\nbyte[] byte_array_value\nbool[] bool_array_value\nint64[] integer_array_value\nfloat64[] double_array_value\nstring[] string_array_value\n", [];
+    }
+    RclInterfacesSetParametersResult(rcl_interfaces::SetParametersResult) = "rcl_interfaces", "SetParametersResult" {
+        ros2: "RIHS01_cfcc0fb0371ee5159b403960ef4300f8f9d2f1fd6117c8666b7f9654d528a9b1", "bool successful\nstring reason\n", [];
     }
     RosgraphMsgsClock(rosgraph_msgs::Clock) = "rosgraph_msgs", "Clock" {
         ros2: "RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564", "builtin_interfaces/Time clock\n", ["builtin_interfaces/Time"];
@@ -357,6 +401,16 @@ messages! {
 }
 
 services! {
+    LifecycleMsgsChangeState(lifecycle_msgs::ChangeStateRequest, lifecycle_msgs::ChangeStateResponse) = "lifecycle_msgs", "ChangeState", "ffc3b243551f80931bfc3372959d41f2", "RIHS01_356fe34f0475a43acf54542013af4167b0e729f77ea22ffb045c6ad8e20668e5";
+    LifecycleMsgsGetAvailableStates(lifecycle_msgs::GetAvailableStatesRequest, lifecycle_msgs::GetAvailableStatesResponse) = "lifecycle_msgs", "GetAvailableStates", "4f932bc31559332a55e79933c010fa18", "RIHS01_00a07d79d2207d71e81a8cbc1880e5d924cc16d4688ea8e8e06e443dc8f8aa1d";
+    LifecycleMsgsGetAvailableTransitions(lifecycle_msgs::GetAvailableTransitionsRequest, lifecycle_msgs::GetAvailableTransitionsResponse) = "lifecycle_msgs", "GetAvailableTransitions", "a80c7b354bcdb5430ab0da0943807eb5", "RIHS01_59b7ecefce0982a8a844b9f2c4f14764c1c4543cc55e72924e2aa4adad83e9bc";
+    LifecycleMsgsGetState(lifecycle_msgs::GetStateRequest, lifecycle_msgs::GetStateResponse) = "lifecycle_msgs", "GetState", "db428c05d10d50f6592ba030b8e4b051", "RIHS01_800a0a5aae599782b02932de0caf563f6dc4e7e94b794eadde075ba2cbef9795";
+    RclInterfacesDescribeParameters(rcl_interfaces::DescribeParametersRequest, rcl_interfaces::DescribeParametersResponse) = "rcl_interfaces", "DescribeParameters", "3e8112cca714100a8ae5ed2f065093a8", "RIHS01_845b484d71eb0673dae682f2e3ba3c4851a65a3dcfb97bddd82c5b57e91e4cff";
+    RclInterfacesGetParameterTypes(rcl_interfaces::GetParameterTypesRequest, rcl_interfaces::GetParameterTypesResponse) = "rcl_interfaces", "GetParameterTypes", "ee0005694d9e1e7c4757ee697be4dcc5", "RIHS01_da199c878688b3e530bdfe3ca8f74cb9fa0c303101e980a9e8f260e25e1c80ca";
+    RclInterfacesGetParameters(rcl_interfaces::GetParametersRequest, rcl_interfaces::GetParametersResponse) = "rcl_interfaces", "GetParameters", "8ac544a03a02e4477b9721f3f7c2a9be", "RIHS01_bf9803d5c74cf989a5de3e0c2e99444599a627c7ff75f97b8c05b01003675cbc";
+    RclInterfacesListParameters(rcl_interfaces::ListParametersRequest, rcl_interfaces::ListParametersResponse) = "rcl_interfaces", "ListParameters", "d064321287c33b91a0820c3036dc0b87", "RIHS01_3e6062bfbb27bfb8730d4cef2558221f51a11646d78e7bb30a1e83afac3aad9d";
+    RclInterfacesSetParameters(rcl_interfaces::SetParametersRequest, rcl_interfaces::SetParametersResponse) = "rcl_interfaces", "SetParameters", "8f82da95ed562e7d91a7f87d70671d92", "RIHS01_56eed9a67e169f9cb6c1f987bc88f868c14a8fc9f743a263bc734c154015d7e0";
+    RclInterfacesSetParametersAtomically(rcl_interfaces::SetParametersAtomicallyRequest, rcl_interfaces::SetParametersAtomicallyResponse) = "rcl_interfaces", "SetParametersAtomically", "b212f806e7a333d89be2051122e406bf", "RIHS01_0e192ef259c07fc3c07a13191d27002222e65e00ccec653ca05e856f79285fcd";
     StdSrvsEmpty(std_srvs::EmptyRequest, std_srvs::EmptyResponse) = "std_srvs", "Empty", "d41d8cd98f00b204e9800998ecf8427e", "RIHS01_5888399dedec5ccc85ea6451949fd2c9f97bfdf963f9a588821639fcd31b5d19";
     StdSrvsSetBool(std_srvs::SetBoolRequest, std_srvs::SetBoolResponse) = "std_srvs", "SetBool", "09fb03525b03e7ea1fd3992bafd87e16", "RIHS01_abe9e4bb6b41b40e6789712c00ec8871923e089af3f667a79992a428cff2da0a";
     StdSrvsTrigger(std_srvs::TriggerRequest, std_srvs::TriggerResponse) = "std_srvs", "Trigger", "937c9679a518e3a18d831e57125ea522", "RIHS01_eeff2cd6fa5ad9d27cdf4dec64818317839b62f212a91e6b5304b634b2062c5f";
