@@ -171,7 +171,7 @@ impl Writer<'_> {
         }];
         let fields = if definition.fields.is_empty() { &empty[..] } else { &definition.fields };
         let own_default = fields.iter().any(|field| {
-            field.default.is_some()
+            field.default.as_deref().is_some_and(|value| !matches!(value, "0" | "0.0" | "false"))
                 || matches!(field.field_type.array, Array::Fixed(length) if length > LONGEST_KNOWN_ARRAY)
         });
         let mut text = format!("\n/// `{title}`");

@@ -62,7 +62,7 @@ pub struct Parameter {
 
 /// `rcl_interfaces/ParameterDescriptor`.
 #[allow(missing_docs)]
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ParameterDescriptor {
     pub name: String,
     pub r#type: u8,
@@ -72,21 +72,6 @@ pub struct ParameterDescriptor {
     pub dynamic_typing: bool,
     pub floating_point_range: Vec<FloatingPointRange>,
     pub integer_range: Vec<IntegerRange>,
-}
-
-impl Default for ParameterDescriptor {
-    fn default() -> Self {
-        Self {
-            name: Default::default(),
-            r#type: Default::default(),
-            description: Default::default(),
-            additional_constraints: Default::default(),
-            read_only: false,
-            dynamic_typing: false,
-            floating_point_range: Default::default(),
-            integer_range: Default::default(),
-        }
-    }
 }
 
 /// `rcl_interfaces/ParameterEvent`.
