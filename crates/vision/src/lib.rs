@@ -1,5 +1,6 @@
 //! Pictures for OpenDR: files, folders, videos and cameras; the way to a network's input; drawing what was found.
 
+mod bayer;
 mod camera;
 pub mod codec;
 pub mod draw;
@@ -8,9 +9,12 @@ mod resize;
 pub mod source;
 mod video;
 mod workers;
+mod yuv422;
 
-pub use codec::{Decoder, Encoder, decode, encode_png, open, save, save_depth};
+pub use bayer::{BayerPattern, rgb_from_bayer};
+pub use codec::{Decoder, Encoder, decode, encode_depth_png, encode_png, open, save, save_depth};
 pub use preprocess::{Anchor, ChannelOrder, InputGeometry, InputSample, Preprocess};
 pub use resize::resize;
 pub use source::{Frame, Source, SourceOptions, VideoInfo};
 pub use video::VideoWriter;
+pub use yuv422::{Yuv422, rgb_from_yuv422};

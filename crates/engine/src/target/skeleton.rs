@@ -15,6 +15,17 @@ pub enum Skeleton {
 }
 
 impl Skeleton {
+    /// Every skeleton.
+    pub const ALL: &'static [Self] = &[Self::Opendr18, Self::Coco17];
+
+    /// Its name, as JSON and messages write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Opendr18 => "opendr18",
+            Self::Coco17 => "coco17",
+        }
+    }
+
     /// The names of the joints, in order; a trailing `_l`/`_r` is written as OpenDR writes it.
     pub const fn joints(self) -> &'static [&'static str] {
         match self {

@@ -75,7 +75,7 @@ pub struct PointCloudWithCalibration {
 /// `opendr_msgs/Pose2D`: One person, hand or animal: its joints in a picture.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pose2D {
-    /// What the joints are, e.g. openpose_18 or coco_17.
+    /// What the joints are, e.g. opendr18 or coco17.
     pub skeleton: String,
     /// The joints in the order of the skeleton.
     pub keypoints: Vec<Pose2DKeypoint>,

@@ -57,30 +57,35 @@ impl Decoder {
     }
 }
 
+/// The bytes of a 16-bit PNG file with a grey `u16` picture.
+///
+/// # Errors
+/// `InvalidInput` for another picture, or one larger than PNG files can be.
+pub fn encode_depth_png(image: &Image) -> Result<Vec<u8>> {
+    let Pixels::U16(samples) = image.pixels() else {
+        return Err(Error::invalid_input("no 16-bit samples; give depth as u16"));
+    };
+    let size = (u32::try_from(image.width()).ok()).zip(u32::try_from(image.height()).ok());
+    let buffer = size.and_then(|(width, height)| {
+        ImageBuffer::<Luma<u16>, _>::from_raw(width, height, samples.as_slice().to_vec())
+    });
+    let buffer = buffer.ok_or_else(|| Error::invalid_input("no grey picture; give depth as one channel"))?;
+    let mut bytes = Vec::new();
+    let encoded = DynamicImage::ImageLuma16(buffer).write_with_encoder(PngEncoder::new(&mut bytes));
+    encoded
+        .map_err(|error| Error::invalid_input("the picture does not fit a PNG file").with_source(error))?;
+    Ok(bytes)
+}
+
 /// Writes a grey `u16` picture to `path` as 16-bit PNG; it appears whole or not at all.
 ///
 /// # Errors
-/// `InvalidInput` for another picture, `NotFound` or `Io` when the folder cannot be written to; all name the path.
+/// As [`encode_depth_png`]; `NotFound` or `Io` when the folder cannot be written to; all name the path.
 pub fn save_depth(image: &Image, path: impl AsRef<Path>) -> Result<()> {
     let path = path.as_ref();
-    let write = || {
-        let Pixels::U16(samples) = image.pixels() else {
-            return Err(Error::invalid_input("no 16-bit samples; give depth as u16"));
-        };
-        let size = (u32::try_from(image.width()).ok()).zip(u32::try_from(image.height()).ok());
-        let buffer = size.and_then(|(width, height)| {
-            ImageBuffer::<Luma<u16>, _>::from_raw(width, height, samples.as_slice().to_vec())
-        });
-        let buffer =
-            buffer.ok_or_else(|| Error::invalid_input("no grey picture; give depth as one channel"))?;
-        let mut bytes = Vec::new();
-        let encoded = DynamicImage::ImageLuma16(buffer).write_with_encoder(PngEncoder::new(&mut bytes));
-        encoded.map_err(|error| {
-            Error::invalid_input("the picture does not fit a PNG file").with_source(error)
-        })?;
-        write_atomically(path, &bytes)
-    };
-    write().context(|| format!("saving {}", path.display()))
+    encode_depth_png(image)
+        .and_then(|bytes| write_atomically(path, &bytes))
+        .context(|| format!("saving {}", path.display()))
 }
 
 #[cfg(test)]

@@ -62,6 +62,15 @@ impl Encoder {
         written.context(|| format!("saving {}", path.display()))
     }
 
+    /// The bytes of a JPEG file with `image`; grey stays grey, opacity is dropped, samples become `u8` as
+    /// [`Image::hwc_u8`] says.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a quality outside 1..=100, `InvalidInput` for a picture larger than JPEG files can be.
+    pub fn encode_jpeg(&self, image: &Image) -> Result<Vec<u8>> {
+        self.encode(image, ImageFormat::Jpeg)
+    }
+
     fn encode(&self, image: &Image, format: ImageFormat) -> Result<Vec<u8>> {
         if !(1..=100).contains(&self.jpeg_quality) {
             let quality = self.jpeg_quality;

@@ -12,5 +12,5 @@ mod orientation;
 mod size;
 
 pub use decode::{Decoder, decode, open};
-pub use depth::save_depth;
+pub use depth::{encode_depth_png, save_depth};
 pub use encode::{Encoder, encode_png, save};

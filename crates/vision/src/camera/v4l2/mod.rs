@@ -24,9 +24,9 @@ use crate::camera::v4l2::kernel::{
     Kernel as _, MEMORY_MAPPED, Mapping, PictureFormat, QUERY_BUFFER, QUERY_CAPABILITY, REQUEST_BUFFERS,
     SET_FORMAT, STAMP_KIND, STAMP_MONOTONIC, STREAM_OFF, STREAM_ON, StreamParameters, ioctl,
 };
-use crate::camera::yuyv::rgb_from_yuyv;
 use crate::codec::Decoder;
 use crate::source::{Frame, FrameReader, SourceOptions, VideoInfo};
+use crate::yuv422::{Yuv422, rgb_from_yuv422};
 
 const YUYV: u32 = u32::from_le_bytes(*b"YUYV");
 const MJPEG: u32 = u32::from_le_bytes(*b"MJPG");
@@ -175,7 +175,7 @@ impl Camera {
         if self.pixel_format == MJPEG {
             return self.decoder.decode(&jpeg_from_mjpeg(bytes));
         }
-        let rgb = rgb_from_yuyv(bytes, self.stride, self.width, self.height)?;
+        let rgb = rgb_from_yuv422(bytes, self.stride, self.width, self.height, Yuv422::Yuyv)?;
         Image::from_rgb8(rgb, self.width, self.height)
     }
 }

@@ -1,19 +1,34 @@
-//! The pixels that most cameras give uncompressed.
+//! The pixels that most cameras give uncompressed: 4:2:2, where two pixels share a pair of colour differences.
 
 use opendr_engine::{Error, Result};
 
-/// RGB from YUYV 4:2:2: two pixels share a pair of colour differences (BT.601, luma 16..=235).
+/// How luma and colour differences lie in the four bytes of two pixels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Yuv422 {
+    /// Luma first (YUY2).
+    Yuyv,
+    /// Colour first.
+    Uyvy,
+}
+
+/// RGB from 4:2:2 (BT.601, luma 16..=235).
 ///
 /// `data` holds `height` rows, `stride` bytes from one to the next; the result is `[height, width, 3]`.
 ///
 /// # Errors
 /// `Format` when there are fewer bytes than that.
-pub(super) fn rgb_from_yuyv(data: &[u8], stride: usize, width: usize, height: usize) -> Result<Vec<u8>> {
+pub fn rgb_from_yuv422(
+    data: &[u8],
+    stride: usize,
+    width: usize,
+    height: usize,
+    order: Yuv422,
+) -> Result<Vec<u8>> {
     let row_bytes = width.div_ceil(2) * 4;
-    let needed = height.saturating_sub(1) * stride + row_bytes;
+    let needed = height.saturating_sub(1).saturating_mul(stride).saturating_add(row_bytes);
     if stride < row_bytes || data.len() < needed || width == 0 || height == 0 {
         return Err(Error::format(format!(
-            "a YUYV frame of {width}x{height} pixels needs {needed} bytes in rows of {row_bytes}, not {} in rows of \
+            "a 4:2:2 frame of {width}x{height} pixels needs {needed} bytes in rows of {row_bytes}, not {} in rows of \
              {stride}; the cable or the driver loses data",
             data.len()
         )));
@@ -22,8 +37,12 @@ pub(super) fn rgb_from_yuyv(data: &[u8], stride: usize, width: usize, height: us
     for row in data.chunks(stride).take(height) {
         let end = rgb.len() + width * 3;
         for pair in row[..row_bytes].chunks_exact(4) {
-            let [red, green, blue] = colour_parts(pair[1], pair[3]);
-            for luma in [pair[0], pair[2]] {
+            let ([first, second], [u, v]) = match order {
+                Yuv422::Yuyv => ([pair[0], pair[2]], [pair[1], pair[3]]),
+                Yuv422::Uyvy => ([pair[1], pair[3]], [pair[0], pair[2]]),
+            };
+            let [red, green, blue] = colour_parts(u, v);
+            for luma in [first, second] {
                 let luma = 76_309 * (i32::from(luma) - 16) + 0x8000;
                 rgb.extend([red, green, blue].map(|part| ((luma + part) >> 16).clamp(0, 255) as u8));
             }
@@ -54,7 +73,8 @@ mod tests {
             ([41, 240, 110], [0, 0, 255]),
         ];
         for ([y, u, v], wanted) in cases {
-            let rgb = rgb_from_yuyv(&[y, u, y, v], 4, 2, 1).unwrap();
+            let rgb = rgb_from_yuv422(&[y, u, y, v], 4, 2, 1, Yuv422::Yuyv).unwrap();
+            assert_eq!(rgb_from_yuv422(&[u, y, v, y], 4, 2, 1, Yuv422::Uyvy).unwrap(), rgb);
             for (found, wanted) in rgb.iter().zip([wanted, wanted].as_flattened()) {
                 assert!(found.abs_diff(*wanted) <= 2, "{rgb:?} {wanted:?}");
             }
@@ -65,12 +85,12 @@ mod tests {
     fn padded_rows_and_odd_widths() {
         let row = [16, 128, 235, 128, 235, 128, 99, 128, 7, 7];
         let data = [row, row].concat();
-        let rgb = rgb_from_yuyv(&data, 10, 3, 2).unwrap();
+        let rgb = rgb_from_yuv422(&data, 10, 3, 2, Yuv422::Yuyv).unwrap();
         assert_eq!(rgb, [[0; 3], [255; 3], [255; 3], [0; 3], [255; 3], [255; 3]].as_flattened());
         // The last row needs no padding.
-        assert!(rgb_from_yuyv(&data[..18], 10, 3, 2).is_ok());
-        assert!(rgb_from_yuyv(&data[..17], 10, 3, 2).is_err());
-        assert!(rgb_from_yuyv(&data, 7, 3, 2).is_err());
-        assert!(rgb_from_yuyv(&[], 0, 0, 0).is_err());
+        assert!(rgb_from_yuv422(&data[..18], 10, 3, 2, Yuv422::Yuyv).is_ok());
+        assert!(rgb_from_yuv422(&data[..17], 10, 3, 2, Yuv422::Yuyv).is_err());
+        assert!(rgb_from_yuv422(&data, 7, 3, 2, Yuv422::Yuyv).is_err());
+        assert!(rgb_from_yuv422(&[], 0, 0, 0, Yuv422::Yuyv).is_err());
     }
 }

@@ -1,0 +1,109 @@
+//! Arrays of floats: `opendr_msgs/Float32MultiArrayStamped`, and `std_msgs/Float32MultiArray` without stamp and frame.
+
+use opendr_engine::data::{SkeletonSequence, Timeseries, Vector, Video};
+use opendr_engine::{Error, Header, Result};
+use opendr_messages::opendr_msgs::Float32MultiArrayStamped;
+use opendr_messages::std_msgs::{Float32MultiArray, MultiArrayDimension, MultiArrayLayout};
+
+use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+
+/// An array whose axes are called `labels`.
+///
+/// # Errors
+/// `InvalidInput` for more than 2^32 - 1 numbers.
+pub(crate) fn message_from_array(
+    shape: &[usize],
+    labels: &[&str],
+    data: &[f32],
+) -> Result<Float32MultiArray> {
+    let mut stride = data.len();
+    let mut dim = Vec::with_capacity(shape.len());
+    for (axis, &size) in shape.iter().enumerate() {
+        let label = labels.get(axis).copied().unwrap_or_default().to_owned();
+        dim.push(MultiArrayDimension { label, size: number(size)?, stride: number(stride)? });
+        stride = stride.checked_div(size).unwrap_or(0);
+    }
+    Ok(Float32MultiArray { layout: MultiArrayLayout { dim, data_offset: 0 }, data: data.to_vec() })
+}
+
+fn number(value: usize) -> Result<u32> {
+    u32::try_from(value)
+        .map_err(|_| Error::invalid_input(format!("{value} numbers; a message holds up to 4,294,967,295")))
+}
+
+/// Shape and numbers of an array that lies without gaps; one without a layout is a row of `data.len()`.
+///
+/// # Errors
+/// `Format` when the layout asks for other numbers than there are, or leaves gaps.
+pub(crate) fn array_from_message(message: Float32MultiArray) -> Result<(Vec<usize>, Vec<f32>)> {
+    let Float32MultiArray { layout, data } = message;
+    if layout.dim.is_empty() {
+        return Ok((vec![data.len()], data));
+    }
+    let shape: Vec<usize> = layout.dim.iter().map(|dim| dim.size as usize).collect();
+    let wanted = shape.iter().try_fold(1_usize, |count, size| count.checked_mul(*size));
+    let offset = layout.data_offset as usize;
+    if offset != 0 || wanted != Some(data.len()) {
+        return Err(Error::format(format!(
+            "an array of shape {shape:?} from place {offset} in {} numbers; send it whole and without gaps",
+            data.len()
+        )));
+    }
+    Ok((shape, data))
+}
+
+fn exact<const D: usize>(shape: &[usize], name: &str) -> Result<[usize; D]> {
+    shape.try_into().map_err(|_| {
+        Error::format(format!("an array of {} axes is no {name}, which has {D}: {shape:?}", shape.len()))
+    })
+}
+
+macro_rules! arrays {
+    ($($name:ident $axes:literal $labels:expr;)*) => {$(
+        /// The axes by their names, the numbers as they are.
+        impl Bridged<Float32MultiArrayStamped> for $name {
+            fn from_message(message: Float32MultiArrayStamped, _: &RosBridge) -> Result<Self> {
+                let (shape, data) = array_from_message(message.array)?;
+                let shape = exact::<$axes>(&shape, stringify!($name))?;
+                Ok(Self::new(data, shape)?.with_header(header_from_message(&message.header)))
+            }
+
+            fn to_message(&self, _: &RosBridge) -> Result<Float32MultiArrayStamped> {
+                let array = message_from_array(&self.shape(), &$labels, self.as_slice())?;
+                Ok(Float32MultiArrayStamped { header: message_from_header(&self.header)?, array })
+            }
+        }
+    )*};
+}
+
+arrays! {
+    Timeseries 2 ["time", "features"];
+    Vector 1 ["numbers"];
+    Video 4 ["channels", "time", "height", "width"];
+    SkeletonSequence 5 ["samples", "channels", "frames", "joints", "persons"];
+}
+
+/// What other people's nodes send: the time of arrival stands for the stamp, and a plain row is one feature through time.
+impl Bridged<Float32MultiArray> for Timeseries {
+    fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
+        let (shape, data) = array_from_message(message)?;
+        let shape = if let [length] = shape[..] { [length, 1] } else { exact::<2>(&shape, "Timeseries")? };
+        Ok(Self::new(data, shape)?.with_header(Header::default()))
+    }
+
+    fn to_message(&self, _: &RosBridge) -> Result<Float32MultiArray> {
+        message_from_array(&self.shape(), &["time", "features"], self.as_slice())
+    }
+}
+
+/// Stamp and frame are left out.
+impl Bridged<Float32MultiArray> for Vector {
+    fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
+        let (_, data) = array_from_message(message)?;
+        Self::from_data(data)
+    }
+
+    fn to_message(&self, _: &RosBridge) -> Result<Float32MultiArray> {
+        message_from_array(&self.shape(), &["numbers"], self.as_slice())
+    }
+}

@@ -1,0 +1,53 @@
+//! `sensor_msgs/CompressedImage`, as `image_transport`'s plugins `compressed` and `compressedDepth` send it.
+
+use opendr_engine::data::{Image, Pixels};
+use opendr_engine::{Error, Result};
+use opendr_messages::sensor_msgs;
+use opendr_vision::{Encoder, decode, encode_depth_png};
+
+use super::depth_compressed;
+use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+
+/// The content decides how it is read (JPEG, PNG, WebP, BMP), not the word in `format`, which drivers write in many ways.
+/// Pictures of 8 bits are written as JPEG, of 16 as PNG, which loses nothing; floats as `compressedDepth`.
+impl Bridged<sensor_msgs::CompressedImage> for Image {
+    fn from_message(message: sensor_msgs::CompressedImage, _: &RosBridge) -> Result<Self> {
+        let image = if message.format.contains("compressedDepth") {
+            depth_compressed::read(&message.format, &message.data)?
+        } else {
+            read_whole(&message.data)?
+        };
+        Ok(image.with_header(header_from_message(&message.header)))
+    }
+
+    fn to_message(&self, bridge: &RosBridge) -> Result<sensor_msgs::CompressedImage> {
+        let (format, data) = match self.pixels() {
+            Pixels::U8(_) => {
+                let encoder = Encoder { jpeg_quality: bridge.jpeg_quality };
+                ("rgb8; jpeg compressed bgr8", encoder.encode_jpeg(self)?)
+            }
+            Pixels::U16(_) if self.channels() == 1 => ("16UC1; png compressed ", encode_depth_png(self)?),
+            Pixels::F32(_) if self.channels() == 1 => {
+                return Err(Error::invalid_input(
+                    "floats do not fit a compressed picture; send sensor_msgs/msg/Image, or millimetres as u16",
+                ));
+            }
+            Pixels::U16(_) | Pixels::F32(_) => {
+                return Err(Error::invalid_input(
+                    "only pictures of 8 bits have several channels when compressed",
+                ));
+            }
+        };
+        let header = message_from_header(&self.header)?;
+        Ok(sensor_msgs::CompressedImage { header, format: format.to_owned(), data })
+    }
+}
+
+/// A PNG of 16 bits keeps them, everything else becomes 8.
+fn read_whole(data: &[u8]) -> Result<Image> {
+    const BIT_DEPTH_OF_PNG: usize = 24;
+    if data.starts_with(b"\x89PNG") && data.get(BIT_DEPTH_OF_PNG..BIT_DEPTH_OF_PNG + 2) == Some(&[16, 0]) {
+        return opendr_vision::Decoder::default().decode_depth(data);
+    }
+    decode(data)
+}

@@ -1,0 +1,46 @@
+//! OpenDR's `ros_bridge`: each data and target type to and from ROS messages.
+//!
+//! A pair of types is one implementation of [`Bridged`], and one word in the table of [`RosBridge`]; nodes for ROS 1 and
+//! ROS 2, recordings and the Python functions all go through it. Stamps, frame ids, scores, identities and depth at full
+//! precision survive both ways; what a standard message has no field for is said beside the implementation.
+//!
+//! ```
+//! use opendr_engine::data::Image;
+//! use opendr_messages::{Message, sensor_msgs};
+//! use opendr_ros_bridge::RosBridge;
+//!
+//! let image = Image::from_rgb8(vec![0; 12], 2, 2)?;
+//! let bridge = RosBridge::default();
+//! let message: sensor_msgs::Image = bridge.to_message(&image)?;
+//! assert_eq!((message.encoding.as_str(), message.step), ("rgb8", 6));
+//! assert_eq!(bridge.from_message::<Image, _>(message)?, image);
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
+
+mod array;
+mod audio;
+mod bounding_box_3d_list;
+mod bounding_box_list;
+mod bridge;
+mod calibration;
+mod category;
+mod class_id;
+mod header;
+mod heatmap;
+mod image;
+mod image_with_detections;
+mod observation;
+mod point_cloud;
+mod point_cloud_with_calibration;
+mod pose_list;
+mod rl_target;
+mod speech_command;
+mod tracking_annotation_3d_list;
+mod tracking_annotation_list;
+mod transcription;
+mod view_action;
+
+pub use bridge::{Bridged, RosBridge, message_types};
+pub use class_id::{ClassIds, label_info};
+pub use header::{header_from_message, message_from_header, nanoseconds, time};
+pub use view_action::view_action;
