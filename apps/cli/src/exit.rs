@@ -13,6 +13,8 @@ pub enum Outcome {
     Done,
     /// Some inputs failed, and were reported; the rest is done: exit code 1.
     SomeFailed,
+    /// The flags are none, which was told: exit code 2.
+    WrongUsage,
 }
 
 /// The exit codes, for `--help`. Usage errors exit with 2 before anything is run.
@@ -22,6 +24,7 @@ Exit codes: 0 done; 1 some inputs failed, the rest is done; 2 wrong usage; 11 In
 
 const DONE: u8 = 0;
 const SOME_FAILED: u8 = 1;
+const WRONG_USAGE: u8 = 2;
 /// Exit code of a command stopped by Ctrl-C, as shells have it.
 const INTERRUPTED: u8 = 130;
 /// Errors exit with this plus the number of their kind.
@@ -34,6 +37,7 @@ pub fn code_from(result: Result<Outcome>) -> u8 {
         _ if interrupted() => INTERRUPTED,
         Ok(Outcome::Done) => DONE,
         Ok(Outcome::SomeFailed) => SOME_FAILED,
+        Ok(Outcome::WrongUsage) => WRONG_USAGE,
         Err(error) => {
             eprintln!("error: {error}");
             ERRORS + error.kind() as u8

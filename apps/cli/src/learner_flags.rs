@@ -24,7 +24,8 @@ pub fn add_for_fit(command: Command, entry: &'static Entry) -> Command {
     with_params(command, entry).args(of_fit)
 }
 
-fn with_params(command: Command, entry: &'static Entry) -> Command {
+/// Adds the learner's parameters.
+pub fn with_params(command: Command, entry: &'static Entry) -> Command {
     let heading = format!("Parameters of {}", entry.spec.name);
     let params = entry.params.iter().map(|field| param_flag(&heading, field));
     let about = format!("{}: {}", entry.spec.class, entry.spec.about);

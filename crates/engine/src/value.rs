@@ -10,8 +10,9 @@ use crate::data::{
     SkeletonSequence, Timeseries, Vector, Video,
 };
 use crate::target::{
-    BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
-    SpeechCommand, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
+    Action, BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
+    SpeechCommand, Target, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription,
+    WhisperTranscription,
 };
 use crate::{Error, Header, Result};
 
@@ -107,6 +108,11 @@ macro_rules! values {
             /// Which type it is of.
             pub fn value_type(&self) -> ValueType {
                 match self { $(Self::$data(_) => ValueType::$data,)* $(Self::$target(_) => ValueType::$target,)* }
+            }
+
+            /// How to move to see better, where a target says so.
+            pub fn action(self) -> Option<&'a Action> {
+                match self { $(Self::$data(_) => None,)* $(Self::$target(value) => Target::action(value),)* }
             }
 
             /// A copy of its own; bulky payloads stay shared.

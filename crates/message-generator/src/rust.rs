@@ -263,8 +263,9 @@ impl Writer<'_> {
         };
         let _ = writeln!(
             table,
-            "    {}({package}::{name}) = {package:?}, {name:?} {{\n        ros2: {:?}, {:?}, [{}];",
+            "    {}({package}::{name}) = {package:?}, {name:?}{} {{\n        ros2: {:?}, {:?}, [{}];",
             variant(&definition.name),
+            if has_header(definition) { " header" } else { "" },
             rihs01(self.ros2, definition)?,
             definition_text(definition, false),
             uses(self.ros2, definition)?,
@@ -287,6 +288,12 @@ impl Writer<'_> {
         table.push_str("    }\n");
         Ok(())
     }
+}
+
+/// Whether a message begins with stamp and frame.
+fn has_header(definition: &Definition) -> bool {
+    let base = definition.fields.first().map(|field| &field.field_type.base);
+    base == Some(&BaseType::Message(TypeName::new("std_msgs", "Header")))
 }
 
 fn rust_name(name: &str) -> String {

@@ -6,9 +6,9 @@ use serde::de::DeserializeOwned;
 /// A service: what is asked and what is answered.
 pub trait RosService {
     /// What is asked.
-    type Request: Clone + Default + Serialize + DeserializeOwned + Send + 'static;
+    type Request: Clone + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
     /// What is answered.
-    type Response: Clone + Default + Serialize + DeserializeOwned + Send + 'static;
+    type Response: Clone + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
     /// Its names and sums.
     const TYPE: ServiceType;
 }

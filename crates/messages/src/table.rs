@@ -2,7 +2,7 @@
 
 /// Messages: the enums over them, and what each knows of itself.
 macro_rules! messages {
-    ($($variant:ident($package:ident::$name:ident) = $package_text:literal, $name_text:literal {
+    ($($variant:ident($package:ident::$name:ident) = $package_text:literal, $name_text:literal $($header:ident)? {
         ros2: $hash:literal, $text:literal, [$($uses:literal),*];
         $(ros1: $kind:ident($($own:path)?) $ros1_name:literal, $md5:literal, $ros1_text:literal, [$($ros1_uses:literal),*];)?
     })*) => {
@@ -51,6 +51,16 @@ macro_rules! messages {
             /// Which type it is of.
             pub const fn message_type(&self) -> MessageType {
                 match self { $(Self::$variant(_) => MessageType::$variant,)* }
+            }
+
+            /// Stamp and frame, of a message that begins with them.
+            pub fn header(&self) -> Option<&std_msgs::Header> {
+                match self { $(messages!(@pattern $variant message $($header)?) => messages!(@header message $($header)?),)* }
+            }
+
+            /// Stamp and frame, to set them.
+            pub fn header_mut(&mut self) -> Option<&mut std_msgs::Header> {
+                match self { $(messages!(@pattern $variant message $($header)?) => messages!(@header_mut message $($header)?),)* }
             }
 
             pub(crate) fn to_ros1(&self) -> opendr_engine::Result<Vec<u8>> {
@@ -103,6 +113,12 @@ macro_rules! messages {
             }
         )*
     };
+    (@pattern $variant:ident $message:ident header) => { Self::$variant($message) };
+    (@pattern $variant:ident $message:ident) => { Self::$variant(_) };
+    (@header $message:ident header) => { Some(&$message.header) };
+    (@header $message:ident) => { None };
+    (@header_mut $message:ident header) => { Some(&mut $message.header) };
+    (@header_mut $message:ident) => { None };
     (@ros1_type) => { None };
     (@ros1_type $name:literal, $md5:literal, $text:literal, [$($uses:literal),*]) => {
         Some(crate::Ros1Type { name: $name, md5sum: $md5, text: $text, uses: &[$($uses),*] })

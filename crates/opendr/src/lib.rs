@@ -50,6 +50,8 @@ pub use opendr_perception::{
     face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
     pose_estimation, speech_recognition, suppression,
 };
+#[cfg(feature = "ros")]
+pub use opendr_ros as ros;
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, TuneData, TuneOptions, Tuned, search_space, tune};

@@ -6,14 +6,14 @@ use opendr_messages::vision_msgs;
 
 use crate::message_from_header;
 
-/// How classes are told in `class_id` fields.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum ClassIds {
-    /// By name where the learner knows one (`person`), by number otherwise.
-    #[default]
-    Names,
-    /// By number (`0`), as OpenDR's nodes did; a message `LabelInfo` says what they mean.
-    Numbers,
+opendr_engine::choices! {
+    /// How classes are told in `class_id` fields.
+    pub enum ClassIds {
+        /// By name where the learner knows one (`person`), by number otherwise.
+        Names = "names",
+        /// By number (`0`), as OpenDR's nodes did; a message `LabelInfo` says what they mean.
+        Numbers = "numbers",
+    }
 }
 
 impl ClassIds {

@@ -10,6 +10,8 @@ mod fit;
 mod infer;
 mod models;
 mod optimize;
+#[cfg(feature = "ros")]
+mod ros;
 mod runtime;
 mod score;
 mod sim;
@@ -35,6 +37,7 @@ Examples:
   opendr fit LEARNER coco/ --val-split val2017      train one
   opendr fit ppo --env CartPole-v1                  train a policy in an environment
   opendr sim view CartPole-v1 --learner ppo         film it
+  opendr ros2 run LEARNER --image /camera/image_raw run one as a node of ROS 2
   opendr data check coco/                           whether a data set is sound";
 
 /// The grammar. A command that runs a learner gets the flags of the one that `arguments` name.
@@ -42,7 +45,7 @@ Examples:
 /// # Errors
 /// `NotFound` when they name none that there is.
 pub fn grammar(arguments: &[OsString]) -> Result<Command> {
-    let mut commands = [
+    let mut commands = vec![
         infer::grammar(),
         eval::grammar(),
         fit::grammar(),
@@ -57,6 +60,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         bench::grammar(),
         runtime::grammar(),
         demo::grammar(),
+        #[cfg(feature = "ros")]
+        ros::ros2(),
     ];
     if let Some((name, rest)) = arguments.get(1..).and_then(<[_]>::split_first)
         && let Some(command) = commands.iter_mut().find(|command| command.get_name() == name)
@@ -108,6 +113,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "bench" => bench::run(matches),
         "runtime" => runtime::run(matches),
         "demo" => demo::run(matches),
+        #[cfg(feature = "ros")]
+        "ros2" => ros::run_ros2(matches),
         _ => Ok(Outcome::Done),
     })
 }

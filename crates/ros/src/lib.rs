@@ -1,0 +1,18 @@
+//! Every learner as a node: ROS 2 over DDS and ROS 1, spoken natively.
+//!
+//! A [`LearnerNode`] knows types and tables, never a learner: its topics follow from ports and outputs, its parameters from
+//! `Params`. It speaks through a [`Graph`], which ROS 2 and ROS 1 implement.
+
+mod graph;
+mod names;
+mod node;
+mod parameter_table;
+mod ros2;
+mod ros_args;
+
+pub use graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger};
+pub use names::Names;
+pub use node::{Feeds, LearnerNode, NodeOptions, NodeParams, TopicOptions, default_topics};
+pub use parameter_table::ParameterTable;
+pub use ros_args::RosArgs;
+pub use ros2::{Ros2, Ros2Node, Ros2Options};

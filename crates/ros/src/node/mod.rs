@@ -1,0 +1,108 @@
+//! A learner as a node.
+
+mod annotated;
+mod diagnostics;
+mod feeds;
+mod frame;
+mod inbox;
+mod outputs;
+mod params;
+mod topics;
+mod worker;
+
+pub use feeds::Feeds;
+pub use params::NodeParams;
+pub use topics::{NodeOptions, TopicOptions, default_topics};
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use opendr_engine::learner::{AnyLearner, Entry};
+use opendr_engine::params::Params as _;
+use opendr_engine::{Error, Result};
+
+use crate::{Graph, ParameterTable};
+use inbox::Inbox;
+use worker::Worker;
+
+/// A learner that takes its inputs from topics and answers on others.
+pub struct LearnerNode {
+    worker: Worker,
+}
+
+impl LearnerNode {
+    /// Declares topics, parameters and services of a loaded learner on `graph`, which is started after that. Nodes of one
+    /// process share `feeds`, so that a picture is received and decoded once for all of them.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a topic that is no name or a message that does not stand for its type; `NotFound` for a learner
+    /// without a model; `Io` when the network cannot be used.
+    pub fn new(
+        graph: &mut dyn Graph,
+        entry: &'static Entry,
+        learner: Box<dyn AnyLearner>,
+        options: NodeOptions,
+        feeds: &mut Feeds,
+    ) -> Result<Self> {
+        options.check(entry)?;
+        let inbox = Arc::new(Inbox::new(entry));
+        let params = Arc::new(Mutex::new(options.params.clone()));
+        let stream = learner.stream()?;
+        let classes = learner.classes();
+        let reset = Arc::new(AtomicBool::new(false));
+        declare_parameters(graph, entry, learner, &params)?;
+        let asked = reset.clone();
+        graph.serve(
+            "~/reset",
+            Box::new(move || {
+                asked.store(true, Ordering::Relaxed);
+                Ok("the next input begins a new stream".to_owned())
+            }),
+        )?;
+        let worker = Worker::new(graph, entry, stream, classes, inbox.clone(), params, reset, &options)?;
+        for (index, port) in entry.ports.iter().enumerate() {
+            let Some(topic) = options.inputs.iter().find(|topic| topic.name == port.name) else { continue };
+            feeds.subscribe(graph, topic, port.value_type, &inbox, index)?;
+        }
+        Ok(Self { worker })
+    }
+
+    /// Works until `stop` says so.
+    pub fn run(self, stop: &dyn Fn() -> bool) {
+        self.worker.run(stop);
+    }
+}
+
+/// The learner's parameters and the node's own in one table.
+fn declare_parameters(
+    graph: &mut dyn Graph,
+    entry: &'static Entry,
+    learner: Box<dyn AnyLearner>,
+    params: &Arc<Mutex<NodeParams>>,
+) -> Result<()> {
+    let of_learner = learner.params();
+    let mut rows = Vec::new();
+    for field in entry.params {
+        let value = of_learner.get(field.name).cloned().unwrap_or_else(|| field.default.value());
+        rows.push((field, value));
+    }
+    let own = params.lock().unwrap_or_else(PoisonError::into_inner).clone();
+    for (index, field) in NodeParams::FIELDS.iter().enumerate() {
+        if entry.params.iter().any(|other| other.name == field.name) {
+            return Err(Error::internal(format!(
+                "{} has a parameter {} of nodes",
+                entry.spec.name, field.name
+            )));
+        }
+        rows.push((field, own.get_at(index)));
+    }
+    let (learner, params) = (Mutex::new(learner), params.clone());
+    let table = ParameterTable::new(rows, move |name, value| {
+        if NodeParams::FIELDS.iter().any(|field| field.name == name) {
+            params.lock().unwrap_or_else(PoisonError::into_inner).set(name, value.clone())
+        } else {
+            learner.lock().unwrap_or_else(PoisonError::into_inner).set(name, value.clone())
+        }
+    });
+    graph.declare(Arc::new(table))
+}

@@ -1,0 +1,87 @@
+//! What a learner answers, on its way to topics.
+
+use std::sync::Arc;
+
+use opendr_engine::learner::Outputs;
+use opendr_engine::target::Classes;
+use opendr_engine::{ErrorKind, Header, Result, Value};
+use opendr_messages::{Message, MessageType};
+use opendr_ros_bridge::{RosBridge, label_info, view_action};
+
+use super::topics::TopicOptions;
+use crate::{Graph, Publisher, Qos};
+
+/// One output with its topic.
+struct OutputTopic {
+    name: String,
+    message_type: MessageType,
+    publisher: Arc<dyn Publisher>,
+}
+
+/// The topics that a node answers on.
+pub(super) struct OutputTopics {
+    topics: Vec<OutputTopic>,
+    view_action: Arc<dyn Publisher>,
+}
+
+impl OutputTopics {
+    pub(super) fn new(graph: &mut dyn Graph, topics: &[TopicOptions], classes: &Classes) -> Result<Self> {
+        let mut own = Vec::with_capacity(topics.len());
+        for TopicOptions { name, topic, message_type, qos } in topics {
+            let publisher = graph.advertise(topic, *message_type, *qos)?;
+            own.push(OutputTopic { name: name.clone(), message_type: *message_type, publisher });
+        }
+        if !classes.is_empty() {
+            let info = label_info(classes, &Header::default(), 0.0)?;
+            match graph.advertise("~/label_info", MessageType::VisionMsgsLabelInfo, Qos::LATCHED) {
+                Ok(publisher) => publisher.publish(info.into())?,
+                // ROS 1 has no such message.
+                Err(error) if error.kind() == ErrorKind::Unsupported => {}
+                Err(error) => return Err(error),
+            }
+        }
+        let view_action =
+            graph.advertise("~/set_view_action", MessageType::OpendrMsgsViewAction, Qos::RESULT)?;
+        Ok(Self { topics: own, view_action })
+    }
+
+    /// Sends every output that has a topic.
+    pub(super) fn publish(&self, outputs: &Outputs, bridge: &RosBridge) -> Result<()> {
+        for topic in &self.topics {
+            let Some(value) = outputs.get(&topic.name) else { continue };
+            let value = value.as_value_ref();
+            topic.publisher.publish(bridge.message_from_value(value, topic.message_type)?)?;
+        }
+        for (_, value) in outputs.iter() {
+            if let Some(action) = value.as_value_ref().action() {
+                self.view_action.publish(view_action(action, value.header())?.into())?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the node moves something: one that falls silent must stop it.
+    pub(super) fn command_velocity(&self) -> bool {
+        self.velocities().next().is_some()
+    }
+
+    /// Commands all velocities to be 0.
+    pub(super) fn stop(&self, now_ns: i64) -> Result<()> {
+        for topic in self.velocities() {
+            let mut still = opendr_engine::target::RlTarget::from(vec![0.0; 6]);
+            still.header.stamp_ns = Some(now_ns);
+            let still = Value::from(still);
+            let message: Message =
+                RosBridge::default().message_from_value(still.as_value_ref(), topic.message_type)?;
+            topic.publisher.publish(message)?;
+        }
+        Ok(())
+    }
+
+    fn velocities(&self) -> impl Iterator<Item = &OutputTopic> {
+        let moves = |message| {
+            matches!(message, MessageType::GeometryMsgsTwist | MessageType::GeometryMsgsTwistStamped)
+        };
+        self.topics.iter().filter(move |topic| moves(topic.message_type))
+    }
+}

@@ -1,0 +1,162 @@
+//! The loop of a node: take the newest inputs, infer, answer.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use opendr_engine::learner::{AnyStream, Entry, Outputs, Ports};
+use opendr_engine::target::Classes;
+use opendr_engine::{Error, Result};
+use opendr_messages::{MessageType, std_msgs};
+
+use super::annotated::Annotated;
+use super::diagnostics::Diagnostics;
+use super::inbox::{Inbox, Set};
+use super::outputs::OutputTopics;
+use super::{NodeOptions, NodeParams};
+use crate::{Clock, Graph, Log, Publisher, Qos, Severity};
+
+/// How long the loop waits for inputs before it looks at everything else.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+pub(super) struct Worker {
+    entry: &'static Entry,
+    stream: Box<dyn AnyStream>,
+    inbox: Arc<Inbox>,
+    params: Arc<Mutex<NodeParams>>,
+    reset: Arc<AtomicBool>,
+    outputs: OutputTopics,
+    annotated: Option<Annotated>,
+    diagnostics: Diagnostics,
+    processing_time: Arc<dyn Publisher>,
+    latency: Arc<dyn Publisher>,
+    clock: Clock,
+    log: Log,
+    /// When the last input was answered; `None` before the first and after a stop.
+    moving_since: Option<Instant>,
+}
+
+impl Worker {
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn new(
+        graph: &mut dyn Graph,
+        entry: &'static Entry,
+        stream: Box<dyn AnyStream>,
+        classes: Classes,
+        inbox: Arc<Inbox>,
+        params: Arc<Mutex<NodeParams>>,
+        reset: Arc<AtomicBool>,
+        options: &NodeOptions,
+    ) -> Result<Self> {
+        Ok(Self {
+            entry,
+            stream,
+            inbox,
+            params,
+            reset,
+            outputs: OutputTopics::new(graph, &options.outputs, &classes)?,
+            annotated: Annotated::new(graph, entry)?,
+            diagnostics: Diagnostics::new(graph, entry.spec.name)?,
+            processing_time: graph.advertise(
+                "~/processing_time_ms",
+                MessageType::StdMsgsFloat32,
+                Qos::RESULT,
+            )?,
+            latency: graph.advertise("~/latency_ms", MessageType::StdMsgsFloat32, Qos::RESULT)?,
+            clock: graph.clock(),
+            log: graph.log(),
+            moving_since: None,
+        })
+    }
+
+    pub(super) fn run(mut self, stop: &dyn Fn() -> bool) {
+        while !stop() {
+            let params = self.params.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            let slop_ns = (params.sync_slop_ms * 1e6) as i64;
+            let set = self.inbox.take(slop_ns, PATIENCE);
+            if self.reset.swap(false, Ordering::Relaxed) {
+                self.stream.reset();
+            }
+            let done = match set {
+                Some(set) => self.answer(&set, &params),
+                None => self.idle(&params),
+            };
+            let told = done.and_then(|()| self.diagnostics.tick(self.inbox.counts()));
+            if let Err(error) = told {
+                self.tell(&error);
+            }
+        }
+        // Nothing goes on moving when the node is stopped.
+        if self.moving_since.is_some()
+            && let Err(error) = self.outputs.stop((self.clock)())
+        {
+            self.tell(&error);
+        }
+    }
+
+    fn answer(&mut self, set: &Set, params: &NodeParams) -> Result<()> {
+        let begin = Instant::now();
+        let mut ports = Ports::default();
+        for (port, frame) in self.entry.ports.iter().zip(set) {
+            if let Some(frame) = frame {
+                ports = ports.with(port.name, frame.value()?);
+                if port.init {
+                    self.stream.reset();
+                }
+            }
+        }
+        let mut answers: Vec<Outputs> = Vec::new();
+        if self.entry.capabilities.streaming {
+            self.stream.push(Some(&ports), &mut |outputs| answers.push(outputs))?;
+        } else {
+            answers.push(self.stream.infer(&ports)?);
+        }
+        let bridge = params.bridge();
+        for outputs in &answers {
+            self.outputs.publish(outputs, &bridge)?;
+            self.moving_since = self.outputs.command_velocity().then(Instant::now);
+        }
+        let processing_ms = begin.elapsed().as_secs_f64() * 1e3;
+        let stamp = set.iter().flatten().next().map(|frame| frame.stamp_ns);
+        let latency_ms = ((self.clock)() - stamp.unwrap_or_default()) as f64 * 1e-6;
+        self.processing_time.publish(std_msgs::Float32 { data: processing_ms as f32 }.into())?;
+        self.latency.publish(std_msgs::Float32 { data: latency_ms as f32 }.into())?;
+        self.diagnostics.add(processing_ms, latency_ms);
+        if params.deadline_ms > 0.0 && processing_ms > params.deadline_ms {
+            self.diagnostics.add_late();
+            let deadline = params.deadline_ms;
+            self.tell(&Error::new(
+                opendr_engine::ErrorKind::Device,
+                format!("an inference took {processing_ms:.1} ms, longer than the deadline of {deadline} ms"),
+            ));
+        }
+        if let (Some(annotated), true) = (&self.annotated, params.annotate) {
+            for outputs in &answers {
+                annotated.publish(set, outputs, &bridge)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// No input: what moves is stopped when that lasts.
+    fn idle(&mut self, params: &NodeParams) -> Result<()> {
+        let timeout = Duration::from_secs_f64(params.timeout_ms * 1e-3);
+        if params.timeout_ms > 0.0 && self.moving_since.is_some_and(|since| since.elapsed() > timeout) {
+            self.outputs.stop((self.clock)())?;
+            self.moving_since = None;
+            (self.log)(
+                Severity::Warn,
+                &format!("no input for {} ms: the velocity is commanded to be 0", params.timeout_ms),
+            );
+        }
+        Ok(())
+    }
+
+    /// Tells an error, once a second for each.
+    fn tell(&mut self, error: &Error) {
+        let text = error.to_string();
+        if self.diagnostics.add_error(&text) {
+            (self.log)(Severity::Warn, &text);
+        }
+    }
+}

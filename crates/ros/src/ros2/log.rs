@@ -1,0 +1,36 @@
+//! Log lines on the terminal and on `/rosout`.
+
+use std::sync::Arc;
+
+use opendr_engine::Result;
+use opendr_messages::{MessageType, rcl_interfaces};
+use opendr_ros_bridge::time;
+
+use super::{Ros2Node, system_time_ns};
+use crate::{Graph as _, Log, Qos, Severity};
+
+/// As rclcpp offers `/rosout`.
+const QOS: Qos = Qos { reliable: true, latched: true, depth: 1000 };
+
+pub(super) fn start(node: &mut Ros2Node) -> Result<Log> {
+    let publisher = node.advertise("/rosout", MessageType::RclInterfacesLog, QOS)?;
+    let name = node.full_name.trim_start_matches('/').replace('/', ".");
+    Ok(Arc::new(move |severity, text| {
+        let (word, level) = match severity {
+            Severity::Info => ("INFO", rcl_interfaces::Log::INFO),
+            Severity::Warn => ("WARN", rcl_interfaces::Log::WARN),
+            Severity::Error => ("ERROR", rcl_interfaces::Log::ERROR),
+        };
+        eprintln!("[{word}] [{name}]: {text}");
+        let stamp = time(system_time_ns()).unwrap_or_default();
+        let log = rcl_interfaces::Log {
+            stamp,
+            level,
+            name: name.clone(),
+            msg: text.to_owned(),
+            ..Default::default()
+        };
+        // The terminal has it.
+        let _ = publisher.publish(log.into());
+    }))
+}
