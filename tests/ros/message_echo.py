@@ -44,6 +44,6 @@ class MessageEcho:
         return bytes.fromhex(answer)
 
     def peak_memory(self):
-        """The most memory that the process has had, in bytes."""
+        """The most that the process has had and the most that it has asked for, in bytes."""
         status = Path(f"/proc/{self.process.pid}/status").read_text()
-        return int(re.search(r"VmHWM:\s+(\d+) kB", status)[1]) << 10
+        return tuple(int(re.search(rf"{name}:\s+(\d+) kB", status)[1]) << 10 for name in ("VmHWM", "VmPeak"))
