@@ -200,12 +200,18 @@ class Peer:
         """Makes the publisher; options as of `publish`."""
         self.request("advertise", topic=topic, type=type, **options)
 
-    def publish(self, topic, type, messages, background=False, timeout=PATIENCE, **options):
+    def publish(self, topic, type, messages, to=None, background=False, timeout=PATIENCE, **options):
         """Publishes messages in turn once `subscribers` (1) are there; when each was sent, in nanoseconds.
 
+        That a subscriber is known here does not mean that it knows of this publisher and will have the first message:
+        with `to`, a Subscription of another peer, both do.
         `rate` is messages a second (as fast as they go), `count` how many in all (each once); ROS 2: `qos` of words out
         of reliable, best_effort, transient_local, and `depth`; ROS 1: `latch`, `depth`. With `background`, a Future.
         """
+        if to is not None:
+            quality = {name: value for name, value in options.items() if name in ("qos", "depth", "latch")}
+            self.advertise(topic, type, **quality)
+            to.wait_for_publishers(timeout=timeout)
         payloads = [message.hex() for message in messages]
         arguments = dict(topic=topic, type=type, messages=payloads, timeout=timeout, **options)
         future = self.start("publish", **arguments)
@@ -320,6 +326,10 @@ class CyclonePeer(Peer):
         self.domain = domain
         program = [sys.executable, HERE / "peer/peer_cyclone.py", definitions]
         super().__init__(program, {"ROS_DOMAIN_ID": str(domain)})
+
+    def random_big_endian(self, type, seed):
+        """`random`'s message with the most significant bytes first."""
+        return bytes.fromhex(self.request("random", type=type, seed=seed, big_endian=True))
 
 
 class Roscore:

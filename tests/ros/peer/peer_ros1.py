@@ -3,6 +3,7 @@
     /usr/bin/python3 peer_ros1.py NAME
 """
 
+import os
 import struct
 import sys
 import threading
@@ -164,6 +165,8 @@ def main():
     control.serve(peer)
     if "started" in vars(peer):
         rospy.signal_shutdown("told to")
+    # Threads that wait for somebody are not waited for.
+    os._exit(0)
 
 
 if __name__ == "__main__":

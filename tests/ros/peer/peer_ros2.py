@@ -3,15 +3,18 @@
     python peer_ros2.py NAME
 """
 
+import os
 import struct
 import sys
 import threading
+import time
 from functools import cached_property
 
 import rclpy
 import ros2_messages
 from control import Control, repeat, wait_until
 from random_values import RandomValues
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter, parameter_value_to_python
@@ -41,6 +44,8 @@ class Peer:
         self.lock = threading.Lock()
         self.publishers = {}
         self.subscriptions = {}
+        # How many publishers the middleware has connected each with.
+        self.matches = {}
         self.services = []
         self.clients = {}
 
@@ -49,7 +54,7 @@ class Peer:
         """Made when the first command needs it: messages can be read and written without."""
         rclpy.init()
         node = Node(self.name)
-        executor = SingleThreadedExecutor()
+        executor = self.executor = SingleThreadedExecutor()
         executor.add_node(node)
 
         def spin():
@@ -58,8 +63,17 @@ class Peer:
             except ExternalShutdownException:
                 pass
 
-        threading.Thread(target=spin, daemon=True).start()
+        self.spinning = threading.Thread(target=spin, daemon=True)
+        self.spinning.start()
         return node
+
+    def close(self):
+        """Takes leave of the others; a process that just ends is missed only after a while."""
+        if "node" in vars(self):
+            self.executor.shutdown()
+            self.spinning.join(5)
+            self.node.destroy_node()
+            rclpy.shutdown()
 
     def locked_node(self):
         with self.lock:
@@ -113,15 +127,20 @@ class Peer:
             stamp = struct.unpack_from("<iI", raw, 4) if has_stamp else None
             self.control.message(subscription, raw, stamp)
 
-        made = node.create_subscription(message_type, topic, take, quality(qos, depth), raw=True)
+        def matched(status):
+            self.matches[subscription] = status.current_count
+
+        events = SubscriptionEventCallbacks(matched=matched)
+        made = node.create_subscription(
+            message_type, topic, take, quality(qos, depth), raw=True, event_callbacks=events
+        )
         self.subscriptions[subscription] = made
 
     def do_unsubscribe(self, subscription):
         self.node.destroy_subscription(self.subscriptions.pop(subscription))
 
     def do_wait_for_publishers(self, subscription, count=1, timeout=10):
-        topic = self.subscriptions[subscription].topic_name
-        wait_until(lambda: self.node.count_publishers(topic) >= count, timeout, f"{count} publishers")
+        wait_until(lambda: self.matches.get(subscription, 0) >= count, timeout, f"{count} publishers")
 
     def do_call(self, service, type, hex, timeout=10):
         node = self.locked_node()
@@ -188,10 +207,20 @@ class Peer:
         return dict(self.locked_node().get_service_names_and_types())
 
     def do_publishers(self, topic):
-        return [endpoint(info) for info in self.locked_node().get_publishers_info_by_topic(topic)]
+        return endpoints(self.locked_node().get_publishers_info_by_topic, topic)
 
     def do_subscribers(self, topic):
-        return [endpoint(info) for info in self.locked_node().get_subscriptions_info_by_topic(topic)]
+        return endpoints(self.locked_node().get_subscriptions_info_by_topic, topic)
+
+
+def endpoints(look_up, topic):
+    """Who is at a topic. The node's name comes after the rest, and from what is no ROS node never."""
+    for _ in range(100):
+        found = [endpoint(info) for info in look_up(topic)]
+        if not any("UNKNOWN" in one["node"] for one in found):
+            break
+        time.sleep(0.05)
+    return found
 
 
 def endpoint(info):
@@ -214,8 +243,9 @@ def main():
     peer = Peer(sys.argv[1], control)
     control.say({"event": "ready"})
     control.serve(peer)
-    if "node" in vars(peer):
-        rclpy.shutdown()
+    peer.close()
+    # Threads that wait for somebody are not waited for.
+    os._exit(0)
 
 
 if __name__ == "__main__":
