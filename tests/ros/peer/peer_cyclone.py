@@ -12,6 +12,7 @@ import re
 import sys
 import threading
 import time
+from types import new_class
 
 from control import Control, repeat, wait_until
 from cyclonedds.core import Policy, Qos
@@ -71,9 +72,9 @@ class MessageTypes:
         if not fields:
             fields["structure_needs_at_least_one_member"] = types.uint8
         package, short = name.split("/")
-        namespace = {"__annotations__": fields, "__module__": __name__}
-        made = type(IdlStruct)(short, (IdlStruct,), namespace, typename=f"{package}::msg::dds_::{short}_")
-        return final(dataclasses.dataclass(made))
+        named = {"typename": f"{package}::msg::dds_::{short}_"}
+        body = {"__annotations__": fields, "__module__": __name__}
+        return dataclasses.dataclass(final(new_class(short, (IdlStruct,), named, lambda space: space.update(body))))
 
     def random(self, name, values, depth=0):
         name = name.replace("/msg/", "/")
