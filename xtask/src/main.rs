@@ -1,10 +1,11 @@
-//! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
+//! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask ros`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
 
 mod generate;
 mod install_c;
 mod parity;
 mod python_package;
 mod realtime;
+mod ros;
 mod shell;
 mod surfaces;
 mod test;
@@ -20,6 +21,7 @@ usage: cargo xtask VERB
              that and the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON; test-extended is
              these alone
   test-c     the part of it that tests the C library
+  ros        the part of it that tests messages and nodes beside real ROS peers
   generate   write stubs, C headers and docs/learners.md, which are made of the registry
   realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
   install-c PREFIX
@@ -35,6 +37,7 @@ fn main() -> ExitCode {
         ["test", "--extended"] => test::run().and_then(|()| test::run_extended()),
         ["test-extended"] => test::run_extended(),
         ["test-c"] => test::run_c(),
+        ["ros"] => ros::run_alone(),
         ["generate"] => generate::run(),
         ["realtime"] => realtime::run(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),

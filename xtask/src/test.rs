@@ -5,7 +5,7 @@ use std::process::Command;
 
 use crate::shell::{Result, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
-use crate::{install_c, parity, python_package, surfaces};
+use crate::{install_c, parity, python_package, ros, surfaces};
 
 /// Runs every check; the first that fails ends it.
 pub fn run() -> Result<()> {
@@ -52,6 +52,7 @@ pub fn run() -> Result<()> {
     step("release build", &mut cargo(&["build", "--release", TRAINING]))?;
     step("tests from outside", &mut pytest(&outside, "tests/python", &environment))?;
     references(&environment)?;
+    ros::run(|pytest| environment.apply(pytest))?;
     let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
     let wheel = python.install_wheel()?;
     step(

@@ -6,13 +6,27 @@ use std::path::{Path, PathBuf};
 use crate::shell::{Result, command, is_installed, root, step, target};
 
 /// Debian packages by the program that they bring.
-const DEBIAN: [(&str, &str); 6] = [
+const DEBIAN: [(&str, &str); 20] = [
     ("ffmpeg", "ffmpeg"),
     ("g++", "g++"),
     ("pkg-config", "pkg-config"),
     ("cmake", "cmake"),
     ("valgrind", "valgrind"),
     ("/usr/share/datasets/fashion-mnist", "dataset-fashion-mnist"),
+    ("ip", "iproute2"),
+    ("roscore", "ros-core"),
+    ("rosbag", "python3-rosbag"),
+    ("/usr/lib/python3/dist-packages/rospy", "python3-rospy"),
+    ("/usr/lib/python3/dist-packages/sensor_msgs", "python3-sensor-msgs"),
+    ("/usr/lib/python3/dist-packages/std_srvs", "python3-std-srvs"),
+    ("/usr/lib/python3/dist-packages/tf2_msgs", "python3-tf2-msgs"),
+    ("/usr/lib/python3/dist-packages/visualization_msgs", "python3-visualization-msgs"),
+    ("/usr/lib/python3/dist-packages/diagnostic_msgs", "python3-diagnostic-msgs"),
+    ("/usr/lib/python3/dist-packages/nav_msgs", "python3-nav-msgs"),
+    ("/usr/lib/python3/dist-packages/geometry_msgs", "python3-geometry-msgs"),
+    ("/usr/share/std_msgs/msg", "ros-std-msgs"),
+    ("/usr/share/geometry_msgs/msg", "ros-geometry-msgs"),
+    ("/usr/share/sensor_msgs/msg", "ros-sensor-msgs"),
 ];
 
 /// A Python environment with the packages of a file of requirements.

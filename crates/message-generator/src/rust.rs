@@ -256,10 +256,9 @@ impl Writer<'_> {
 
     fn write_row(&self, table: &mut String, definition: &Definition) -> Result<()> {
         let TypeName { package, name } = &definition.name;
-        let uses = |library: &Library, definition: &Definition| -> Result<String> {
-            let used = library.dependencies(definition)?;
+        let names = |used: &[&Definition]| -> String {
             let names: Vec<_> = used.iter().map(|used| format!("{:?}", used.name.to_string())).collect();
-            Ok(names.join(", "))
+            names.join(", ")
         };
         let _ = writeln!(
             table,
@@ -268,7 +267,7 @@ impl Writer<'_> {
             if has_header(definition) { " header" } else { "" },
             rihs01(self.ros2, definition)?,
             definition_text(definition, false),
-            uses(self.ros2, definition)?,
+            names(&self.ros2.dependencies(definition)?),
         );
         if let Some(form) = self.ros1_form(definition)? {
             let kind = if self.differs(definition, form)? {
@@ -276,13 +275,16 @@ impl Writer<'_> {
             } else {
                 "same()".to_owned()
             };
+            let mut used = self.ros1.dependencies(form)?;
+            // ROS 1 knows times and durations by themselves.
+            used.retain(|used| self.names.get(&used.name) != Some(&None));
             let _ = writeln!(
                 table,
                 "        ros1: {kind} {:?}, {:?}, {:?}, [{}];",
                 form.name.to_string(),
                 md5sum(self.ros1, form)?,
                 definition_text(form, true),
-                uses(self.ros1, form)?,
+                names(&used),
             );
         }
         table.push_str("    }\n");

@@ -17,6 +17,8 @@
 #[macro_use]
 mod table;
 mod cdr;
+#[doc(hidden)]
+pub mod fuzzing;
 mod generated;
 mod long_array;
 mod message_type;

@@ -1,0 +1,64 @@
+//! The tests beside real ROS peers: ROS 2 Jazzy and Kilted out of wheels, Cyclone DDS, Debian's ROS 1.
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::shell::{Result, command, step, target};
+use crate::tools::{Python, install_debian};
+
+/// The ROS 2 distributions that are peers; each has `tests/ros/environment/NAME.txt`.
+const DISTRIBUTIONS: [&str; 2] = ["jazzy", "kilted"];
+
+/// The examples that the tests speak to.
+const EXAMPLES: [&str; 2] = ["message_types", "message_echo"];
+
+/// What the tests need and nothing else of the test command, then the tests.
+pub fn run_alone() -> Result<()> {
+    install_debian()?;
+    step(
+        "examples of messages",
+        command("cargo").args(["build", "--package", "opendr-messages", "--examples"]),
+    )?;
+    run(|_| ())
+}
+
+/// Brings the peers up to date and runs `tests/ros` beside them; the examples are built.
+pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
+    let tests = Python::install("ros-venv", "tests/ros/requirements.txt")?;
+    let mut pytest = isolated(&tests.program());
+    pytest.args(["-m", "pytest", "-ra", "tests/ros"]);
+    for name in DISTRIBUTIONS {
+        let requirements = format!("tests/ros/environment/{name}.txt");
+        let python = Python::install(&format!("ros-{name}-venv"), &requirements)?.program();
+        let title = format!("messages of ROS 2 {name}");
+        step(&title, command(&python).arg("tests/ros/environment/build_messages.py"))?;
+        pytest.env(format!("OPENDR_ROS_{}", name.to_uppercase()), python);
+    }
+    let ros1 = target().join("ros1-messages");
+    let mut generate = command("/usr/bin/python3");
+    step("messages of ROS 1", generate.arg("tests/ros/environment/generate_ros1.py").arg(&ros1))?;
+    pytest.env("OPENDR_ROS1_MESSAGES", ros1);
+    for example in EXAMPLES {
+        let program = target().join("debug/examples").join(example);
+        pytest.env(format!("OPENDR_{}", example.to_uppercase()), program);
+    }
+    environment(&mut pytest);
+    step("tests beside real ROS peers", &mut pytest)
+}
+
+/// A program in a network of its own, which has only loopback, with multicast: peers find each other and nobody else.
+/// Where that is not permitted, in this machine's network.
+fn isolated(program: &Path) -> Command {
+    for new in ["-n", "-rn"] {
+        let try_out = Command::new("unshare").args([new, "true"]).stderr(Stdio::null()).status();
+        if try_out.is_ok_and(|status| status.success()) {
+            let mut isolated = command("unshare");
+            isolated.args([new, "--", "sh", "-c", LOOPBACK, "sh"]).arg(program);
+            return isolated;
+        }
+    }
+    println!("no network namespace is permitted here: the ROS peers talk over this machine's network");
+    command(program)
+}
+
+const LOOPBACK: &str = r#"ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo && exec "$@""#;
