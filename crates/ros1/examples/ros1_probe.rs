@@ -1,13 +1,14 @@
-//! One end of a conversation with a real ROS 1, for the tests in `tests/ros1`. Tells what happens as lines of JSON.
+//! One end of a conversation with a real ROS 1, for the tests in `tests/ros1`. Tells what happens as lines of
+//! JSON.
 //!
 //! ```text
-//! ros1_probe publish TOPIC COUNT RATE [latched] [queue=N]   "0", "1", ... as std_msgs/String; COUNT 0: until killed
+//! ros1_probe publish TOPIC COUNT RATE [latched] [queue=N]   numbered texts (std_msgs/String); COUNT 0: no end
 //! ros1_probe images TOPIC COUNT RATE [queue=N]              640x480 pictures to the first subscriber
 //! ros1_probe subscribe TOPIC TYPE MD5 COUNT [slow=MS] [queue=N] [max=BYTES]
 //! ros1_probe serve SERVICE                                  std_srvs/SetBool; false is refused
-//! ros1_probe call SERVICE TYPE MD5 HEX [times=N]
+//! ros1_probe call SERVICE TYPE MD5 HEX [more=N]              once, and N times over one connection
 //! ros1_probe get|has|delete|search|watch KEY, set KEY VALUE, nest KEY, names
-//! ros1_probe hold TOPIC                                     publishes, subscribes and serves until it is ended
+//! ros1_probe hold TOPIC                                     publishes, subscribes and serves until killed
 //! ```
 
 use std::collections::BTreeMap;
@@ -37,7 +38,16 @@ fn main() -> ExitCode {
 }
 
 fn say(what: &str, text: &str) {
-    println!("{{\"{what}\": {text:?}}}");
+    println!("{{\"{what}\": {}}}", json(text));
+}
+
+fn json(text: &str) -> String {
+    let letter = |letter: char| match letter {
+        '"' | '\\' => format!("\\{letter}"),
+        '\0'..'\x20' => format!("\\u{:04x}", u32::from(letter)),
+        _ => letter.to_string(),
+    };
+    format!("\"{}\"", text.chars().map(letter).collect::<String>())
 }
 
 /// `name=N` among the words.
@@ -73,12 +83,13 @@ fn run(arguments: &Arguments) -> Result<()> {
         }
         ["call", service, name, md5sum, request, rest @ ..] => {
             node.wait_for_service(service, Duration::from_secs(10))?;
-            let client = node.client(service, ServiceType::new(*name, *md5sum))?;
-            let once = node.call(service, ServiceType::new(*name, *md5sum), &bytes(request)?)?;
-            for _ in 0..option(rest, "times", 1) {
+            let kind = ServiceType::new(*name, *md5sum);
+            let once = node.call(service, kind.clone(), &bytes(request)?)?;
+            say("answer", &String::from_utf8_lossy(&once));
+            let client = node.client(service, kind)?;
+            for _ in 0..option(rest, "more", 0) {
                 let answer = client.call(&bytes(request)?)?;
                 say("answer", &String::from_utf8_lossy(&answer));
-                assert_eq!(answer, once);
             }
             Ok(())
         }
@@ -103,8 +114,10 @@ fn text(text: &str) -> Vec<u8> {
 fn set_bool(request: &[u8]) -> Result<Vec<u8>, String> {
     match request {
         [1] => Ok([&[1], text("switched on").as_slice()].concat()),
-        [0] => Err("it stays on".to_owned()),
-        _ => panic!("{} bytes as a truth value", request.len()),
+        _ => {
+            assert_eq!(request, [0], "no truth value");
+            Err("it stays on".to_owned())
+        }
     }
 }
 
@@ -199,8 +212,11 @@ fn tell(message: &ReceivedMessage, dropped: u64) {
     } else {
         let text = String::from_utf8_lossy(message.bytes.get(4..).unwrap_or_default());
         println!(
-            "{{\"text\": {text:?}, \"from\": {:?}, \"type\": {:?}, \"latching\": {}, \"dropped\": {dropped}}}",
-            publisher.caller_id, publisher.type_name, publisher.latching
+            "{{\"text\": {}, \"from\": {}, \"type\": {}, \"latching\": {}, \"dropped\": {dropped}}}",
+            json(&text),
+            json(&publisher.caller_id),
+            json(&publisher.type_name),
+            publisher.latching
         );
     }
 }
@@ -219,11 +235,13 @@ fn hold(node: &Node, topic: &str) -> Result<()> {
     Ok(())
 }
 
+fn told(value: &ParameterValue) -> String {
+    format!("{value:?}").replace('"', "'")
+}
+
 fn parameters(node: &Node, words: &[&str]) -> Result<()> {
     match words {
-        ["get", key] => {
-            println!("{{\"value\": \"{}\"}}", format!("{:?}", node.parameter(key)?).replace('"', "'"))
-        }
+        ["get", key] => say("value", &told(&node.parameter(key)?)),
         ["has", key] => println!("{{\"has\": {}}}", node.has_parameter(key)?),
         ["delete", key] => node.delete_parameter(key)?,
         ["search", key] => say("found", &node.search_parameter(key)?.unwrap_or_default()),
@@ -231,7 +249,7 @@ fn parameters(node: &Node, words: &[&str]) -> Result<()> {
         ["set", key, value] => node.set_parameter(key, *value)?,
         ["nest", key] => {
             let inner = [("gain".to_owned(), 0.5.into()), ("on".to_owned(), true.into())];
-            let list = vec![1.into(), "a <b> & c\r\n\u{e9}".into(), ParameterValue::List(vec![2.5.into()])];
+            let list = vec![1.into(), "a <b> & c\n\u{e9}".into(), ParameterValue::List(vec![2.5.into()])];
             let blob = ParameterValue::Base64(vec![0, 1, 255]);
             let outer: [(String, ParameterValue); 3] = [
                 ("inner".to_owned(), ParameterValue::Struct(BTreeMap::from(inner))),
@@ -247,7 +265,7 @@ fn parameters(node: &Node, words: &[&str]) -> Result<()> {
                     format!("{value:?}").replace('"', "'")
                 );
             })?;
-            println!("{{\"value\": \"{}\"}}", format!("{now:?}").replace('"', "'"));
+            say("value", &told(&now));
             node.wait();
         }
         _ => {

@@ -36,14 +36,16 @@ pub(crate) fn connect(host: &str, port: u16, time: Duration) -> Result<TcpStream
     Err(failed(last))
 }
 
-/// Has the system ask a silent peer whether it is still there: after a minute, every ten seconds, as roscpp does.
+/// Has the system ask a silent peer whether it is still there: after a minute, every ten seconds, as roscpp
+/// does.
 #[cfg(unix)]
 pub(crate) fn keep_alive(stream: &TcpStream) {
     use std::os::fd::AsRawFd;
 
     let set = |level: i32, name: i32, value: i32| {
         let size = size_of::<i32>() as libc::socklen_t;
-        // SAFETY: the descriptor is open for as long as `stream` is borrowed; the option is an int of `size` bytes.
+        // SAFETY: the descriptor is open for as long as `stream` is borrowed; the option is an int of `size`
+        // bytes.
         unsafe { libc::setsockopt(stream.as_raw_fd(), level, name, (&raw const value).cast(), size) };
     };
     set(libc::SOL_SOCKET, libc::SO_KEEPALIVE, 1);

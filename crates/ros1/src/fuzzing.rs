@@ -33,17 +33,50 @@ mod tests {
     use std::fs;
     use std::path::Path;
 
+    use proptest::prelude::*;
+
     use super::*;
+
+    type Parser = fn(&[u8]);
+
+    const PARSERS: [(&str, Parser); 2] = [("xml_rpc", xml_rpc), ("tcpros_header", tcpros_header)];
+
+    fn corpus(name: &str) -> Vec<Vec<u8>> {
+        let corpora = Path::new(&std::env::var("CARGO_MANIFEST_DIR").unwrap()).join("../../fuzz/corpus");
+        let files = fs::read_dir(corpora.join(name)).unwrap();
+        files.map(|file| fs::read(file.unwrap().path()).unwrap()).collect()
+    }
+
+    #[test]
+    fn changed_corpora_are_refused_or_read() {
+        let change = || (any::<prop::sample::Index>(), any::<u8>(), 0_usize..3);
+        for (name, parse) in PARSERS {
+            let files = corpus(name);
+            let mut runner = proptest::test_runner::TestRunner::deterministic();
+            let input = (0..files.len(), prop::collection::vec(change(), 1..8));
+            let outcome = runner.run(&input, |(file, changes)| {
+                let mut bytes = files[file].clone();
+                for (at, byte, kind) in changes {
+                    let at = at.index(bytes.len().max(1)).min(bytes.len());
+                    match kind {
+                        0 => bytes.insert(at, byte),
+                        1 => drop(bytes.drain(at..(at + 1).min(bytes.len()))),
+                        _ => drop(bytes.splice(at..(at + 1).min(bytes.len()), [byte])),
+                    }
+                }
+                parse(&bytes);
+                Ok(())
+            });
+            outcome.unwrap();
+        }
+    }
 
     #[test]
     fn corpora_are_refused_or_read() {
-        let corpora = Path::new(&std::env::var("CARGO_MANIFEST_DIR").unwrap()).join("../../fuzz/corpus");
-        for (name, parse) in [("xml_rpc", xml_rpc as fn(&[u8])), ("tcpros_header", tcpros_header)] {
-            let files: Vec<_> = fs::read_dir(corpora.join(name)).unwrap().collect();
+        for (name, parse) in PARSERS {
+            let files = corpus(name);
             assert!(!files.is_empty(), "{name} has an empty corpus");
-            for file in files {
-                parse(&fs::read(file.unwrap().path()).unwrap());
-            }
+            files.iter().for_each(|file| parse(file));
         }
     }
 }

@@ -67,7 +67,8 @@ impl Graph {
         self.next_id.fetch_add(1, Ordering::Relaxed)
     }
 
-    /// Registers something: a master that does not answer is a problem told, and asked again once it is there.
+    /// Registers something: a master that does not answer is a problem told, and asked again once it is
+    /// there.
     ///
     /// # Errors
     /// What the master answered, when it said no.

@@ -16,7 +16,8 @@ pub(crate) fn host(given: Option<&str>, master: &HttpUri) -> String {
         .unwrap_or_else(|| "127.0.0.1".to_owned())
 }
 
-/// Where to listen: on the loopback alone when others are told so, as rospy does; for IPv6 when `ROS_IPV6` is `on`.
+/// Where to listen: on the loopback alone when others are told so, as rospy does; for IPv6 when `ROS_IPV6` is
+/// `on`.
 pub(crate) fn bind_address(host: &str) -> IpAddr {
     let ipv6 = std::env::var("ROS_IPV6").is_ok_and(|value| value == "on");
     let loopback = host.parse::<IpAddr>().map_or(host == "localhost", |address| address.is_loopback());

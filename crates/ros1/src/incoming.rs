@@ -16,7 +16,7 @@ use crate::tasks::Cancel;
 use crate::tcpros::Header;
 
 /// Connections at a time, of each kind; more are closed at once.
-const MOST_CONNECTIONS: usize = 256;
+const MOST_CONNECTIONS: usize = 128;
 
 /// What is done with a connection, on a thread of its own.
 type Serve = fn(&Arc<Graph>, &TcpStream, &Cancel) -> Result<()>;

@@ -1,6 +1,7 @@
 //! ROS 1 without ROS: a node of topics, services and parameters, on threads of the standard library alone.
 //!
-//! Messages are bytes in ROS 1's format here; a type is its name, md5 sum and definition. `opendr-messages` makes both.
+//! Messages are bytes in ROS 1's format here; a type is its name, md5 sum and definition. `opendr-messages`
+//! makes both.
 //!
 //! ```no_run
 //! use opendr_ros1::{Node, NodeOptions, PublisherOptions, SubscriberOptions, TopicType};
@@ -15,8 +16,8 @@
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```
 //!
-//! Whatever a peer sends is checked before memory is taken for it. ROS 1 itself knows no authentication: everybody who
-//! reaches the node's ports can publish to it, call it, and ask it to end.
+//! Whatever a peer sends is checked before memory is taken for it. ROS 1 itself knows no authentication:
+//! everybody who reaches the node's ports can publish to it, call it, and ask it to end.
 
 mod arguments;
 mod connection;

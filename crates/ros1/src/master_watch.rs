@@ -59,7 +59,8 @@ impl Known {
     }
 }
 
-/// Whether the master has what we registered; in a container a new master may have the process id of the old one.
+/// Whether the master has what we registered; in a container a new master may have the process id of the old
+/// one.
 fn is_known(graph: &Graph) -> Result<bool> {
     let nothing = lock(&graph.publications).is_empty()
         && lock(&graph.subscriptions).is_empty()

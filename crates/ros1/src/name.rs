@@ -77,7 +77,7 @@ fn check_node_name(name: &str) -> Result<()> {
         return Ok(());
     }
     Err(Error::invalid_param(format!(
-        "{name:.80?} is no name for a ROS node; use a letter, then letters, digits and underscores, no slashes"
+        "{name:.80?} is no name for a ROS node; use a letter, then letters, digits and _, no slashes"
     )))
 }
 

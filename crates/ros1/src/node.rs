@@ -20,7 +20,8 @@ use crate::{
     Subscription, TopicType, incoming, master_watch,
 };
 
-/// A node of the ROS graph, until it goes: then everything is unregistered, and every connection and thread ended.
+/// A node of the ROS graph, until it goes: then everything is unregistered, and every connection and thread
+/// ended.
 ///
 /// Its handles (publishers, subscriptions, services) may outlive it, but do nothing any more.
 pub struct Node {
@@ -31,8 +32,8 @@ impl Node {
     /// A node as `options` and ROS's environment variables have it.
     ///
     /// # Errors
-    /// `InvalidParam` for a name or address that is not valid, `Network` when the master does not answer, `Io` when no
-    /// port can be listened on.
+    /// `InvalidParam` for a name or address that is not valid, `Network` when the master does not answer,
+    /// `Io` when no port can be listened on.
     pub fn new(options: NodeOptions) -> Result<Self> {
         let from_environment = |key| std::env::var(key).ok().filter(|value| !value.is_empty());
         let uri = options.master_uri.or_else(|| from_environment("ROS_MASTER_URI"));
@@ -99,8 +100,8 @@ impl Node {
     /// Publishes `topic`. Asked again with the same type it shares the connections.
     ///
     /// # Errors
-    /// `InvalidParam` for names or types that are not valid or clash, `Network` once the node is shut down. A master
-    /// that does not answer is told as a problem, and told of the topic once it is back.
+    /// `InvalidParam` for names or types that are not valid or clash, `Network` once the node is shut down. A
+    /// master that does not answer is told as a problem, and told of the topic once it is back.
     pub fn advertise(&self, topic: &str, kind: TopicType, options: PublisherOptions) -> Result<Publisher> {
         Publisher::new(&self.graph, &self.resolve(topic)?, kind, options)
     }
@@ -118,8 +119,8 @@ impl Node {
         Subscription::new(&self.graph, &self.resolve(topic)?, kind, options)
     }
 
-    /// Offers `service`. `handler` gets a request and gives the response, or the text of an error; it is called from
-    /// a thread for each client.
+    /// Offers `service`. `handler` gets a request and gives the response, or the text of an error; it is
+    /// called from a thread for each client.
     ///
     /// # Errors
     /// As [`Node::advertise`].

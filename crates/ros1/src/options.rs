@@ -71,16 +71,17 @@ impl NodeOptions {
         self
     }
 
-    /// Calls `hook` with what goes wrong in the background: a clash of types, a peer that talks nonsense, a master
-    /// that is gone. It is called from the node's threads and should return soon. Without it nothing is told.
+    /// Calls `hook` with what goes wrong in the background: a clash of types, a peer that talks nonsense, a
+    /// master that is gone. It is called from the node's threads and should return soon. Without it nothing
+    /// is told.
     #[must_use]
     pub fn on_problem(mut self, hook: impl Fn(Error) + Send + Sync + 'static) -> Self {
         self.on_problem = Arc::new(hook);
         self
     }
 
-    /// Calls `hook` once with the reason when the node has been shut down: by `rosnode kill`, by another node of the
-    /// same name, or by its owner.
+    /// Calls `hook` once with the reason when the node has been shut down: by `rosnode kill`, by another node
+    /// of the same name, or by its owner.
     #[must_use]
     pub fn on_shutdown(mut self, hook: impl Fn(&str) + Send + Sync + 'static) -> Self {
         self.on_shutdown = Arc::new(hook);

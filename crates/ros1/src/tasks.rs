@@ -156,8 +156,8 @@ impl Tasks {
         lock(&self.state).listeners.push(address);
     }
 
-    /// Asks every thread to end, and waits for them: as long as `grace` for those that still send, a second more for
-    /// the rest.
+    /// Asks every thread to end, and waits for them: as long as `grace` for those that still send, a second
+    /// more for the rest.
     pub fn stop(&self, grace: Duration) {
         let (running, listeners) = {
             let mut state = lock(&self.state);

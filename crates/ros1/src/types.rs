@@ -9,7 +9,8 @@ pub struct TopicType {
     pub name: String,
     /// 32 letters, lower case; `*` of a subscriber takes any.
     pub md5sum: String,
-    /// The definition with those of all types in it, as `gendeps --cat` makes it. May be empty for a subscriber.
+    /// The definition with those of all types in it, as `gendeps --cat` makes it. May be empty for a
+    /// subscriber.
     pub definition: String,
 }
 

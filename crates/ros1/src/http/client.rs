@@ -14,7 +14,8 @@ use crate::xml_rpc::{response_from_xml, xml_from_call};
 /// Calls `method` of the server at `uri`, which has `time` to be connected to and as much again to answer.
 ///
 /// # Errors
-/// `Network` when the peer does not answer, `Format` when it answers something else, `Unsupported` for a fault.
+/// `Network` when the peer does not answer, `Format` when it answers something else, `Unsupported` for a
+/// fault.
 pub(crate) fn call(
     uri: &HttpUri,
     method: &str,

@@ -7,8 +7,11 @@ use opendr_engine::{Error, Result};
 /// The first line and the fields of any request, in bytes.
 const MOST_HEAD: u64 = 16 << 10;
 
-/// The body of any call: a robot's description on the parameter server is a few megabytes.
-const MOST_BODY: u64 = 64 << 20;
+/// The body of an answer: all parameters of a master are a few megabytes.
+const MOST_ANSWER: u64 = 64 << 20;
+
+/// The body of a request, which anybody may send, many at a time.
+const MOST_REQUEST: u64 = 8 << 20;
 
 /// What came in.
 #[derive(Debug, PartialEq)]
@@ -20,7 +23,8 @@ pub(crate) struct HttpMessage {
     pub body: Vec<u8>,
 }
 
-/// The next message, or nothing at the connection's end. A response may leave out its length, a request may not.
+/// The next message, or nothing at the connection's end. A response may leave out its length, a request may
+/// not.
 ///
 /// # Errors
 /// `Format` for anything but HTTP or more than is allowed, `Network` when the peer breaks off or is too slow.
@@ -28,6 +32,7 @@ pub(crate) fn read_message(stream: &mut impl BufRead) -> Result<Option<HttpMessa
     let mut head = stream.take(MOST_HEAD);
     let Some(first_line) = line(&mut head)? else { return Ok(None) };
     let is_response = first_line.starts_with("HTTP/");
+    let most = if is_response { MOST_ANSWER } else { MOST_REQUEST };
     let mut stays_open = first_line.contains("HTTP/1.1");
     let mut length = None;
     loop {
@@ -38,7 +43,7 @@ pub(crate) fn read_message(stream: &mut impl BufRead) -> Result<Option<HttpMessa
         let (name, value) = field.split_once(':').unwrap_or((&field, ""));
         let value = value.trim();
         if name.eq_ignore_ascii_case("content-length") {
-            let told = value.parse::<u64>().ok().filter(|told| *told <= MOST_BODY);
+            let told = value.parse::<u64>().ok().filter(|told| *told <= most);
             length =
                 Some(told.ok_or_else(|| Error::format(format!("a body of {value:.40?} bytes over HTTP")))?);
         } else if name.eq_ignore_ascii_case("connection") {
@@ -58,7 +63,7 @@ pub(crate) fn read_message(stream: &mut impl BufRead) -> Result<Option<HttpMessa
         }
         None if is_response => {
             stays_open = false;
-            stream.take(MOST_BODY).read_to_end(&mut body).map_err(network)?;
+            stream.take(most).read_to_end(&mut body).map_err(network)?;
         }
         None => return Err(Error::format("a request without Content-Length over HTTP")),
     }

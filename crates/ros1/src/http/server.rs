@@ -2,6 +2,7 @@
 
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
+use std::sync::Mutex;
 use std::time::Duration;
 
 use opendr_engine::{ErrorKind, Result};
@@ -9,10 +10,14 @@ use opendr_engine::{ErrorKind, Result};
 use super::read_message;
 use crate::ParameterValue;
 use crate::connection::Timed;
+use crate::lock::lock;
 use crate::xml_rpc::{Fault, call_from_xml, xml_from_fault, xml_from_response};
 
 /// A connection without a call is closed after this time.
 const IDLE_TIME: Duration = Duration::from_secs(60);
+
+/// One call is read at a time, for a call in parts takes many times its length.
+static READING: Mutex<()> = Mutex::new(());
 
 /// A call must have come in whole within this time.
 const CALL_TIME: Duration = Duration::from_secs(10);
@@ -46,7 +51,10 @@ pub(crate) fn serve_connection(
         if !request.first_line.starts_with("POST ") {
             return respond(stream, "405 Method Not Allowed", "send XML-RPC by POST", false);
         }
-        let body = match call_from_xml(&request.body) {
+        let reading = lock(&READING);
+        let call = call_from_xml(&request.body);
+        drop(reading);
+        let body = match call {
             Ok(call) => match answer(&call.method, call.params) {
                 Ok(value) => {
                     xml_from_response(&value).unwrap_or_else(|error| xml_from_fault(1, &error.to_string()))

@@ -10,7 +10,8 @@ impl Node {
     /// The parameter `key`; a namespace is a struct.
     ///
     /// # Errors
-    /// `NotFound` when it is not set, `InvalidParam` for a name that is not valid, `Network` without a master.
+    /// `NotFound` when it is not set, `InvalidParam` for a name that is not valid, `Network` without a
+    /// master.
     pub fn parameter(&self, key: &str) -> Result<ParameterValue> {
         self.graph.master.call("getParam", &[self.resolve(key)?.into()])
     }
@@ -74,7 +75,8 @@ impl Node {
     }
 
     /// Calls `changed` with the full name and the new value whenever `key` or a parameter below it changes; a
-    /// parameter that was taken away is an empty struct. Returns the value of now, an empty struct where there is none.
+    /// parameter that was taken away is an empty struct. Returns the value of now, an empty struct where
+    /// there is none.
     ///
     /// # Errors
     /// As [`Node::parameter`].

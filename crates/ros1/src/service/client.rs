@@ -42,8 +42,8 @@ impl ServiceClient {
     /// Sends `request` and waits for the response. Calls of several threads come one after the other.
     ///
     /// # Errors
-    /// `NotFound` when there is no such service, `Network` when it does not answer in time, `InvalidInput` when its
-    /// type is another, `Unsupported` with the service's own words when it fails.
+    /// `NotFound` when there is no such service, `Network` when it does not answer in time, `InvalidInput`
+    /// when its type is another, `Unsupported` with the service's own words when it fails.
     pub fn call(&self, request: &[u8]) -> Result<Vec<u8>> {
         let mut connection = lock(&self.connection);
         let kept = connection.take().filter(is_usable);
@@ -80,8 +80,8 @@ impl ServiceClient {
         let sum = header.get("md5sum").unwrap_or("*");
         if !agree(sum, &self.kind.md5sum) {
             return Err(Error::invalid_input(format!(
-                "it is {} with md5 sum {sum:.40}, but this node expects {} with {}; build both against the same \
-                 definition",
+                "it is {} with md5 sum {sum:.40}, but this node expects {} with {}; build both against \
+                 the same definition",
                 header.get("type").unwrap_or("of a type it does not tell"),
                 self.kind.name,
                 self.kind.md5sum

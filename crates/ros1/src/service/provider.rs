@@ -48,8 +48,8 @@ impl Service {
         let sum = header.need("md5sum")?;
         if !agree(sum, &self.kind.md5sum) {
             let error = Error::invalid_input(format!(
-                "{} asked for service {} with md5 sum {sum:.40}, but it is {} with {}; build both against the same \
-                 definition",
+                "{} asked for service {} with md5 sum {sum:.40}, but it is {} with {}; build \
+                 both against the same definition",
                 header.get("callerid").unwrap_or("a client"),
                 self.name,
                 self.kind.name,

@@ -21,8 +21,8 @@ pub(crate) fn read_length(stream: &mut impl Read) -> io::Result<Option<u32>> {
     Ok(Some(u32::from_le_bytes(length)))
 }
 
-/// Fills `buffer` with the next `length` bytes. It grows to twice what has arrived, never to what is announced; what
-/// room it has from earlier messages is used as it is.
+/// Fills `buffer` with the next `length` bytes. It grows to twice what has arrived, never to what is
+/// announced; what room it has from earlier messages is used as it is.
 pub(crate) fn read_body(stream: &mut impl Read, length: usize, buffer: &mut Vec<u8>) -> io::Result<()> {
     buffer.truncate(length);
     let mut filled = 0;

@@ -25,7 +25,8 @@ impl Header {
         Self::new([("error", text)])
     }
 
-    /// The fields in `bytes`, which come after the header's length. Text that is not UTF-8 is read with marks.
+    /// The fields in `bytes`, which come after the header's length. Text that is not UTF-8 is read with
+    /// marks.
     ///
     /// # Errors
     /// `Format` for a field that leaves `bytes` or has no `=`.
@@ -85,7 +86,8 @@ impl Header {
     /// Reads the header that a connection starts with.
     ///
     /// # Errors
-    /// `Format` for anything but a header of at most 1 MB, `Network` for a peer that breaks off or is too slow.
+    /// `Format` for anything but a header of at most 1 MB, `Network` for a peer that breaks off or is too
+    /// slow.
     pub fn read(stream: &mut Timed<'_>) -> Result<Self> {
         let broken = |error| Error::network("the peer broke off before its TCPROS header").with_source(error);
         let mut length = [0; 4];
@@ -120,8 +122,8 @@ mod tests {
     proptest! {
         #[test]
         fn headers_come_back(fields: Vec<(String, String)>) {
-            let fields: Vec<_> = fields.into_iter().map(|(name, value)| (name.replace('=', ""), value)).collect();
-            let header = Header(fields);
+            let named = fields.into_iter().map(|(name, value)| (name.replace('=', ""), value));
+            let header = Header(named.collect());
             prop_assert_eq!(Header::from_bytes(&header.to_bytes()[4..]).unwrap(), header);
         }
 

@@ -205,7 +205,8 @@ mod tests {
         assert_eq!(*message.bytes, [3]);
         let place = message.bytes.as_ptr();
         drop(message);
-        assert_eq!(inbox.buffer(1).as_ptr(), place);
+        let again = inbox.buffer(1);
+        assert_eq!(again.as_ptr(), place);
         assert_eq!(inbox.pop_newest().unwrap().bytes.into_vec(), [4]);
         assert!(inbox.pop(Some(Instant::now())).is_none());
         inbox.close();

@@ -22,7 +22,8 @@ use crate::types::agree;
 /// The first wait before connecting again, doubled up to the last.
 const WAITS: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
-/// A connection to one publisher, made again whenever it breaks, with what getBusStats and getBusInfo tell of it.
+/// A connection to one publisher, made again whenever it breaks, with what getBusStats and getBusInfo tell of
+/// it.
 #[derive(Debug)]
 pub(crate) struct Link {
     pub id: u32,
@@ -153,8 +154,8 @@ impl Link {
         let (md5sum, type_name) = (header.need("md5sum")?, header.need("type")?);
         if !agree(md5sum, &kind.md5sum) || !agree(type_name, &kind.name) {
             return Err(Error::invalid_input(format!(
-                "the publisher sends {type_name:.80} with md5 sum {md5sum:.40}, but this node expects {} with {}; \
-                 build both against the same definition",
+                "the publisher sends {type_name:.80} with md5 sum {md5sum:.40}, but this node expects {} \
+                 with {}; build both against the same definition",
                 kind.name, kind.md5sum
             )));
         }

@@ -144,11 +144,10 @@ impl Publication {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "{} asked for {} as {name:.80} with md5 sum {sum:.40}, but {} publishes {} with {}; build both against \
-             the same definition",
+            "{} asked for {} as {name:.80} with md5 sum {sum:.40}, but this node publishes {} with {}; \
+             build both against the same definition",
             header.get("callerid").unwrap_or("a subscriber"),
             self.topic,
-            "this node",
             self.kind.name,
             self.kind.md5sum
         )))

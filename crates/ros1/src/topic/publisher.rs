@@ -75,7 +75,8 @@ impl Publisher {
     /// Queues a copy of `message` for every subscriber; never waits for one.
     ///
     /// # Errors
-    /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` once the node is shut down.
+    /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` once the node is
+    /// shut down.
     pub fn publish(&self, message: &[u8]) -> Result<()> {
         self.check(message.len())?;
         if !self.publication.is_heard() && !self.graph.is_ended() {

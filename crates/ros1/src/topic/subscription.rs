@@ -30,8 +30,8 @@ impl Default for SubscriberOptions {
 
 /// Messages of a topic, until it goes.
 ///
-/// Publishers are read from all the time; who takes messages too slowly misses the oldest, and never holds up a
-/// publisher.
+/// Publishers are read from all the time; who takes messages too slowly misses the oldest, and never holds up
+/// a publisher.
 pub struct Subscription {
     graph: Arc<Graph>,
     subscribed: Arc<Subscribed>,
@@ -83,8 +83,8 @@ impl Subscription {
         self.subscribed.inbox.pop_newest()
     }
 
-    /// Calls `take` with every message, on a thread of its own, until the listener goes. What comes in while it is
-    /// busy waits as the options say. A panic in it is told to `NodeOptions::on_problem`.
+    /// Calls `take` with every message, on a thread of its own, until the listener goes. What comes in while
+    /// it is busy waits as the options say. A panic in it is told to `NodeOptions::on_problem`.
     ///
     /// # Errors
     /// `Network` once the node is shut down, `Io` when the system has no more threads.
@@ -147,7 +147,8 @@ impl fmt::Debug for Subscription {
     }
 }
 
-/// A function that is called with every message of a topic, until this goes.
+/// A function that is called with every message of a topic, until this goes. A call that runs then is not
+/// waited for.
 #[derive(Debug)]
 pub struct Listener {
     subscription: Subscription,
