@@ -10,7 +10,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 19] = [
+pub const PARSERS: [(&str, Parser); 21] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("card_toml", card_toml),
@@ -30,6 +30,8 @@ pub const PARSERS: [(&str, Parser); 19] = [
     ("skeleton_text", skeleton_text),
     ("optuna_journal", optuna_journal),
     ("optuna_sqlite", optuna_sqlite),
+    ("xml_rpc", opendr_ros1::fuzzing::xml_rpc),
+    ("tcpros_header", opendr_ros1::fuzzing::tcpros_header),
 ];
 
 fn manifest_json(bytes: &[u8]) {

@@ -1,0 +1,187 @@
+//! What a node has on the ROS graph, shared by its handles and threads.
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Condvar, Mutex};
+use std::time::{Duration, Instant};
+
+use opendr_engine::{Error, ErrorKind, Result};
+
+use crate::ParameterValue;
+use crate::lock::{lock, wait};
+use crate::master::Master;
+use crate::name::Names;
+use crate::options::{ProblemHook, ShutdownHook};
+use crate::parameter::Watch;
+use crate::service::Service;
+use crate::tasks::Tasks;
+use crate::topic::{Publication, Subscribed};
+
+/// How long queued messages may take to go out when the node ends.
+const DRAIN_TIME: Duration = Duration::from_secs(1);
+
+/// Everything of a node.
+pub(crate) struct Graph {
+    pub names: Names,
+    pub master: Master,
+    /// How others reach this machine.
+    pub host: String,
+    /// Where the node's own XML-RPC server is reached.
+    pub api_uri: String,
+    pub tcp_port: u16,
+    pub max_message_bytes: usize,
+    pub tasks: Arc<Tasks>,
+    pub publications: Mutex<BTreeMap<String, Arc<Publication>>>,
+    pub subscriptions: Mutex<Vec<Arc<Subscribed>>>,
+    pub services: Mutex<BTreeMap<String, Arc<Service>>>,
+    pub watches: Mutex<Vec<Arc<Watch>>>,
+    /// Whether the master may miss something of ours.
+    pub unregistered: AtomicBool,
+    pub on_problem: ProblemHook,
+    pub on_shutdown: ShutdownHook,
+    pub next_id: AtomicU32,
+    pub ending: AtomicBool,
+    pub ended: Mutex<bool>,
+    pub has_ended: Condvar,
+}
+
+impl Graph {
+    /// Tells the owner what went wrong.
+    pub fn problem(&self, error: Error) {
+        // A hook that panics must not end the thread that told it.
+        catch_unwind(AssertUnwindSafe(|| (self.on_problem)(error))).ok();
+    }
+
+    /// Runs the owner's code; a panic in it is a problem, not the end of a thread.
+    pub fn guarded<T>(&self, what: &str, code: impl FnOnce() -> T) -> Option<T> {
+        let done = catch_unwind(AssertUnwindSafe(code));
+        if done.is_err() {
+            self.problem(Error::internal(format!("{what} panicked; its message is on standard error")));
+        }
+        done.ok()
+    }
+
+    /// A number for a connection.
+    pub fn connection_id(&self) -> u32 {
+        self.next_id.fetch_add(1, Ordering::Relaxed)
+    }
+
+    /// Registers something: a master that does not answer is a problem told, and asked again once it is
+    /// there.
+    ///
+    /// # Errors
+    /// What the master answered, when it said no.
+    pub fn register(&self, method: &str, params: &[ParameterValue]) -> Result<Option<ParameterValue>> {
+        match self.master.call(method, params) {
+            Ok(value) => Ok(Some(value)),
+            Err(error) if error.kind() == ErrorKind::Network => {
+                self.unregistered.store(true, Ordering::Release);
+                self.problem(error);
+                Ok(None)
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Takes something back; a master that is gone has forgotten it anyway.
+    pub fn unregister(&self, method: &str, params: &[ParameterValue]) {
+        if !self.is_ended() {
+            self.master.call_within(method, params, Duration::from_secs(2)).ok();
+        }
+    }
+
+    /// Registers everything again, with a master that may know nothing of it.
+    ///
+    /// # Errors
+    /// `Network` when the master is gone meanwhile.
+    pub fn register_all(&self) -> Result<()> {
+        let publications: Vec<_> = lock(&self.publications).values().cloned().collect();
+        let subscriptions: Vec<_> = lock(&self.subscriptions).clone();
+        let services: Vec<_> = lock(&self.services).values().cloned().collect();
+        let watches: Vec<_> = lock(&self.watches).clone();
+        let each = publications.iter().map(|publication| publication.register(self));
+        let each = each.chain(services.iter().map(|service| service.register(self)));
+        let each = each.chain(watches.iter().map(|watch| watch.register(self).map(|_| ())));
+        let errors = each.filter_map(Result::err).collect::<Vec<_>>();
+        errors.into_iter().for_each(|error| self.problem(error));
+        for subscribed in subscriptions {
+            if let Err(error) = subscribed.register() {
+                self.problem(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the node is being shut down or was.
+    pub fn is_ended(&self) -> bool {
+        self.ending.load(Ordering::Acquire)
+    }
+
+    /// Waits until the node was shut down, `time` at most; tells whether it was.
+    pub fn wait_for_end(&self, time: Option<Duration>) -> bool {
+        let until = time.and_then(|time| Instant::now().checked_add(time));
+        let mut ended = lock(&self.ended);
+        while !*ended {
+            let left = match until {
+                Some(until) => until.saturating_duration_since(Instant::now()),
+                None => Duration::from_secs(3600),
+            };
+            if left.is_zero() {
+                return false;
+            }
+            ended = wait(&self.has_ended, ended, left);
+        }
+        true
+    }
+
+    /// Takes everything back and ends every thread.
+    pub fn shut_down(&self, reason: &str) {
+        if self.ending.swap(true, Ordering::AcqRel) {
+            return;
+        }
+        self.take_all_back();
+        let publications: Vec<_> = lock(&self.publications).values().cloned().collect();
+        publications.iter().for_each(|publication| publication.close());
+        lock(&self.subscriptions).iter().for_each(|subscribed| subscribed.close());
+        self.tasks.stop(DRAIN_TIME);
+        lock(&self.publications).clear();
+        lock(&self.subscriptions).clear();
+        lock(&self.services).clear();
+        lock(&self.watches).clear();
+        self.guarded("the hook for the node's end", || (self.on_shutdown)(reason));
+        *lock(&self.ended) = true;
+        self.has_ended.notify_all();
+    }
+
+    fn take_all_back(&self) {
+        let api = || ParameterValue::from(self.api_uri.as_str());
+        let mut calls = Vec::new();
+        calls
+            .extend(lock(&self.publications).keys().map(|name| ("unregisterPublisher", name.clone(), api())));
+        let topics =
+            lock(&self.subscriptions).iter().map(|subscribed| subscribed.topic.clone()).collect::<Vec<_>>();
+        calls.extend(topics.into_iter().map(|name| ("unregisterSubscriber", name, api())));
+        let service = ParameterValue::from(self.service_uri());
+        calls.extend(
+            lock(&self.services).keys().map(|name| ("unregisterService", name.clone(), service.clone())),
+        );
+        let keys = lock(&self.watches).iter().map(|watch| watch.key.clone()).collect::<Vec<_>>();
+        for (method, name, address) in calls {
+            let params = [name.into(), address];
+            if let Err(error) = self.master.call_within(method, &params, Duration::from_secs(1))
+                && error.kind() == ErrorKind::Network
+            {
+                return; // The master is gone, and with it what it knew.
+            }
+        }
+        for key in keys {
+            self.master.call_within("unsubscribeParam", &[api(), key.into()], Duration::from_secs(1)).ok();
+        }
+    }
+
+    /// Where the node's services are reached.
+    pub fn service_uri(&self) -> String {
+        format!("rosrpc://{}:{}", crate::http::host_in_uri(&self.host), self.tcp_port)
+    }
+}

@@ -1,0 +1,7 @@
+//! The master's parameter server.
+
+mod client;
+mod watch;
+
+pub use watch::ParameterWatch;
+pub(crate) use watch::{Watch, tell};

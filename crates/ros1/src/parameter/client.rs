@@ -1,0 +1,90 @@
+//! Getting and setting parameters.
+
+use opendr_engine::{Error, ErrorKind, Result};
+
+use super::ParameterWatch;
+use crate::master::CALL_TIME;
+use crate::{Node, ParameterValue};
+
+impl Node {
+    /// The parameter `key`; a namespace is a struct.
+    ///
+    /// # Errors
+    /// `NotFound` when it is not set, `InvalidParam` for a name that is not valid, `Network` without a
+    /// master.
+    pub fn parameter(&self, key: &str) -> Result<ParameterValue> {
+        self.graph.master.call("getParam", &[self.resolve(key)?.into()])
+    }
+
+    /// The parameter `key`, or nothing when it is not set.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a name that is not valid, `Network` without a master.
+    pub fn parameter_if_set(&self, key: &str) -> Result<Option<ParameterValue>> {
+        match self.parameter(key) {
+            Ok(value) => Ok(Some(value)),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Sets the parameter `key`; a struct replaces a whole namespace.
+    ///
+    /// # Errors
+    /// `InvalidInput` for text that XML cannot hold, else as [`Node::parameter`].
+    pub fn set_parameter(&self, key: &str, value: impl Into<ParameterValue>) -> Result<()> {
+        self.graph.master.call("setParam", &[self.resolve(key)?.into(), value.into()]).map(|_| ())
+    }
+
+    /// Whether the parameter `key` is set.
+    ///
+    /// # Errors
+    /// As [`Node::parameter`].
+    pub fn has_parameter(&self, key: &str) -> Result<bool> {
+        let answer = self.graph.master.call("hasParam", &[self.resolve(key)?.into()])?;
+        answer.as_bool().ok_or_else(|| Error::format("hasParam of the master answered no truth value"))
+    }
+
+    /// Takes the parameter `key` away.
+    ///
+    /// # Errors
+    /// As [`Node::parameter`].
+    pub fn delete_parameter(&self, key: &str) -> Result<()> {
+        self.graph.master.call("deleteParam", &[self.resolve(key)?.into()]).map(|_| ())
+    }
+
+    /// The full name of the nearest parameter `key`, looked for from the node's namespace upwards.
+    ///
+    /// # Errors
+    /// As [`Node::parameter`].
+    pub fn search_parameter(&self, key: &str) -> Result<Option<String>> {
+        self.graph.names.resolve(key)?;
+        match self.graph.master.call_within("searchParam", &[key.into()], CALL_TIME) {
+            Ok(found) => Ok(found.as_str().map(str::to_owned)),
+            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// The full names of all parameters.
+    ///
+    /// # Errors
+    /// `Network` without a master.
+    pub fn parameter_names(&self) -> Result<Vec<String>> {
+        self.graph.master.call_for_texts("getParamNames", &[])
+    }
+
+    /// Calls `changed` with the full name and the new value whenever `key` or a parameter below it changes; a
+    /// parameter that was taken away is an empty struct. Returns the value of now, an empty struct where
+    /// there is none.
+    ///
+    /// # Errors
+    /// As [`Node::parameter`].
+    pub fn watch_parameter(
+        &self,
+        key: &str,
+        changed: impl Fn(&str, &ParameterValue) + Send + Sync + 'static,
+    ) -> Result<(ParameterWatch, ParameterValue)> {
+        ParameterWatch::new(&self.graph, &self.resolve(key)?, Box::new(changed))
+    }
+}

@@ -1,0 +1,142 @@
+//! Calling services.
+
+use std::fmt;
+use std::io::Read;
+use std::net::TcpStream;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use opendr_engine::{Error, Result, ResultExt};
+
+use super::ANSWER_TIME;
+use crate::ServiceType;
+use crate::connection::{HANDSHAKE_TIME, Timed, connect};
+use crate::graph::Graph;
+use crate::http::HttpUri;
+use crate::lock::lock;
+use crate::tcpros::{Header, read_body, read_length, write_frame};
+use crate::types::agree;
+
+/// Calls one service, over one connection that stays open; it is made again when the service was restarted.
+pub struct ServiceClient {
+    graph: Arc<Graph>,
+    name: String,
+    kind: ServiceType,
+    time: Duration,
+    connection: Mutex<Option<TcpStream>>,
+}
+
+impl ServiceClient {
+    /// Will call `name`, a full name.
+    pub(crate) fn new(graph: &Arc<Graph>, name: String, kind: ServiceType) -> Self {
+        Self { graph: Arc::clone(graph), name, kind, time: ANSWER_TIME, connection: Mutex::default() }
+    }
+
+    /// Lets an answer take `time`, a minute otherwise.
+    #[must_use]
+    pub fn with_timeout(mut self, time: Duration) -> Self {
+        self.time = time;
+        self
+    }
+
+    /// Sends `request` and waits for the response. Calls of several threads come one after the other.
+    ///
+    /// # Errors
+    /// `NotFound` when there is no such service, `Network` when it does not answer in time, `InvalidInput`
+    /// when its type is another, `Unsupported` with the service's own words when it fails.
+    pub fn call(&self, request: &[u8]) -> Result<Vec<u8>> {
+        let mut connection = lock(&self.connection);
+        let kept = connection.take().filter(is_usable);
+        let asked = match kept {
+            Some(stream) => Ok(stream),
+            None => self.open(true),
+        };
+        let outcome = asked.and_then(|stream| Ok((self.ask(&stream, request)?, stream)));
+        let (answer, stream) = outcome.context(|| format!("calling service {}", self.name))?;
+        *connection = Some(stream);
+        answer.map_err(|text| Error::unsupported(format!("service {} failed: {text:.1000}", self.name)))
+    }
+
+    pub(crate) fn call_once(&self, request: &[u8]) -> Result<Vec<u8>> {
+        let answer = self.open(false).and_then(|stream| self.ask(&stream, request));
+        let answer = answer.context(|| format!("calling service {}", self.name))?;
+        answer.map_err(|text| Error::unsupported(format!("service {} failed: {text:.1000}", self.name)))
+    }
+
+    fn open(&self, persistent: bool) -> Result<TcpStream> {
+        let stream = connect_to(&self.graph, &self.name)?;
+        Header::new([
+            ("callerid", self.graph.names.node()),
+            ("service", &self.name),
+            ("type", &self.kind.name),
+            ("md5sum", &self.kind.md5sum),
+            ("persistent", if persistent { "1" } else { "0" }),
+        ])
+        .write(&stream)?;
+        let header = Header::read(&mut Timed::new(&stream, HANDSHAKE_TIME))?;
+        if let Some(error) = header.get("error") {
+            return Err(Error::invalid_input(format!("it refused the connection: {error:.500}")));
+        }
+        let sum = header.get("md5sum").unwrap_or("*");
+        if !agree(sum, &self.kind.md5sum) {
+            return Err(Error::invalid_input(format!(
+                "it is {} with md5 sum {sum:.40}, but this node expects {} with {}; build both against \
+                 the same definition",
+                header.get("type").unwrap_or("of a type it does not tell"),
+                self.kind.name,
+                self.kind.md5sum
+            )));
+        }
+        Ok(stream)
+    }
+
+    /// The response, or the service's words for why there is none.
+    fn ask(&self, stream: &TcpStream, request: &[u8]) -> Result<Result<Vec<u8>, String>> {
+        let broken = |error| Error::network("it broke off or took too long").with_source(error);
+        stream.set_write_timeout(Some(self.time))?;
+        write_frame(&mut &*stream, b"", request).map_err(broken)?;
+        let mut reader = Timed::new(stream, self.time);
+        let mut code = [0];
+        reader.read_exact(&mut code).map_err(broken)?;
+        let length = read_length(&mut reader).map_err(broken)?;
+        let length = length.ok_or_else(|| Error::network("it broke off within its answer"))? as usize;
+        if length > self.graph.max_message_bytes {
+            return Err(Error::format(format!(
+                "an answer of {length} bytes; at most {} are taken (NodeOptions::max_message_bytes)",
+                self.graph.max_message_bytes
+            )));
+        }
+        let mut answer = Vec::new();
+        read_body(&mut reader, length, &mut answer).map_err(broken)?;
+        Ok(if code == [0] { Err(String::from_utf8_lossy(&answer).into_owned()) } else { Ok(answer) })
+    }
+}
+
+impl fmt::Debug for ServiceClient {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ServiceClient").field(&self.name).finish()
+    }
+}
+
+/// Whether a service that sends nothing unasked has left its connection open.
+fn is_usable(stream: &TcpStream) -> bool {
+    stream.set_nonblocking(true).is_ok()
+        && matches!(stream.peek(&mut [0]), Err(error) if error.kind() == std::io::ErrorKind::WouldBlock)
+        && stream.set_nonblocking(false).is_ok()
+}
+
+/// Whether service `name` answers.
+pub(crate) fn probe(graph: &Graph, name: &str) -> Result<()> {
+    let stream = connect_to(graph, name)?;
+    let caller = graph.names.node();
+    Header::new([("callerid", caller), ("service", name), ("md5sum", "*"), ("probe", "1")]).write(&stream)?;
+    Header::read(&mut Timed::new(&stream, HANDSHAKE_TIME)).map(|_| ())
+}
+
+fn connect_to(graph: &Graph, name: &str) -> Result<TcpStream> {
+    let uri = graph.master.call("lookupService", &[name.into()])?;
+    let uri = uri.as_str().unwrap_or_default();
+    let place = HttpUri::parse(uri, "rosrpc://")
+        .ok_or_else(|| Error::format(format!("the master says it is at {uri:.200?}, which is no address")))?;
+    connect(&place.host, place.port, HANDSHAKE_TIME)
+}

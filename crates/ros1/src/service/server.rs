@@ -1,0 +1,57 @@
+//! The owner's handle on a service that is offered.
+
+use std::fmt;
+use std::sync::Arc;
+
+use opendr_engine::{Error, Result};
+
+use super::Service;
+use super::provider::Handler;
+use crate::ServiceType;
+use crate::graph::Graph;
+use crate::lock::lock;
+
+/// A service that is offered until this goes.
+pub struct ServiceServer {
+    graph: Arc<Graph>,
+    service: Arc<Service>,
+}
+
+impl ServiceServer {
+    /// Offers `name`, a full name.
+    pub(crate) fn new(graph: &Arc<Graph>, name: &str, kind: ServiceType, handler: Handler) -> Result<Self> {
+        kind.check_concrete()?;
+        let service = Arc::new(Service::new(name, kind, handler));
+        let mut services = lock(&graph.services);
+        if graph.is_ended() {
+            return Err(Error::network("the node was shut down; create a new one"));
+        }
+        if services.contains_key(name) {
+            return Err(Error::invalid_param(format!("service {name} is offered by this node already")));
+        }
+        services.insert(name.to_owned(), Arc::clone(&service));
+        drop(services);
+        // A refused service leaves again when `server` goes.
+        let server = Self { graph: Arc::clone(graph), service };
+        server.service.register(graph)?;
+        Ok(server)
+    }
+
+    /// The service's full name.
+    pub fn name(&self) -> &str {
+        &self.service.name
+    }
+}
+
+impl Drop for ServiceServer {
+    fn drop(&mut self) {
+        lock(&self.graph.services).retain(|_, other| !Arc::ptr_eq(other, &self.service));
+        self.graph.unregister("unregisterService", &[self.name().into(), self.graph.service_uri().into()]);
+    }
+}
+
+impl fmt::Debug for ServiceServer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("ServiceServer").field(&self.name()).finish()
+    }
+}

@@ -1,0 +1,184 @@
+//! A connection to one publisher.
+
+use std::io::BufReader;
+use std::net::TcpStream;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use opendr_engine::{Error, ErrorKind, Result};
+
+use super::{PublisherInfo, Subscribed};
+use crate::ParameterValue;
+use crate::connection::{HANDSHAKE_TIME, Timed, connect};
+use crate::graph::Graph;
+use crate::http::HttpUri;
+use crate::lock::lock;
+use crate::master::{CALL_TIME, call_api};
+use crate::tasks::Cancel;
+use crate::tcpros::{Header, read_body, read_length};
+use crate::types::agree;
+
+/// The first wait before connecting again, doubled up to the last.
+const WAITS: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
+
+/// A connection to one publisher, made again whenever it breaks, with what getBusStats and getBusInfo tell of
+/// it.
+#[derive(Debug)]
+pub(crate) struct Link {
+    pub id: u32,
+    /// The address of the publisher's XML-RPC server.
+    pub uri: String,
+    pub connected: AtomicBool,
+    pub received_bytes: AtomicU64,
+    pub received_messages: AtomicU64,
+    /// The two ends of the connection.
+    pub ends: Mutex<String>,
+    cancel: Mutex<Option<Arc<Cancel>>>,
+}
+
+impl Link {
+    /// Connects to the publisher at `uri`, on a thread of its own.
+    pub fn start(graph: &Arc<Graph>, subscribed: &Arc<Subscribed>, uri: &str) -> Result<Arc<Self>> {
+        let link = Arc::new(Self {
+            id: graph.connection_id(),
+            uri: uri.to_owned(),
+            connected: AtomicBool::new(false),
+            received_bytes: AtomicU64::new(0),
+            received_messages: AtomicU64::new(0),
+            ends: Mutex::default(),
+            cancel: Mutex::default(),
+        });
+        let (this, graph, subscribed) = (Arc::clone(&link), Arc::clone(graph), Arc::clone(subscribed));
+        let tasks = Arc::clone(&graph.tasks);
+        let cancel = tasks.spawn("subscriber", move |cancel| this.run(&graph, &subscribed, cancel))?;
+        *lock(&link.cancel) = Some(cancel);
+        Ok(link)
+    }
+
+    /// Ends the connection.
+    pub fn cancel(&self) {
+        if let Some(cancel) = &*lock(&self.cancel) {
+            cancel.cancel();
+        }
+    }
+
+    fn run(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) {
+        let mut pause = WAITS[0];
+        let mut told = String::new();
+        while !cancel.is_asked() {
+            let before = self.received_messages.load(Ordering::Relaxed);
+            let ended = self.receive(graph, subscribed, cancel);
+            self.connected.store(false, Ordering::Relaxed);
+            cancel.release();
+            if self.received_messages.load(Ordering::Relaxed) > before {
+                (pause, told) = (WAITS[0], String::new());
+            }
+            if let Err(error) = ended {
+                // A publisher that goes is no problem, and one problem is told once.
+                let text = error.to_string();
+                if error.kind() != ErrorKind::Network && text != told && !cancel.is_asked() {
+                    graph.problem(error.context(format!("receiving {} from {}", subscribed.topic, self.uri)));
+                }
+                told = text;
+            }
+            if cancel.wait(pause) {
+                return;
+            }
+            pause = (pause * 2).min(WAITS[1]);
+        }
+    }
+
+    fn receive(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) -> Result<()> {
+        let stream = self.open(graph, &subscribed.topic)?;
+        cancel.hold(&stream)?;
+        let publisher = Arc::new(self.greet(graph, subscribed, &stream)?);
+        stream.set_read_timeout(None)?;
+        *lock(&self.ends) = ends(&stream);
+        self.connected.store(true, Ordering::Relaxed);
+        let mut reader = BufReader::with_capacity(64 << 10, &stream);
+        let broken = |error| Error::network("the publisher broke off").with_source(error);
+        while let Some(length) = read_length(&mut reader).map_err(broken)? {
+            if length as usize > graph.max_message_bytes {
+                return Err(Error::format(format!(
+                    "a message of {length} bytes; at most {} are taken (NodeOptions::max_message_bytes)",
+                    graph.max_message_bytes
+                )));
+            }
+            let mut buffer = subscribed.inbox.buffer(length as usize);
+            read_body(&mut reader, length as usize, &mut buffer).map_err(broken)?;
+            subscribed.inbox.push(buffer, Arc::clone(&publisher));
+            self.received_messages.fetch_add(1, Ordering::Relaxed);
+            self.received_bytes.fetch_add(u64::from(length) + 4, Ordering::Relaxed);
+        }
+        Err(Error::network("the publisher closed the connection"))
+    }
+
+    /// Asks the publisher where its messages come from, and connects there.
+    fn open(&self, graph: &Graph, topic: &str) -> Result<TcpStream> {
+        let uri = HttpUri::new(&self.uri)?;
+        let protocols = ParameterValue::List(vec![ParameterValue::List(vec!["TCPROS".into()])]);
+        let params = [topic.into(), protocols];
+        let answer = call_api(&uri, graph.names.node(), "requestTopic", &params, CALL_TIME)
+            .map_err(|error| if error.kind() == ErrorKind::NotFound { not_yet(&error) } else { error })?;
+        match answer.as_list().unwrap_or_default() {
+            [
+                ParameterValue::String(protocol),
+                ParameterValue::String(host),
+                ParameterValue::Int(port),
+                ..,
+            ] if protocol == "TCPROS" => {
+                let port = u16::try_from(*port)
+                    .map_err(|_| Error::format(format!("the publisher names port {port} for TCPROS")))?;
+                connect(host, port, HANDSHAKE_TIME)
+            }
+            _ => Err(Error::unsupported("the publisher offers no TCPROS")),
+        }
+    }
+
+    fn greet(&self, graph: &Graph, subscribed: &Subscribed, stream: &TcpStream) -> Result<PublisherInfo> {
+        let kind = &subscribed.kind;
+        Header::new([
+            ("callerid", graph.names.node()),
+            ("topic", &subscribed.topic),
+            ("type", &kind.name),
+            ("md5sum", &kind.md5sum),
+            ("message_definition", &kind.definition),
+            ("tcp_nodelay", if subscribed.tcp_nodelay { "1" } else { "0" }),
+        ])
+        .write(stream)?;
+        let header = Header::read(&mut Timed::new(stream, HANDSHAKE_TIME))?;
+        if let Some(error) = header.get("error") {
+            return Err(Error::invalid_input(format!("the publisher refused the connection: {error:.500}")));
+        }
+        let (md5sum, type_name) = (header.need("md5sum")?, header.need("type")?);
+        if !agree(md5sum, &kind.md5sum) || !agree(type_name, &kind.name) {
+            return Err(Error::invalid_input(format!(
+                "the publisher sends {type_name:.80} with md5 sum {md5sum:.40}, but this node expects {} \
+                 with {}; build both against the same definition",
+                kind.name, kind.md5sum
+            )));
+        }
+        let field = |name| header.get(name).unwrap_or_default().to_owned();
+        Ok(PublisherInfo {
+            caller_id: field("callerid"),
+            uri: self.uri.clone(),
+            type_name: type_name.to_owned(),
+            md5sum: md5sum.to_owned(),
+            definition: field("message_definition"),
+            latching: header.get("latching") == Some("1"),
+        })
+    }
+}
+
+/// A node that has not come as far as its topic, or has left it, is no problem: it is asked again.
+fn not_yet(error: &Error) -> Error {
+    Error::network(error.to_string())
+}
+
+/// The two ends of a connection, as `rosnode info` reads them.
+pub(crate) fn ends(stream: &TcpStream) -> String {
+    let port = stream.local_addr().map(|address| address.port()).unwrap_or_default();
+    let peer = stream.peer_addr().map(|address| address.to_string()).unwrap_or_default();
+    format!("TCPROS connection on port {port} to [{peer} on socket]")
+}

@@ -1,0 +1,147 @@
+//! The owner's handle on a topic that is published.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use opendr_engine::{Error, Result};
+
+use super::Publication;
+use crate::TopicType;
+use crate::graph::Graph;
+use crate::lock::lock;
+
+/// How a topic is published.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PublisherOptions {
+    /// Whether a new subscriber gets the last message at once.
+    pub latched: bool,
+    /// Messages that wait for a slow subscriber before the oldest is dropped, at least 1.
+    pub queue_size: usize,
+}
+
+impl Default for PublisherOptions {
+    fn default() -> Self {
+        Self { latched: false, queue_size: 1 }
+    }
+}
+
+/// A topic that is published until the last handle on it goes; what is queued then has a moment to go out.
+pub struct Publisher {
+    graph: Arc<Graph>,
+    publication: Arc<Publication>,
+}
+
+impl Publisher {
+    /// Publishes `topic`, a full name.
+    pub(crate) fn new(
+        graph: &Arc<Graph>,
+        topic: &str,
+        kind: TopicType,
+        options: PublisherOptions,
+    ) -> Result<Self> {
+        kind.check_concrete()?;
+        if options.queue_size == 0 {
+            return Err(Error::invalid_param("a queue_size of 0; give at least 1, the newest message alone"));
+        }
+        let mut publications = lock(&graph.publications);
+        if graph.is_ended() {
+            return Err(Error::network("the node was shut down; create a new one"));
+        }
+        let publication = match publications.get(topic) {
+            Some(there) if there.kind.md5sum == kind.md5sum && there.kind.name == kind.name => {
+                there.handles.fetch_add(1, Ordering::Relaxed);
+                there.latched.fetch_or(options.latched, Ordering::Relaxed);
+                there.queue_size.fetch_max(options.queue_size, Ordering::Relaxed);
+                return Ok(Self { graph: Arc::clone(graph), publication: Arc::clone(there) });
+            }
+            Some(there) => {
+                return Err(Error::invalid_param(format!(
+                    "{topic} is published as {} by this node already, not as {}",
+                    there.kind.name, kind.name
+                )));
+            }
+            None => Arc::new(Publication::new(topic, kind, options.latched, options.queue_size)),
+        };
+        publications.insert(topic.to_owned(), Arc::clone(&publication));
+        drop(publications);
+        // A refused topic leaves again when `publisher` goes.
+        let publisher = Self { graph: Arc::clone(graph), publication };
+        publisher.publication.register(graph)?;
+        Ok(publisher)
+    }
+
+    /// Queues a copy of `message` for every subscriber; never waits for one.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a message longer than `NodeOptions::max_message_bytes`, `Network` once the node is
+    /// shut down.
+    pub fn publish(&self, message: &[u8]) -> Result<()> {
+        self.check(message.len())?;
+        if !self.publication.is_heard() && !self.graph.is_ended() {
+            return Ok(());
+        }
+        self.publication.publish(&self.publication.buffer(message))
+    }
+
+    /// As [`Publisher::publish`], without a copy.
+    ///
+    /// # Errors
+    /// As [`Publisher::publish`].
+    pub fn publish_owned(&self, message: Vec<u8>) -> Result<()> {
+        self.check(message.len())?;
+        self.publication.publish(&Arc::new(message))
+    }
+
+    fn check(&self, length: usize) -> Result<()> {
+        let most = self.graph.max_message_bytes.min(u32::MAX as usize);
+        if length <= most {
+            return Ok(());
+        }
+        Err(Error::invalid_input(format!(
+            "a message of {length} bytes on {}; at most {most} are allowed (NodeOptions::max_message_bytes)",
+            self.topic()
+        )))
+    }
+
+    /// The topic's full name.
+    pub fn topic(&self) -> &str {
+        &self.publication.topic
+    }
+
+    /// How many subscribers are connected.
+    pub fn subscriber_count(&self) -> usize {
+        self.publication.outboxes().len()
+    }
+
+    /// Waits until `count` subscribers are connected, `time` at most; tells whether they are.
+    pub fn wait_for_subscribers(&self, count: usize, time: Duration) -> bool {
+        self.publication.wait_for_subscribers(count, time)
+    }
+
+    /// How many messages slow subscribers have missed, summed over all of them.
+    pub fn dropped(&self) -> u64 {
+        self.publication.dropped.load(Ordering::Relaxed)
+    }
+}
+
+impl Drop for Publisher {
+    fn drop(&mut self) {
+        let mut publications = lock(&self.graph.publications);
+        if self.publication.handles.fetch_sub(1, Ordering::Relaxed) > 1 {
+            return;
+        }
+        publications.retain(|_, other| !Arc::ptr_eq(other, &self.publication));
+        drop(publications);
+        self.publication.close();
+        let params = [self.topic().into(), self.graph.api_uri.as_str().into()];
+        self.graph.unregister("unregisterPublisher", &params);
+    }
+}
+
+impl fmt::Debug for Publisher {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Publisher").field(&self.topic()).finish()
+    }
+}

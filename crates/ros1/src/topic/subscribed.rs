@@ -1,0 +1,108 @@
+//! A topic that the node subscribes to.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, Weak};
+
+use opendr_engine::{Error, Result};
+
+use super::inbox::Inbox;
+use super::link::Link;
+use crate::graph::Graph;
+use crate::lock::lock;
+use crate::{ParameterValue, TopicType};
+
+/// Publishers of one topic; a list of more is a mistake or an attack.
+const MOST_PUBLISHERS: usize = 256;
+
+/// A topic that the node subscribes to, with a link to each of its publishers.
+pub(crate) struct Subscribed {
+    pub topic: String,
+    pub kind: TopicType,
+    pub tcp_nodelay: bool,
+    pub inbox: Arc<Inbox>,
+    graph: Weak<Graph>,
+    /// Held while publishers change, so that an older list never replaces a newer one.
+    changing: Mutex<()>,
+    links: Mutex<BTreeMap<String, Arc<Link>>>,
+}
+
+impl Subscribed {
+    pub fn new(graph: &Arc<Graph>, topic: &str, kind: TopicType, tcp_nodelay: bool, inbox: Inbox) -> Self {
+        Self {
+            topic: topic.to_owned(),
+            kind,
+            tcp_nodelay,
+            inbox: Arc::new(inbox),
+            graph: Arc::downgrade(graph),
+            changing: Mutex::default(),
+            links: Mutex::default(),
+        }
+    }
+
+    /// Tells the master of the subscription, and connects to the publishers it answers with.
+    pub fn register(self: &Arc<Self>) -> Result<()> {
+        let Some(graph) = self.graph.upgrade() else { return Ok(()) };
+        let params =
+            [self.topic.as_str().into(), self.kind.name.as_str().into(), graph.api_uri.as_str().into()];
+        let _changing = lock(&self.changing);
+        if let Some(publishers) = graph.register("registerSubscriber", &params)? {
+            self.set_publishers(&graph, &uris(&publishers)?);
+        }
+        Ok(())
+    }
+
+    /// The master told of the publishers that there are now.
+    pub fn update(self: &Arc<Self>, publishers: &[String]) {
+        let _changing = lock(&self.changing);
+        if let Some(graph) = self.graph.upgrade() {
+            self.set_publishers(&graph, publishers);
+        }
+    }
+
+    fn set_publishers(self: &Arc<Self>, graph: &Arc<Graph>, uris: &[String]) {
+        if uris.len() > MOST_PUBLISHERS {
+            graph.problem(Error::unsupported(format!(
+                "{} publishers of {}; {MOST_PUBLISHERS} are listened to",
+                uris.len(),
+                self.topic
+            )));
+        }
+        let wanted = uris.iter().take(MOST_PUBLISHERS).collect::<std::collections::BTreeSet<_>>();
+        let mut links = lock(&self.links);
+        links.retain(|uri, link| {
+            let stays = wanted.contains(uri) && !self.inbox.is_closed();
+            if !stays {
+                link.cancel();
+            }
+            stays
+        });
+        for uri in wanted {
+            if !links.contains_key(uri) && !self.inbox.is_closed() {
+                match Link::start(graph, self, uri) {
+                    Ok(link) => drop(links.insert(uri.clone(), link)),
+                    Err(error) => graph.problem(error.context(format!("subscribing to {}", self.topic))),
+                }
+            }
+        }
+    }
+
+    /// The links there are.
+    pub fn links(&self) -> Vec<Arc<Link>> {
+        lock(&self.links).values().cloned().collect()
+    }
+
+    /// Ends every link, and what waits for messages.
+    pub fn close(&self) {
+        self.inbox.close();
+        for link in std::mem::take(&mut *lock(&self.links)).values() {
+            link.cancel();
+        }
+    }
+}
+
+/// The texts of a list.
+pub(crate) fn uris(value: &ParameterValue) -> Result<Vec<String>> {
+    let texts =
+        value.as_list().and_then(|list| list.iter().map(|uri| uri.as_str().map(str::to_owned)).collect());
+    texts.ok_or_else(|| Error::format("a list of publishers that holds something else than addresses"))
+}

@@ -1,0 +1,16 @@
+//! XML-RPC: values, calls and responses. Source: <http://xmlrpc.com/spec.md>.
+
+mod base64;
+mod reader;
+mod value;
+mod writer;
+
+pub(crate) use reader::{Fault, call_from_xml, response_from_xml};
+pub use value::ParameterValue;
+pub(crate) use writer::{xml_from_call, xml_from_fault, xml_from_response};
+
+/// Lists and structs within one another, read or written: far more than any parameter has.
+const MOST_NESTED: usize = 64;
+
+#[cfg(test)]
+mod tests;
