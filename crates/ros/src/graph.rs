@@ -48,6 +48,17 @@ pub enum Severity {
     Error,
 }
 
+impl Severity {
+    /// As ROS's log lines have it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Info => "INFO",
+            Self::Warn => "WARN",
+            Self::Error => "ERROR",
+        }
+    }
+}
+
 /// One node in a ROS.
 pub trait Graph: Send {
     /// The node's name with its namespace, e.g. `/opendr/nanodet`.

@@ -3,10 +3,12 @@
 //! A [`LearnerNode`] knows types and tables, never a learner: its topics follow from ports and outputs, its parameters from
 //! `Params`. It speaks through a [`Graph`], which ROS 2 and ROS 1 implement.
 
+mod clock;
 mod graph;
 mod names;
 mod node;
 mod parameter_table;
+mod ros1;
 mod ros2;
 mod ros_args;
 
@@ -15,4 +17,5 @@ pub use names::Names;
 pub use node::{Feeds, LearnerNode, NodeOptions, NodeParams, TopicOptions, default_topics};
 pub use parameter_table::ParameterTable;
 pub use ros_args::RosArgs;
+pub use ros1::Ros1Node;
 pub use ros2::{Ros2, Ros2Node, Ros2Options};

@@ -62,6 +62,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         demo::grammar(),
         #[cfg(feature = "ros")]
         ros::ros2(),
+        #[cfg(feature = "ros")]
+        ros::ros1(),
     ];
     if let Some((name, rest)) = arguments.get(1..).and_then(<[_]>::split_first)
         && let Some(command) = commands.iter_mut().find(|command| command.get_name() == name)
@@ -115,6 +117,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "demo" => demo::run(matches),
         #[cfg(feature = "ros")]
         "ros2" => ros::run_ros2(matches),
+        #[cfg(feature = "ros")]
+        "ros1" => ros::run_ros1(matches),
         _ => Ok(Outcome::Done),
     })
 }

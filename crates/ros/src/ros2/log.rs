@@ -6,7 +6,8 @@ use opendr_engine::Result;
 use opendr_messages::{MessageType, rcl_interfaces};
 use opendr_ros_bridge::time;
 
-use super::{Ros2Node, system_time_ns};
+use super::Ros2Node;
+use crate::clock::system_time_ns;
 use crate::{Graph as _, Log, Qos, Severity};
 
 /// As rclcpp offers `/rosout`.
@@ -16,12 +17,12 @@ pub(super) fn start(node: &mut Ros2Node) -> Result<Log> {
     let publisher = node.advertise("/rosout", MessageType::RclInterfacesLog, QOS)?;
     let name = node.full_name.trim_start_matches('/').replace('/', ".");
     Ok(Arc::new(move |severity, text| {
-        let (word, level) = match severity {
-            Severity::Info => ("INFO", rcl_interfaces::Log::INFO),
-            Severity::Warn => ("WARN", rcl_interfaces::Log::WARN),
-            Severity::Error => ("ERROR", rcl_interfaces::Log::ERROR),
+        let level = match severity {
+            Severity::Info => rcl_interfaces::Log::INFO,
+            Severity::Warn => rcl_interfaces::Log::WARN,
+            Severity::Error => rcl_interfaces::Log::ERROR,
         };
-        eprintln!("[{word}] [{name}]: {text}");
+        eprintln!("[{}] [{name}]: {text}", severity.name());
         let stamp = time(system_time_ns()).unwrap_or_default();
         let log = rcl_interfaces::Log {
             stamp,

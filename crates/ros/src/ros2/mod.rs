@@ -10,7 +10,7 @@ use std::pin::Pin;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 
 use futures::channel::oneshot;
 use futures::future::{Either, select};
@@ -22,6 +22,7 @@ use ros2_client::dds::rustdds::discovery::DiscoveredReaderData;
 use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
 
+use crate::clock::NO_SIM_TIME;
 use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger};
 use crate::{Names, ParameterTable};
 
@@ -110,9 +111,6 @@ pub struct Ros2Node {
     sim_time: Arc<AtomicI64>,
     log: Log,
 }
-
-/// While nobody asked for the simulation's time.
-const NO_SIM_TIME: i64 = i64::MIN;
 
 impl Ros2Node {
     /// Starts to answer: call it once everything is declared.
@@ -241,11 +239,7 @@ impl Graph for Ros2Node {
     }
 
     fn clock(&self) -> Clock {
-        let sim_time = self.sim_time.clone();
-        Arc::new(move || match sim_time.load(Ordering::Relaxed) {
-            NO_SIM_TIME => system_time_ns(),
-            time => time,
-        })
+        crate::clock::clock(self.sim_time.clone())
     }
 
     fn log(&self) -> Log {
@@ -302,12 +296,6 @@ impl Publisher for Ros2Publisher {
             }
         }
     }
-}
-
-/// Nanoseconds since 1970.
-fn system_time_ns() -> i64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-    i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)
 }
 
 #[cold]

@@ -17,8 +17,9 @@ use opendr_messages::{
 };
 use opendr_ros_bridge::time;
 
+use super::Ros2Node;
 use super::service::serve;
-use super::{Ros2Node, system_time_ns};
+use crate::clock::system_time_ns;
 use crate::{Graph as _, ParameterTable, Publisher, Qos};
 
 /// As rclcpp offers `/parameter_events`.

@@ -1,23 +1,41 @@
-//! `opendr ros2`: learners as nodes.
+//! `opendr ros2` and `opendr ros1`: learners as nodes.
 
 mod node;
+mod run;
 
 use clap::{ArgMatches, Command};
 use opendr::Result;
 
 use crate::exit::Outcome;
+use run::Ros;
 
 pub fn ros2() -> Command {
-    Command::new("ros2")
-        .about("Learners as nodes of ROS 2; no ROS is needed where they run")
+    grammar(Ros::Two, "Learners as nodes of ROS 2; no ROS is needed where they run")
+}
+
+pub fn ros1() -> Command {
+    grammar(Ros::One, "Learners as nodes of ROS 1; no ROS is needed where they run, a roscore somewhere")
+}
+
+fn grammar(ros: Ros, about: &'static str) -> Command {
+    Command::new(ros.name())
+        .about(about)
         .subcommand_required(true)
         .arg_required_else_help(true)
-        .subcommand(node::grammar())
+        .subcommand(run::grammar(ros))
 }
 
 pub fn run_ros2(matches: &ArgMatches) -> Result<Outcome> {
+    run_either(Ros::Two, matches)
+}
+
+pub fn run_ros1(matches: &ArgMatches) -> Result<Outcome> {
+    run_either(Ros::One, matches)
+}
+
+fn run_either(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     match matches.subcommand() {
-        Some(("run", matches)) => node::run(matches),
+        Some(("run", matches)) => run::run(ros, matches),
         _ => Ok(Outcome::Done),
     }
 }

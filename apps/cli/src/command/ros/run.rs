@@ -1,0 +1,191 @@
+//! `opendr ros2 run` and `opendr ros1 run`: one node a learner, several in one process.
+
+use std::ffi::OsString;
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::Result;
+use opendr::learner::AnyLearner;
+use opendr::params::Params as _;
+use opendr::ros::{
+    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, Ros2Node, Ros2Options, RosArgs, Severity,
+};
+
+use super::node::{node_grammar, options, set_parameters};
+use crate::exit::Outcome;
+use crate::progress_bar::{Bar, interrupted};
+use crate::{learner_flags, loading};
+
+/// Which ROS.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ros {
+    One,
+    Two,
+}
+
+impl Ros {
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::One => "ros1",
+            Self::Two => "ros2",
+        }
+    }
+
+    pub const fn examples(self) -> &'static str {
+        match self {
+            Self::One => {
+                "\
+Examples:
+  opendr ros1 run nanodet --image /camera/image_raw
+  opendr ros1 run nanodet --threshold 0.5 + yunet       two nodes; the picture is decoded once
+  opendr ros1 run nanodet --ros-args -r __ns:=/robot -r image_raw:=/camera/image_raw
+  opendr ros1 run LEARNER --help                        its topics and parameters"
+            }
+            Self::Two => {
+                "\
+Examples:
+  opendr ros2 run nanodet --image /camera/image_raw
+  opendr ros2 run nanodet --image /cam/compressed --image-message sensor_msgs/msg/CompressedImage
+  opendr ros2 run nanodet --threshold 0.5 + yunet       two nodes; the picture is decoded once
+  opendr ros2 run nanodet --ros-args -r __ns:=/robot -r image_raw:=/camera/image_raw -p threshold:=0.5
+  opendr ros2 run LEARNER --help                        its topics and parameters"
+            }
+        }
+    }
+}
+
+/// The id of the argument that holds everything after `run`.
+const WORDS: &str = "words";
+/// What stands between the nodes of one process.
+const NEXT: &str = "+";
+/// What begins the words that ROS's own tools write.
+const ROS_ARGS: &str = "--ros-args";
+
+pub fn grammar(ros: Ros) -> Command {
+    Command::new("run")
+        .about("Run learners as nodes: topics by type, live parameters, diagnostics, newest input first")
+        .disable_help_flag(true)
+        .arg(
+            Arg::new(WORDS)
+                .num_args(0..)
+                .trailing_var_arg(true)
+                .allow_hyphen_values(true)
+                .value_parser(value_parser!(OsString))
+                .value_name("LEARNER [FLAGS] [+ LEARNER [FLAGS]]... [--ros-args ...]"),
+        )
+        .after_help(ros.examples())
+}
+
+pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
+    let words: Vec<OsString> = matches.get_many::<OsString>(WORDS).into_iter().flatten().cloned().collect();
+    let at = words.iter().position(|word| word == ROS_ARGS).unwrap_or(words.len());
+    let (words, ros_words) = words.split_at(at);
+    let ros_words: Vec<String> = ros_words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let mut nodes = Vec::new();
+    for group in words.split(|word| word == NEXT) {
+        match parse(ros, group)? {
+            Ok(matches) => nodes.push(matches),
+            Err(outcome) => return Ok(outcome),
+        }
+    }
+    let Some(first) = nodes.first() else { return Ok(Outcome::Done) };
+    let mut feeds = Feeds::default();
+    match ros {
+        Ros::One => {
+            let mut running = Vec::new();
+            for matches in &nodes {
+                running.push(start_ros1(matches, &ros_words, &mut feeds)?);
+            }
+            let shut_down = |graph: &Ros1Node| graph.is_shut_down();
+            serve(running, &shut_down);
+        }
+        Ros::Two => {
+            let ros2 = Ros2::new(&Ros2Options {
+                domain_id: first.get_one("domain-id").copied(),
+                networks: first.get_many("network").into_iter().flatten().copied().collect(),
+            })?;
+            let mut running = Vec::new();
+            for matches in &nodes {
+                running.push(start_ros2(&ros2, matches, &ros_words, &mut feeds)?);
+            }
+            serve(running, &|_: &Ros2Node| false);
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Runs all nodes until Ctrl-C or until they are over.
+fn serve<G: Sync>(running: Vec<(G, LearnerNode)>, is_over: &(impl Fn(&G) -> bool + Sync)) {
+    let (graphs, nodes): (Vec<G>, Vec<LearnerNode>) = running.into_iter().unzip();
+    std::thread::scope(|scope| {
+        for (graph, node) in graphs.iter().zip(nodes) {
+            scope.spawn(move || node.run(&|| interrupted() || is_over(graph)));
+        }
+    });
+}
+
+/// One node's words as flags; what was printed instead of that ends the command.
+fn parse(ros: Ros, words: &[OsString]) -> Result<Result<ArgMatches, Outcome>> {
+    let entry = super::super::named_learner(&node_grammar(ros, None), words)?;
+    let words = std::iter::once(OsString::from("run")).chain(words.iter().cloned());
+    Ok(node_grammar(ros, entry).try_get_matches_from(words).map_err(|error| {
+        // Printing fails only when nobody reads.
+        error.print().ok();
+        if error.use_stderr() { Outcome::WrongUsage } else { Outcome::Done }
+    }))
+}
+
+fn start_ros2(
+    ros2: &Ros2,
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut Feeds,
+) -> Result<(Ros2Node, LearnerNode)> {
+    let (names, args) = names(matches, ros_words)?;
+    let mut graph = ros2.node(names)?;
+    let node = learner_node(&mut graph, matches, &args.parameters, feeds)?;
+    graph.start()?;
+    Ok((graph, node))
+}
+
+fn start_ros1(
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut Feeds,
+) -> Result<(Ros1Node, LearnerNode)> {
+    let (names, args) = names(matches, ros_words)?;
+    let mut graph = Ros1Node::new(names)?;
+    // What a launch file has set; the words are closer.
+    let mut parameters = graph.private_parameters()?;
+    parameters.extend(args.parameters);
+    let node = learner_node(&mut graph, matches, &parameters, feeds)?;
+    Ok((graph, node))
+}
+
+/// The node's names and what the words after `--ros-args` say.
+fn names(matches: &ArgMatches, ros_words: &[String]) -> Result<(Names, RosArgs)> {
+    let text = |id: &str| matches.get_one::<String>(id).map(String::as_str);
+    let entry = loading::entry(text(loading::LEARNER).unwrap_or_default())?;
+    let name = text("name").unwrap_or(entry.spec.name);
+    let namespace = text("namespace").unwrap_or("/");
+    let args = RosArgs::parse(ros_words, namespace, name)?;
+    Ok((Names::new(namespace, name, &args.remappings)?, args))
+}
+
+fn learner_node(
+    graph: &mut dyn Graph,
+    matches: &ArgMatches,
+    parameters: &[(String, String)],
+    feeds: &mut Feeds,
+) -> Result<LearnerNode> {
+    let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
+    let entry = loading::entry(spec)?;
+    let (mut of_learner, mut of_node) =
+        (learner_flags::params(entry, matches)?, learner_flags::values(NodeParams::FIELDS, matches)?);
+    set_parameters(entry, parameters, &mut of_learner, &mut of_node)?;
+    let options = options(entry, matches, NodeParams::from_map(&of_node)?)?;
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let learner: Box<dyn AnyLearner> = loading::load(spec, &of_learner, matches, &bar)?;
+    let node = LearnerNode::new(graph, entry, learner, options, feeds)?;
+    graph.log()(Severity::Info, &format!("{} is ready as {}", entry.spec.class, graph.name()));
+    Ok(node)
+}

@@ -1,0 +1,225 @@
+//! ROS 1, over the native client of `opendr-ros1`.
+
+use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use opendr_engine::params::ParamValue;
+use opendr_engine::{Error, ErrorKind, Result};
+use opendr_messages::{
+    Message, MessageType, RosService as _, StdSrvsTrigger, Wire, ros1_from_message, std_srvs,
+};
+use opendr_ros1::{
+    Listener, Node, NodeOptions, ParameterValue, ParameterWatch, PublisherOptions, ServiceServer,
+    ServiceType, SubscriberOptions, TopicType,
+};
+
+use crate::clock::NO_SIM_TIME;
+use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger};
+use crate::{Names, ParameterTable};
+
+/// How long a node waits for a master that is just being started.
+const PATIENCE_WITH_MASTER: Duration = Duration::from_secs(10);
+
+/// A node of ROS 1.
+pub struct Ros1Node {
+    names: Names,
+    full_name: String,
+    log: Log,
+    sim_time: Arc<AtomicI64>,
+    // What ends when it goes; the node last.
+    listeners: Vec<Listener>,
+    services: Vec<ServiceServer>,
+    watches: Vec<ParameterWatch>,
+    node: Arc<Node>,
+}
+
+impl Ros1Node {
+    /// A node at the master of `ROS_MASTER_URI`.
+    ///
+    /// # Errors
+    /// `Network` when the master does not answer within ten seconds; `InvalidParam` for names that are none.
+    pub fn new(names: Names) -> Result<Self> {
+        let full_name = names.full();
+        let log = terminal_log(&full_name);
+        let told = log.clone();
+        let mut options =
+            NodeOptions::new(names.node()).on_problem(move |error| told(Severity::Warn, &error.to_string()));
+        options.namespace = Some(names.namespace().to_owned());
+        options.wait_for_master = PATIENCE_WITH_MASTER;
+        let node = Arc::new(Node::new(options)?);
+        let sim_time = Arc::new(AtomicI64::new(NO_SIM_TIME));
+        let (listeners, services, watches) = (Vec::new(), Vec::new(), Vec::new());
+        Ok(Self { names, full_name, log, sim_time, listeners, services, watches, node })
+    }
+
+    /// The node's private parameters that are set on the parameter server (by a launch file), as text.
+    ///
+    /// # Errors
+    /// `Network` when the master does not answer.
+    pub fn private_parameters(&self) -> Result<Vec<(String, String)>> {
+        let Some(ParameterValue::Struct(parameters)) = self.node.parameter_if_set(&self.full_name)? else {
+            return Ok(Vec::new());
+        };
+        let text = |(name, value)| param_value(&value).map(|value| (name, value.to_string()));
+        Ok(parameters.into_iter().filter_map(text).collect())
+    }
+
+    /// Whether `rosnode kill` or a second node of the same name has ended it.
+    pub fn is_shut_down(&self) -> bool {
+        self.node.is_shut_down()
+    }
+}
+
+impl Graph for Ros1Node {
+    fn name(&self) -> &str {
+        &self.full_name
+    }
+
+    fn resolve(&self, name: &str) -> Result<String> {
+        self.names.resolve(name)
+    }
+
+    fn advertise(&mut self, topic: &str, message_type: MessageType, qos: Qos) -> Result<Arc<dyn Publisher>> {
+        let options = PublisherOptions { latched: qos.latched, queue_size: qos.depth.max(1) };
+        let publisher =
+            self.node.advertise(&self.names.resolve(topic)?, topic_type(message_type)?, options)?;
+        Ok(Arc::new(Ros1Publisher(publisher)))
+    }
+
+    fn subscribe(
+        &mut self,
+        topic: &str,
+        message_type: MessageType,
+        qos: Qos,
+        mut deliver: Deliver,
+    ) -> Result<()> {
+        let name = self.names.resolve(topic)?;
+        let options = SubscriberOptions { queue_size: qos.depth.max(1), ..SubscriberOptions::default() };
+        let subscription = self.node.subscribe(&name, topic_type(message_type)?, options)?;
+        self.listeners.push(subscription.on_message(move |message| {
+            let read = Message::from_bytes(message_type, Wire::Ros1, &message.bytes);
+            deliver(read.map_err(|error| error.context(name.clone())));
+        })?);
+        Ok(())
+    }
+
+    fn serve(&mut self, service: &str, trigger: Trigger) -> Result<()> {
+        let trigger = Mutex::new(trigger);
+        let kind = StdSrvsTrigger::TYPE;
+        let kind = ServiceType::new(format!("{}/{}", kind.package, kind.name), kind.md5sum);
+        let answer = move |_: &[u8]| {
+            let (success, message) = match trigger.lock().unwrap_or_else(PoisonError::into_inner)() {
+                Ok(message) => (true, message),
+                Err(error) => (false, error.to_string()),
+            };
+            let response = std_srvs::TriggerResponse { success, message };
+            ros1_from_message(&response).map_err(|error| error.to_string())
+        };
+        self.services.push(self.node.serve(&self.names.resolve(service)?, kind, answer)?);
+        Ok(())
+    }
+
+    /// On the parameter server, below the node's name; what is set there is followed, and put back when it does not fit.
+    fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()> {
+        let sim_time = self.node.parameter_if_set("/use_sim_time")?;
+        let own = parameters.get("use_sim_time").map(|(_, value)| value);
+        if sim_time == Some(ParameterValue::Bool(true)) || own == Some(ParamValue::Bool(true)) {
+            self.sim_time.store(0, Ordering::Relaxed);
+            let sim_time = self.sim_time.clone();
+            self.subscribe(
+                "/clock",
+                MessageType::RosgraphMsgsClock,
+                Qos::SENSOR,
+                Box::new(move |message| {
+                    if let Ok(Message::RosgraphMsgsClock(message)) = message {
+                        sim_time.store(opendr_ros_bridge::nanoseconds(&message.clock), Ordering::Relaxed);
+                    }
+                }),
+            )?;
+        }
+        for (field, value) in parameters.rows() {
+            let key = format!("{}/{}", self.full_name, field.name);
+            // What is absent has no value there.
+            let Some(shown) = parameter_value(&value) else { continue };
+            self.node.set_parameter(&key, shown)?;
+            let (table, node, log) = (parameters.clone(), Arc::downgrade(&self.node), self.log.clone());
+            let changed = move |key: &str, value: &ParameterValue| {
+                let Some((field, holds)) = table.get(field.name) else { return };
+                let Some(wanted) = param_value(value).filter(|wanted| *wanted != holds) else { return };
+                if let Err(error) = table.set(field.name, wanted) {
+                    log(Severity::Warn, &error.to_string());
+                    if let (Some(node), Some(holds)) = (node.upgrade(), parameter_value(&holds))
+                        && let Err(error) = node.set_parameter(key, holds)
+                    {
+                        log(Severity::Warn, &error.to_string());
+                    }
+                }
+            };
+            self.watches.push(self.node.watch_parameter(&key, changed)?.0);
+        }
+        Ok(())
+    }
+
+    fn clock(&self) -> Clock {
+        crate::clock::clock(self.sim_time.clone())
+    }
+
+    fn log(&self) -> Log {
+        self.log.clone()
+    }
+}
+
+struct Ros1Publisher(opendr_ros1::Publisher);
+
+impl Publisher for Ros1Publisher {
+    fn publish(&self, message: Message) -> Result<()> {
+        self.0.publish_owned(message.to_bytes(Wire::Ros1)?)
+    }
+
+    fn subscribers(&self) -> usize {
+        self.0.subscriber_count()
+    }
+}
+
+fn topic_type(message_type: MessageType) -> Result<TopicType> {
+    let known = message_type.ros1().ok_or_else(|| {
+        Error::new(ErrorKind::Unsupported, format!("ROS 1 has no message {}", message_type.ros2_name()))
+    })?;
+    Ok(TopicType::new(known.name, known.md5sum, message_type.definition(Wire::Ros1)?))
+}
+
+fn param_value(value: &ParameterValue) -> Option<ParamValue> {
+    Some(match value {
+        ParameterValue::Bool(value) => ParamValue::Bool(*value),
+        ParameterValue::Int(value) => ParamValue::Int(i64::from(*value)),
+        ParameterValue::Double(value) => ParamValue::Float(*value),
+        ParameterValue::String(value) => ParamValue::Text(value.clone()),
+        ParameterValue::List(values) => {
+            ParamValue::List(values.iter().map(param_value).collect::<Option<_>>()?)
+        }
+        _ => return None,
+    })
+}
+
+fn parameter_value(value: &ParamValue) -> Option<ParameterValue> {
+    Some(match value {
+        ParamValue::None => return None,
+        ParamValue::Bool(value) => ParameterValue::Bool(*value),
+        ParamValue::Int(value) => match i32::try_from(*value) {
+            Ok(value) => ParameterValue::Int(value),
+            // XML-RPC has no wider integer.
+            Err(_) => ParameterValue::Double(*value as f64),
+        },
+        ParamValue::Float(value) => ParameterValue::Double(*value),
+        ParamValue::Text(value) => ParameterValue::String(value.clone()),
+        ParamValue::List(values) => {
+            ParameterValue::List(values.iter().map(parameter_value).collect::<Option<_>>()?)
+        }
+    })
+}
+
+fn terminal_log(name: &str) -> Log {
+    let name = name.to_owned();
+    Arc::new(move |severity, text| eprintln!("[{}] [{name}]: {text}", severity.name()))
+}
