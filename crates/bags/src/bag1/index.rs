@@ -1,0 +1,148 @@
+//! What a bag's end tells of its chunks, or a walk through the file where the end is missing.
+
+use std::collections::HashSet;
+
+use opendr_engine::{Error, Result};
+
+use super::chunk::{self, Stretch};
+use super::connection::Connections;
+use super::record::{Header, Place};
+use super::{MAGIC, op};
+use crate::fields::Fields;
+use crate::source::{Source, Window};
+use crate::storage::Summary;
+
+/// A stretch with what is known of it.
+pub(super) struct Part {
+    pub stretch: Stretch,
+    pub span: (i64, i64),
+    /// The channels of its messages.
+    pub channels: Vec<usize>,
+}
+
+/// Everything but the messages.
+#[derive(Default)]
+pub(super) struct Index {
+    pub summary: Summary,
+    pub connections: Connections,
+    pub parts: Vec<Part>,
+}
+
+impl Index {
+    pub fn read(source: &Source) -> Result<Self> {
+        let place = Place::read(&mut Window::new(source), MAGIC.len() as u64)?;
+        let header = Header::parse(&place.header)?;
+        if header.op != op::BAG {
+            return Err(Error::format("the bag does not start with its header"));
+        }
+        if header.encryptor.is_some_and(|name| !name.is_empty()) {
+            return Err(Error::unsupported("the bag is encrypted: decrypt it with `rosbag decrypt` first"));
+        }
+        // An index that is not whole is as good as none: the chunks are all still there.
+        Self::from_end(source, &header).or_else(|_| Ok(Self::from_walk(source, place.end())))
+    }
+
+    fn from_end(source: &Source, header: &Header) -> Result<Self> {
+        let mut at = header.index_pos.filter(|position| *position > 0).unwrap_or(u64::MAX);
+        let mut index = Self::default();
+        let mut window = Window::new(source);
+        let mut seen = HashSet::new();
+        while at < source.len() {
+            let place = Place::read(&mut window, at)?;
+            let data = window.read(place.data, place.data_len)?;
+            let header = Header::parse(&place.header)?;
+            match header.op {
+                op::CONNECTION => index.connections.add(&mut index.summary, &header, &data)?,
+                op::CHUNK_INFO => {
+                    if !seen.insert(header.chunk_pos) {
+                        return Err(Error::format("the index tells of a chunk twice"));
+                    }
+                    index.add_info(&header, &data)?;
+                }
+                _ => return Err(Error::format(format!("a record of kind {} in the index", header.op))),
+            }
+            at = place.end();
+        }
+        let told = (header.connection_count, header.chunk_count);
+        let found = (Some(index.connections.len() as u32), Some(index.parts.len() as u32));
+        if at != source.len() || told != found {
+            return Err(Error::format("the index is not whole"));
+        }
+        index.summary.is_complete = true;
+        Ok(index)
+    }
+
+    fn add_info(&mut self, header: &Header, data: &[u8]) -> Result<()> {
+        let missing = || Error::format("a chunk's entry in the index lacks fields");
+        let offset = header.chunk_pos.ok_or_else(missing)?;
+        let (start, end) = header.start_ns.zip(header.end_ns).ok_or_else(missing)?;
+        if header.count.ok_or_else(missing)? as usize != data.len() / 8 {
+            return Err(missing());
+        }
+        let mut channels = Vec::new();
+        let mut fields = Fields(data);
+        while !fields.is_empty() {
+            let channel = self.connections.channel(Some(fields.u32()?))?;
+            self.summary.count(channel, u64::from(fields.u32()?));
+            channels.push(channel);
+        }
+        if !channels.is_empty() {
+            self.summary.cover(start, end);
+        }
+        self.parts.push(Part { stretch: Stretch::Chunk { offset }, span: (start, end), channels });
+        Ok(())
+    }
+
+    /// Reads record after record up to the first that is not whole.
+    fn from_walk(source: &Source, mut at: u64) -> Self {
+        let mut index = Self::default();
+        let mut window = Window::new(source);
+        let mut loose = None;
+        while let Ok(place) = Place::read(&mut window, at) {
+            let Ok(header) = Header::parse(&place.header) else { break };
+            if place.end() > source.len() {
+                break;
+            }
+            match header.op {
+                op::CHUNK => {
+                    index.add_loose(source, loose.take());
+                    // A chunk that is damaged is left out; where the next one starts is known.
+                    index.add(source, Stretch::Chunk { offset: at }).ok();
+                }
+                op::MESSAGE | op::CONNECTION => {
+                    let (offset, _) = loose.unwrap_or((at, 0));
+                    loose = Some((offset, place.end() - offset));
+                    if place.end() - offset > 1 << 20 {
+                        index.add_loose(source, loose.take());
+                    }
+                }
+                op::INDEX | op::CHUNK_INFO => index.add_loose(source, loose.take()),
+                _ => break,
+            }
+            at = place.end();
+        }
+        index.add_loose(source, loose);
+        index
+    }
+
+    fn add_loose(&mut self, source: &Source, loose: Option<(u64, u64)>) {
+        if let Some((offset, len)) = loose {
+            self.add(source, Stretch::Loose { offset, len }).ok();
+        }
+    }
+
+    fn add(&mut self, source: &Source, stretch: Stretch) -> Result<()> {
+        let bytes = stretch.read(source)?;
+        chunk::connections(&bytes, &mut self.connections, &mut self.summary)?;
+        let loaded = chunk::load(bytes, &self.connections, |_, _| true)?;
+        let times = || loaded.entries.iter().map(|entry| entry.log_time_ns);
+        let (Some(start), Some(end)) = (times().min(), times().max()) else { return Ok(()) };
+        let mut channels: Vec<_> = loaded.entries.iter().map(|entry| entry.channel as usize).collect();
+        channels.iter().for_each(|channel| self.summary.count(*channel, 1));
+        channels.sort_unstable();
+        channels.dedup();
+        self.summary.cover(start, end);
+        self.parts.push(Part { stretch, span: (start, end), channels });
+        Ok(())
+    }
+}
