@@ -1,5 +1,7 @@
 //! Recordings that were cut off, damaged or made to harm.
 
+#![allow(clippy::unwrap_used)]
+
 use std::fs;
 
 use opendr_bags::{Bag, BagFormat, BagWriter, Channel, Compression, Encoding, WriteOptions};

@@ -1,5 +1,7 @@
 //! What is written in each format is read back.
 
+#![allow(clippy::unwrap_used)]
+
 use std::path::Path;
 
 use opendr_bags::{

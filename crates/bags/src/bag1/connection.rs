@@ -1,6 +1,7 @@
 //! Connections: what this crate calls channels.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use opendr_engine::{Error, Result};
 
@@ -16,8 +17,8 @@ impl Connections {
     /// Takes in a connection's record; of a number that came before, the first record stays.
     pub fn add(&mut self, summary: &mut Summary, header: &Header, data: &[u8]) -> Result<()> {
         let number = header.connection.ok_or_else(|| Error::format("a connection without its number"))?;
-        if !self.0.contains_key(&number) {
-            self.0.insert(number, summary.add(channel(header, data)?));
+        if let Entry::Vacant(entry) = self.0.entry(number) {
+            entry.insert(summary.add(channel(header, data)?));
         }
         Ok(())
     }
