@@ -202,7 +202,7 @@ def test_a_bag_that_was_cut_is_read_as_far_as_it_goes(tmp_path, dump):
         assert not head["is_complete"]
         assert len(messages) == head["messages"]
         assert set(messages) <= set(wanted(False))
-        assert len(messages) > 0.2 * 120 * part
+        assert len(messages) >= 120 * part - 4
 
 
 def test_topics_and_times_are_chosen(tmp_path, dump):

@@ -55,8 +55,9 @@ pub(crate) fn compress(compression: Compression, bytes: &[u8]) -> Result<Option<
         Compression::None => Ok(None),
         Compression::Lz4 => {
             let mut frame = lz4_flex::frame::FrameInfo::new();
-            // The reader of ROS 1 takes blocks that do not depend on each other only.
+            // The reader of ROS 1 takes only blocks that do not depend on each other, and a checksum of all.
             frame.block_mode = lz4_flex::frame::BlockMode::Independent;
+            frame.content_checksum = true;
             let mut encoder = lz4_flex::frame::FrameEncoder::with_frame_info(frame, Vec::new());
             encoder.write_all(bytes)?;
             let out = encoder.finish().map_err(|error| Error::internal("lz4").with_source(error))?;

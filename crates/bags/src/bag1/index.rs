@@ -101,6 +101,12 @@ impl Index {
         while let Ok(place) = Place::read(&mut window, at) {
             let Ok(header) = Header::parse(&place.header) else { break };
             if place.end() > source.len() {
+                if header.op == op::CHUNK && header.compression == Some(b"none") {
+                    // Of a chunk that was cut, the messages before the cut are whole.
+                    index.add_loose(source, loose.take());
+                    at = place.data;
+                    continue;
+                }
                 break;
             }
             match header.op {

@@ -24,5 +24,6 @@ mod op {
     pub const CONNECTION: u8 = 7;
 }
 
-/// The bag's header takes this much with its padding, so that it can be written again at the end.
+/// The bag's header and its padding without their lengths take this much, so that they can be written again at the
+/// end; `rosbag reindex` counts on just this.
 const BAG_HEADER: usize = 4096;

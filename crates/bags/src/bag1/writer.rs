@@ -220,11 +220,11 @@ fn bag_header(index_pos: u64, connections: u32, chunks: u32) -> Vec<u8> {
     ];
     // The lengths are constant and small.
     let named = named(&fields).unwrap_or_default();
-    let padding = BAG_HEADER - 8 - named.len();
-    let mut bytes = Vec::with_capacity(BAG_HEADER);
+    let padding = BAG_HEADER - named.len();
+    let mut bytes = Vec::with_capacity(BAG_HEADER + 8);
     bytes.extend((named.len() as u32).to_le_bytes());
     bytes.extend(named);
     bytes.extend((padding as u32).to_le_bytes());
-    bytes.resize(BAG_HEADER, b' ');
+    bytes.resize(BAG_HEADER + 8, b' ');
     bytes
 }
