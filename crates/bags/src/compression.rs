@@ -18,10 +18,16 @@ pub enum Compression {
 /// No chunk and no message may be larger: 2 GiB.
 pub(crate) const LARGEST: u64 = 1 << 31;
 
+/// A compressed chunk larger than this has to hold a thousandth of its size.
+const PLAUSIBLE: u64 = 1 << 28;
+
 /// What `name` (rosbag 1's `none`, `bz2`, `lz4`; MCAP's empty one, `lz4`, `zstd`) made of `size` bytes.
 pub(crate) fn decompress(name: &[u8], bytes: Bytes, size: u64) -> Result<Bytes> {
     if size > LARGEST {
         return Err(Error::format(format!("a chunk of {size} bytes: more than {LARGEST} are never read")));
+    }
+    if size > PLAUSIBLE && bytes.len() as u64 * 1000 < size {
+        return Err(Error::format(format!("{size} bytes are told to be in {} compressed ones", bytes.len())));
     }
     match name {
         b"" | b"none" => exact(bytes, size),
@@ -42,8 +48,15 @@ pub(crate) fn zstd(bytes: &[u8], size: Option<u64>) -> Result<Bytes> {
     match size {
         Some(size) => read(decoder, bytes.len(), size),
         None => {
+            let limit = PLAUSIBLE.max(bytes.len() as u64 * 1000).min(LARGEST);
             let mut out = Vec::new();
-            decoder.take(LARGEST).read_to_end(&mut out).map_err(damaged)?;
+            decoder.take(limit + 1).read_to_end(&mut out).map_err(damaged)?;
+            if out.len() as u64 > limit {
+                return Err(Error::format(format!(
+                    "{} compressed bytes hold more than {limit}",
+                    bytes.len()
+                )));
+            }
             Ok(out.into())
         }
     }

@@ -3,6 +3,7 @@
 mod compressed;
 mod folder;
 mod metadata;
+mod rows;
 mod sqlite;
 mod sqlite_writer;
 mod writer;

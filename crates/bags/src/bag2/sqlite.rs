@@ -1,17 +1,16 @@
 //! One SQLite file of rosbag2: the tables `topics`, `messages` and, since Iron, `message_definitions`.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use bytes::Bytes;
 use opendr_engine::{Error, Result, ResultExt};
 use rusqlite::config::DbConfig;
 use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension};
 
+use super::rows::Rows;
 use crate::channel::{Channel, Definition, Encoding, Language};
-use crate::compression;
-use crate::recorded::{Recorded, Stream};
+use crate::recorded::Stream;
 use crate::selection::Wanted;
 use crate::storage::{Storage, Summary};
 
@@ -88,82 +87,8 @@ impl Storage for Sqlite {
     }
 
     fn messages(&self, wanted: Wanted) -> Result<Stream> {
-        let database = connect(&self.path)?;
-        let after = if wanted.in_file_order { (0, i64::MIN) } else { (*wanted.times.start(), i64::MIN) };
-        let topics = self.topics.clone();
-        Ok(Box::new(Rows { database, topics, wanted, is_zstd: self.is_zstd, after, ready: VecDeque::new() }))
-    }
-}
-
-/// Messages in order: their places are read many at a time, their bytes one by one.
-struct Rows {
-    database: Connection,
-    topics: HashMap<i64, usize>,
-    wanted: Wanted,
-    is_zstd: bool,
-    /// Where the next places start: a time and the row before.
-    after: (i64, i64),
-    ready: VecDeque<(i64, i64, i64)>,
-}
-
-const IN_TIME: &str = "SELECT timestamp, id, topic_id FROM messages \
-                       WHERE (timestamp, id) > (?1, ?2) ORDER BY timestamp, id LIMIT 1024";
-const IN_FILE: &str = "SELECT timestamp, id, topic_id FROM messages \
-                       WHERE ?1 = ?1 AND id > ?2 ORDER BY id LIMIT 1024";
-
-impl Rows {
-    /// False at the end.
-    fn read_places(&mut self) -> rusqlite::Result<bool> {
-        let query = if self.wanted.in_file_order { IN_FILE } else { IN_TIME };
-        let mut places = self.database.prepare_cached(query)?;
-        let rows = places.query_map(self.after, |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?)))?;
-        self.ready = rows.collect::<rusqlite::Result<_>>()?;
-        let Some(&(time, id, _)) = self.ready.back() else { return Ok(false) };
-        self.after = (time, id);
-        Ok(true)
-    }
-
-    fn read(&self, id: i64) -> Result<Bytes> {
-        let mut message =
-            self.database.prepare_cached("SELECT data FROM messages WHERE id = ?1").map_err(refused)?;
-        let bytes = message.query_row([id], |row| {
-            let value = row.get_ref(0)?;
-            Ok(value.as_bytes().map(|bytes| {
-                if self.is_zstd { compression::zstd(bytes, None) } else { Ok(Bytes::copy_from_slice(bytes)) }
-            }))
-        });
-        bytes
-            .map_err(refused)?
-            .map_err(|error| Error::format("a message's data is no blob").with_source(error))?
-    }
-}
-
-impl Iterator for Rows {
-    type Item = Result<Recorded>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        loop {
-            let Some((log_time_ns, id, topic)) = self.ready.pop_front() else {
-                match self.read_places().map_err(refused) {
-                    Ok(true) => continue,
-                    Ok(false) => return None,
-                    Err(error) => return Some(Err(error)),
-                }
-            };
-            if !self.wanted.in_file_order && log_time_ns > *self.wanted.times.end() {
-                return None;
-            }
-            let Some(&channel) = self.topics.get(&topic) else { continue };
-            if self.wanted.channel(channel) && self.wanted.times.contains(&log_time_ns) {
-                let read = self.read(id).context(|| format!("reading message {id}"));
-                return Some(read.map(|bytes| Recorded {
-                    channel,
-                    log_time_ns,
-                    publish_time_ns: None,
-                    bytes,
-                }));
-            }
-        }
+        let rows = || Rows::new(connect(&self.path)?, self.topics.clone(), &wanted, self.is_zstd);
+        Ok(Box::new(rows().context(|| format!("reading {}", self.path.display()))?))
     }
 }
 

@@ -1,0 +1,153 @@
+//! Messages of a SQLite file, as many at a time as make a chunk.
+
+use std::collections::{HashMap, VecDeque};
+
+use bytes::Bytes;
+use opendr_engine::{Error, Result};
+use rusqlite::{Connection, Row};
+
+use super::sqlite::refused;
+use crate::compression;
+use crate::in_order::Entry;
+use crate::recorded::Recorded;
+use crate::selection::Wanted;
+
+/// The wanted messages in order.
+pub(super) struct Rows {
+    database: Connection,
+    topics: HashMap<i64, usize>,
+    is_zstd: bool,
+    order: Order,
+    /// The time and row of the last message read.
+    after: (i64, i64),
+    bytes: Bytes,
+    ready: VecDeque<Entry>,
+}
+
+/// Where the order comes from.
+enum Order {
+    /// The index by time that rosbag2 makes: SQL that goes on after a time and row.
+    Time(String),
+    /// The table: likewise.
+    File(String),
+    /// Rows that were sorted here, since the index is missing.
+    Sorted(std::vec::IntoIter<i64>),
+}
+
+/// So many bytes are read at a time, or one larger message.
+const BATCH: usize = 1 << 20;
+
+impl Rows {
+    pub fn new(
+        database: Connection,
+        topics: HashMap<i64, usize>,
+        wanted: &Wanted,
+        is_zstd: bool,
+    ) -> Result<Self> {
+        let numbers = topics.iter().filter(|(_, channel)| wanted.channel(**channel));
+        let numbers = numbers.map(|(topic, _)| topic.to_string()).collect::<Vec<_>>().join(",");
+        let (start, end) = wanted.times.clone().into_inner();
+        let from =
+            format!("FROM messages WHERE topic_id IN ({numbers}) AND timestamp BETWEEN {start} AND {end}");
+        let select = format!("SELECT timestamp, id, topic_id, data {from}");
+        let order = if wanted.in_file_order {
+            Order::File(format!("{select} AND ?1 = ?1 AND id > ?2 ORDER BY id"))
+        } else if has_time_index(&database).map_err(refused)? {
+            Order::Time(format!("{select} AND (timestamp, id) > (?1, ?2) ORDER BY timestamp, id"))
+        } else {
+            let query = format!("SELECT id {from} ORDER BY timestamp, id");
+            let sorted = || -> rusqlite::Result<Vec<i64>> {
+                database.prepare(&query)?.query_map([], |row| row.get(0))?.collect()
+            };
+            Order::Sorted(sorted().map_err(refused)?.into_iter())
+        };
+        let (after, bytes, ready) = ((i64::MIN, i64::MIN), Bytes::new(), VecDeque::new());
+        Ok(Self { database, topics, is_zstd, order, after, bytes, ready })
+    }
+
+    /// Reads the next messages; none are ready afterwards at the end.
+    fn fill(&mut self) -> Result<()> {
+        let (bytes, entries) = Default::default();
+        let mut batch =
+            Batch { topics: &self.topics, is_zstd: self.is_zstd, after: self.after, bytes, entries };
+        match &mut self.order {
+            Order::Time(query) | Order::File(query) => {
+                let mut messages = self.database.prepare_cached(query).map_err(refused)?;
+                let mut rows = messages.query(self.after).map_err(refused)?;
+                while batch.bytes.len() < BATCH
+                    && let Some(row) = rows.next().map_err(refused)?
+                {
+                    batch.add(row)?;
+                }
+            }
+            Order::Sorted(ids) => {
+                let query = "SELECT timestamp, id, topic_id, data FROM messages WHERE id = ?1";
+                let mut message = self.database.prepare_cached(query).map_err(refused)?;
+                while batch.bytes.len() < BATCH
+                    && let Some(id) = ids.next()
+                {
+                    let mut rows = message.query([id]).map_err(refused)?;
+                    while let Some(row) = rows.next().map_err(refused)? {
+                        batch.add(row)?;
+                    }
+                }
+            }
+        }
+        self.after = batch.after;
+        self.bytes = batch.bytes.into();
+        self.ready = batch.entries;
+        Ok(())
+    }
+}
+
+impl Iterator for Rows {
+    type Item = Result<Recorded>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.ready.is_empty()
+            && let Err(error) = self.fill()
+        {
+            return Some(Err(error));
+        }
+        let Entry { log_time_ns, publish_time_ns, channel, start, end } = self.ready.pop_front()?;
+        let bytes = self.bytes.slice(start..end);
+        Some(Ok(Recorded { channel: channel as usize, log_time_ns, publish_time_ns, bytes }))
+    }
+}
+
+/// Messages read at a time.
+struct Batch<'a> {
+    topics: &'a HashMap<i64, usize>,
+    is_zstd: bool,
+    after: (i64, i64),
+    bytes: Vec<u8>,
+    entries: VecDeque<Entry>,
+}
+
+impl Batch<'_> {
+    fn add(&mut self, row: &Row) -> Result<()> {
+        let place = || -> rusqlite::Result<(i64, i64, i64)> { Ok((row.get(0)?, row.get(1)?, row.get(2)?)) };
+        let (log_time_ns, id, topic) = place().map_err(refused)?;
+        self.after = (log_time_ns, id);
+        let Some(&channel) = self.topics.get(&topic) else { return Ok(()) };
+        let data = row.get_ref(3).map_err(refused)?;
+        let data = data.as_bytes().map_err(|error| {
+            Error::format(format!("the data of message {id} is no blob")).with_source(error)
+        })?;
+        let start = self.bytes.len();
+        if self.is_zstd {
+            self.bytes.extend_from_slice(&compression::zstd(data, None)?);
+        } else {
+            self.bytes.extend_from_slice(data);
+        }
+        let (channel, end) = (channel as u32, self.bytes.len());
+        self.entries.push_back(Entry { log_time_ns, publish_time_ns: None, channel, start, end });
+        Ok(())
+    }
+}
+
+fn has_time_index(database: &Connection) -> rusqlite::Result<bool> {
+    let query = "SELECT COUNT(*) FROM pragma_index_list('messages') AS list, pragma_index_info(list.name) AS info \
+                 WHERE info.seqno = 0 AND info.name = 'timestamp' AND list.partial = 0";
+    Ok(database.query_row(query, [], |row| row.get::<_, i64>(0))? > 0)
+}
