@@ -117,6 +117,16 @@ mod tests {
     }
 
     #[test]
+    fn a_bomb_is_refused_before_it_is_opened() {
+        for name in [&b"lz4"[..], b"bz2", b"zstd"] {
+            for size in [1 << 29, LARGEST + 1, u64::MAX] {
+                let error = decompress(name, Bytes::from_static(&[0; 1000]), size).unwrap_err();
+                assert!(error.message().contains("bytes"), "{error}");
+            }
+        }
+    }
+
+    #[test]
     fn what_is_no_compressed_data_is_refused() {
         for name in [&b"lz4"[..], b"bz2", b"zstd", b"lzma"] {
             assert!(decompress(name, Bytes::from_static(b"neither of them"), 10).is_err());

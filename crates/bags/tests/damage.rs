@@ -122,6 +122,89 @@ fn files_that_are_no_recordings_are_told() {
     assert_eq!(Bag::open(folder.path()).unwrap_err().kind(), ErrorKind::Format);
 }
 
+/// A bag's record: fields, then data.
+fn record(fields: &[(&str, &[u8])], data: &[u8]) -> Vec<u8> {
+    let mut header = Vec::new();
+    for (name, value) in fields {
+        header.extend((name.len() as u32 + 1 + value.len() as u32).to_le_bytes());
+        header.extend([name.as_bytes(), b"=", value].concat());
+    }
+    let len = |bytes: &[u8]| (bytes.len() as u32).to_le_bytes();
+    [&len(&header)[..], &header, &len(data), data].concat()
+}
+
+fn bag_of(records: &[Vec<u8>], index_pos: u64, connections: u32, chunks: u32) -> Vec<u8> {
+    let header = record(
+        &[
+            ("op", &[3]),
+            ("index_pos", &index_pos.to_le_bytes()),
+            ("conn_count", &connections.to_le_bytes()),
+            ("chunk_count", &chunks.to_le_bytes()),
+        ],
+        b"",
+    );
+    [b"#ROSBAG V2.0\n".to_vec(), header, records.concat()].concat()
+}
+
+#[test]
+fn an_index_that_leads_round_is_not_followed() {
+    let header_len = bag_of(&[], 0, 0, 0).len() as u64;
+    let about = b"\x08\0\0\0type=a/B";
+    let connection = record(&[("op", &[7]), ("conn", &[0; 4]), ("topic", b"/a")], about);
+    let message = record(&[("op", &[2]), ("conn", &[0; 4]), ("time", &[1, 0, 0, 0, 0, 0, 0, 0])], b"hi");
+    let inside = [connection.clone(), message].concat();
+    let chunk = record(
+        &[("op", &[5]), ("compression", b"none"), ("size", &(inside.len() as u32).to_le_bytes())],
+        &inside,
+    );
+    let info = |position: u64| {
+        let time = [0_u8; 8];
+        let fields: [(&str, &[u8]); 6] = [
+            ("op", &[6]),
+            ("ver", &[1, 0, 0, 0]),
+            ("chunk_pos", &position.to_le_bytes()),
+            ("start_time", &time),
+            ("end_time", &time),
+            ("count", &[1, 0, 0, 0]),
+        ];
+        record(&fields, &[0, 0, 0, 0, 1, 0, 0, 0])
+    };
+    let index_pos = header_len + chunk.len() as u64;
+    let whole = [chunk.clone(), connection.clone(), info(header_len)];
+    let bag = Bag::from_bytes(bag_of(&whole, index_pos, 1, 1)).unwrap();
+    assert!(bag.is_complete());
+    assert_eq!(bag.messages().unwrap().count(), 1);
+    // The chunk's place told twice, a chunk that is the index itself, an index that is the chunk, counts that lie.
+    let twice = [chunk.clone(), connection.clone(), info(header_len), info(header_len)];
+    assert!(!Bag::from_bytes(bag_of(&twice, index_pos, 1, 2)).unwrap().is_complete());
+    let itself = [chunk.clone(), connection.clone(), info(index_pos)];
+    let bag = Bag::from_bytes(bag_of(&itself, index_pos, 1, 1)).unwrap();
+    assert_eq!(bag.messages().unwrap().next().unwrap().unwrap_err().kind(), ErrorKind::Format);
+    for (index_pos, connections, chunks) in [
+        (header_len, 1, 1),
+        (0, 1, 1),
+        (u64::MAX, 1, 1),
+        (13, 1, 1),
+        (index_pos, u32::MAX, 1),
+        (index_pos, 1, u32::MAX),
+    ] {
+        let bag = Bag::from_bytes(bag_of(&whole, index_pos, connections, chunks)).unwrap();
+        assert!(!bag.is_complete());
+        assert_eq!(bag.messages().unwrap().flatten().count(), 1);
+    }
+}
+
+#[test]
+fn what_the_fuzzer_starts_from_is_read() {
+    for format in ["bag1", "mcap"] {
+        let corpus = format!("{}/../../fuzz/corpus/{format}", env!("CARGO_MANIFEST_DIR"));
+        let files =
+            fs::read_dir(corpus).unwrap().map(|file| messages(fs::read(file.unwrap().path()).unwrap()));
+        let counts: Vec<_> = files.collect();
+        assert!(counts.iter().flatten().filter(|count| **count > 0).count() >= 3, "{format}: {counts:?}");
+    }
+}
+
 proptest! {
     #[test]
     fn bytes_after_the_magic_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..400), is_bag: bool) {
