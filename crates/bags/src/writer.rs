@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs::{self, File};
 use std::path::Path;
 
-use opendr_engine::{Error, Result, ResultExt};
+use opendr_engine::{Error, ErrorKind, Result, ResultExt};
 
 use crate::bag1::Bag1Writer;
 use crate::bag2::{Bag2Writer, remove};
@@ -41,7 +41,7 @@ impl From<BagFormat> for WriteOptions {
     }
 }
 
-/// A recording being written. Dropped without [`BagWriter::finish`], it is finished as far as that works, without
+/// A recording being written. After an error of the system nothing more is written to it. Dropped without [`BagWriter::finish`], it is finished as far as that works, without
 /// a word of what did not.
 pub struct BagWriter {
     format: BagFormat,
@@ -82,7 +82,7 @@ impl BagWriter {
                 self.format
             )));
         }
-        self.storage()?.add_channel(&channel)?;
+        self.with_storage(|storage| storage.add_channel(&channel))?;
         self.channels.push(channel);
         Ok(self.channels.len() - 1)
     }
@@ -130,7 +130,7 @@ impl BagWriter {
                 LARGEST / 2
             )));
         }
-        self.storage()?.write(channel, log, publish, bytes)
+        self.with_storage(|storage| storage.write(channel, log, publish, bytes))
     }
 
     /// Hands to the operating system what was held back, so that a crash or another reader finds it.
@@ -139,7 +139,7 @@ impl BagWriter {
     ///
     /// [`Io`](opendr_engine::ErrorKind::Io) when the disk is full.
     pub fn flush(&mut self) -> Result<()> {
-        self.storage()?.flush()
+        self.with_storage(|storage| storage.flush())
     }
 
     /// Writes the rest and the index.
@@ -151,8 +151,14 @@ impl BagWriter {
         self.storage.take().map_or(Ok(()), |mut storage| storage.finish())
     }
 
-    fn storage(&mut self) -> Result<&mut Box<dyn StorageWriter>> {
-        self.storage.as_mut().ok_or_else(|| Error::internal("the recording is finished"))
+    /// A recording of which a part could not be written is left as one that was cut off.
+    fn with_storage(&mut self, work: impl FnOnce(&mut dyn StorageWriter) -> Result<()>) -> Result<()> {
+        let storage = self.storage.as_deref_mut();
+        let done = work(storage.ok_or_else(|| Error::io("nothing is written after the error before"))?);
+        if done.as_ref().is_err_and(|error| error.kind() != ErrorKind::InvalidInput) {
+            self.storage = None;
+        }
+        done
     }
 }
 

@@ -205,6 +205,24 @@ fn what_the_fuzzer_starts_from_is_read() {
     }
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn nothing_is_written_after_the_disk_is_full() {
+    for format in BOTH {
+        let mut writer = BagWriter::create("/dev/full", WriteOptions { overwrite: true, ..format.into() });
+        let mut kinds = Vec::new();
+        if let Ok(writer) = &mut writer {
+            let encoding = if format == BagFormat::Bag1 { Encoding::Ros1 } else { Encoding::Cdr };
+            let added = writer.add_channel(Channel::new("/a", "a/B", encoding));
+            kinds.extend([added.err(), writer.flush().err(), writer.flush().err()].into_iter().flatten());
+        } else {
+            kinds.extend(writer.err());
+        }
+        assert!(!kinds.is_empty());
+        assert!(kinds.iter().all(|error| error.kind() == ErrorKind::Io), "{kinds:?}");
+    }
+}
+
 proptest! {
     #[test]
     fn bytes_after_the_magic_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..400), is_bag: bool) {

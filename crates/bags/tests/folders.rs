@@ -148,3 +148,25 @@ fn a_database_whose_writer_was_killed_is_read() {
     assert!(!Bag::open(&path).unwrap().is_complete());
     assert_eq!(read(&path).len(), 1);
 }
+
+#[test]
+fn messages_of_compressed_files_outlive_their_recording() {
+    for (format, name) in [(BagFormat::Bag2Sqlite, "bag_0.db3"), (BagFormat::Bag2Mcap, "bag_0.mcap")] {
+        let (_folder, path) = written(format);
+        let whole = read(&path);
+        let plain = fs::read(path.join(name)).unwrap();
+        let packed =
+            ruzstd::encoding::compress_to_vec(&plain[..], ruzstd::encoding::CompressionLevel::Fastest);
+        fs::write(path.join(format!("{name}.zstd")), &packed).unwrap();
+        fs::remove_file(path.join(name)).unwrap();
+        let text = fs::read_to_string(path.join("metadata.yaml")).unwrap();
+        let text = text.replacen("compression_format: \"\"", "compression_format: zstd", 1);
+        let text = text.replacen("compression_mode: \"\"", "compression_mode: FILE", 1);
+        fs::write(path.join("metadata.yaml"), text.replace(name, &format!("{name}.zstd"))).unwrap();
+        let messages = Bag::open(&path).unwrap().messages().unwrap();
+        assert_eq!(messages.map(Result::unwrap).collect::<Vec<_>>(), whole);
+        // A cut one is told.
+        fs::write(path.join(format!("{name}.zstd")), &packed[..packed.len() / 2]).unwrap();
+        assert_eq!(Bag::open(&path).unwrap_err().kind(), ErrorKind::Format);
+    }
+}

@@ -23,7 +23,14 @@ pub(super) fn decompressed(path: &Path, folder: &TempDir) -> Result<PathBuf> {
         Ok(len)
     };
     let context = || format!("decompressing {} (`zstd -d` does it for good)", path.display());
-    if write().context(context)? == LARGEST {
+    // What the decoder refuses is of no kind of the system's.
+    let written = write().map_err(|error| match error.kind() {
+        io::ErrorKind::Other | io::ErrorKind::UnexpectedEof => {
+            Error::format("the file is damaged").with_source(error)
+        }
+        _ => error.into(),
+    });
+    if written.context(context)? == LARGEST {
         return Err(Error::unsupported(format!("{} is larger than {LARGEST} bytes", path.display())));
     }
     Ok(plain)

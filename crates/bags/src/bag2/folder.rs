@@ -23,10 +23,14 @@ pub(crate) const METADATA: &str = "metadata.yaml";
 
 /// An opened folder.
 pub(crate) struct Folder {
-    parts: Arc<Vec<Part>>,
+    parts: Arc<Parts>,
     summary: Summary,
     is_sqlite: bool,
-    /// Plain forms of compressed files, which go with it.
+}
+
+struct Parts {
+    list: Vec<Part>,
+    /// Plain forms of compressed files, which go with the last reader.
     _plain: Option<TempDir>,
 }
 
@@ -61,8 +65,7 @@ impl Folder {
         if is_zstd {
             known_compression(metadata.as_ref())?;
         }
-        let mut folder = Self::from_files(&files, is_zstd)?;
-        folder._plain = plain;
+        let mut folder = Self::from_files(&files, is_zstd, plain)?;
         folder.summary.is_complete = metadata.is_some() && folder.summary.is_complete;
         for channel in folder.summary.channels.iter_mut().filter(|channel| channel.type_hash.is_none()) {
             channel.type_hash = metadata.as_ref().and_then(|metadata| metadata.type_hash(channel));
@@ -75,9 +78,9 @@ impl Folder {
         self.is_sqlite
     }
 
-    fn from_files(files: &[PathBuf], is_zstd: bool) -> Result<Self> {
+    fn from_files(files: &[PathBuf], is_zstd: bool, plain: Option<TempDir>) -> Result<Self> {
         let mut summary = Summary { is_complete: true, ..Summary::default() };
-        let mut parts = Vec::new();
+        let mut list = Vec::new();
         let mut is_sqlite = false;
         for file in files {
             let source = Source::open(file)?;
@@ -106,9 +109,9 @@ impl Folder {
                 summary.count(index, *count);
                 channels.push(index);
             }
-            parts.push(Part { storage, channels });
+            list.push(Part { storage, channels });
         }
-        Ok(Self { parts: Arc::new(parts), summary, is_sqlite, _plain: None })
+        Ok(Self { parts: Arc::new(Parts { list, _plain: plain }), summary, is_sqlite })
     }
 }
 
@@ -120,12 +123,12 @@ impl Storage for Folder {
     fn messages(&self, wanted: Wanted) -> Result<Stream> {
         let start = |part: &Part| part.storage.summary().span;
         let mut upcoming: Vec<_> =
-            self.parts.iter().enumerate().filter_map(|(at, part)| Some((start(part)?.0, at))).collect();
+            self.parts.list.iter().enumerate().filter_map(|(at, part)| Some((start(part)?.0, at))).collect();
         if !wanted.in_file_order {
             upcoming.sort_unstable();
         }
         upcoming.reverse();
-        let streams = self.parts.iter().map(|_| None).collect();
+        let streams = self.parts.list.iter().map(|_| None).collect();
         Ok(Box::new(Merged {
             parts: self.parts.clone(),
             wanted,
@@ -138,7 +141,7 @@ impl Storage for Folder {
 
 /// The messages of all files in order: a file is opened when its first message can be the next.
 struct Merged {
-    parts: Arc<Vec<Part>>,
+    parts: Arc<Parts>,
     wanted: Wanted,
     upcoming: Vec<(i64, usize)>,
     streams: Vec<Option<(Stream, Option<Recorded>)>>,
@@ -153,7 +156,7 @@ impl Merged {
                 break;
             }
             self.upcoming.pop();
-            if let Some(part) = self.parts.get(at) {
+            if let Some(part) = self.parts.list.get(at) {
                 let channels = part.channels.iter().map(|channel| self.wanted.channel(*channel)).collect();
                 let stream = part.storage.messages(Wanted { channels, ..self.wanted.clone() })?;
                 self.advance(at, stream)?;
@@ -164,7 +167,7 @@ impl Merged {
             return Ok(None);
         };
         self.advance(at, stream)?;
-        let channels = self.parts.get(at).map(|part| &part.channels[..]).unwrap_or_default();
+        let channels = self.parts.list.get(at).map(|part| &part.channels[..]).unwrap_or_default();
         message.channel = channels.get(message.channel).copied().unwrap_or_default();
         Ok(Some(message))
     }
