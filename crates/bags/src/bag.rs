@@ -6,11 +6,11 @@ use std::path::Path;
 use bytes::Bytes;
 use opendr_engine::{Error, Result, ResultExt};
 
-use crate::bag1::{self, Bag1};
+use crate::bag1;
 use crate::bag2::{Folder, SQLITE_MAGIC, Sqlite};
 use crate::channel::Channel;
 use crate::format::BagFormat;
-use crate::mcap::{self, Mcap};
+use crate::mcap;
 use crate::recorded::{Recorded, Stream};
 use crate::selection::{Selection, Wanted};
 use crate::source::Source;
@@ -62,9 +62,9 @@ impl Bag {
     fn from_source(source: Source) -> Result<Self> {
         let start = source.read(0, source.len().min(16))?;
         if start.starts_with(bag1::MAGIC) {
-            Ok(Self { format: BagFormat::Bag1, storage: Box::new(Bag1::open(source)?) })
+            Ok(Self { format: BagFormat::Bag1, storage: Box::new(bag1::open(source)?) })
         } else if start.starts_with(mcap::MAGIC) {
-            Ok(Self { format: BagFormat::Mcap, storage: Box::new(Mcap::open(source)?) })
+            Ok(Self { format: BagFormat::Mcap, storage: Box::new(mcap::open(source)?) })
         } else if start.starts_with(b"#ROS") {
             Err(Error::unsupported(
                 "an older format than rosbag 2.0: `rosbag fix` and `rosbag reindex` bring it up to date",

@@ -21,6 +21,7 @@ pub(crate) struct Entry {
 }
 
 /// A chunk in memory with those of its messages that are wanted.
+#[derive(Default)]
 pub(crate) struct Loaded {
     pub bytes: Bytes,
     pub entries: Vec<Entry>,
@@ -40,7 +41,7 @@ pub(crate) trait Chunks: Send + Sync {
 const TOGETHER: usize = 1 << 30;
 
 /// The wanted messages of `chunks`.
-pub(crate) struct InOrder<C: ?Sized> {
+pub(crate) struct InOrder<C> {
     wanted: Wanted,
     /// Chunks still to be loaded, the next one last.
     upcoming: Vec<(i64, usize)>,
@@ -49,7 +50,7 @@ pub(crate) struct InOrder<C: ?Sized> {
     chunks: Arc<C>,
 }
 
-impl<C: Chunks + ?Sized> InOrder<C> {
+impl<C: Chunks> InOrder<C> {
     pub fn new(chunks: Arc<C>, wanted: Wanted) -> Self {
         let held = |chunk: &usize| {
             let (start, end) = chunks.span(*chunk);
@@ -96,7 +97,7 @@ impl<C: Chunks + ?Sized> InOrder<C> {
     }
 }
 
-impl<C: Chunks + ?Sized> Iterator for InOrder<C> {
+impl<C: Chunks> Iterator for InOrder<C> {
     type Item = Result<Recorded>;
 
     fn next(&mut self) -> Option<Self::Item> {

@@ -28,6 +28,7 @@ mod bag;
 mod bag1;
 mod bag2;
 mod channel;
+mod chunked;
 mod compression;
 mod fields;
 mod format;

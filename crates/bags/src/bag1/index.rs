@@ -4,32 +4,24 @@ use std::collections::HashSet;
 
 use opendr_engine::{Error, Result};
 
-use super::chunk::{self, Stretch};
 use super::connection::Connections;
 use super::record::{Header, Place};
 use super::{MAGIC, op};
+use crate::chunked::{self, Chunked, Part, Stretch, TOGETHER};
 use crate::fields::Fields;
 use crate::source::{Source, Window};
-use crate::storage::Summary;
+use crate::storage::Storage;
 
-/// A stretch with what is known of it.
-pub(super) struct Part {
-    pub stretch: Stretch,
-    pub span: (i64, i64),
-    /// The channels of its messages.
-    pub channels: Vec<usize>,
+/// Opens a bag.
+pub(crate) fn open(source: Source) -> Result<impl Storage + use<>> {
+    let index = Index::read(&source)?;
+    Ok(Chunked::new(source, index))
 }
 
-/// Everything but the messages.
-#[derive(Default)]
-pub(super) struct Index {
-    pub summary: Summary,
-    pub connections: Connections,
-    pub parts: Vec<Part>,
-}
+type Index = chunked::Index<Connections>;
 
 impl Index {
-    pub fn read(source: &Source) -> Result<Self> {
+    fn read(source: &Source) -> Result<Self> {
         let place = Place::read(&mut Window::new(source), MAGIC.len() as u64)?;
         let header = Header::parse(&place.header)?;
         if header.op != op::BAG {
@@ -52,7 +44,7 @@ impl Index {
             let data = window.read(place.data, place.data_len)?;
             let header = Header::parse(&place.header)?;
             match header.op {
-                op::CONNECTION => index.connections.add(&mut index.summary, &header, &data)?,
+                op::CONNECTION => index.layout.add(&mut index.summary, &header, &data)?,
                 op::CHUNK_INFO => {
                     if !seen.insert(header.chunk_pos) {
                         return Err(Error::format("the index tells of a chunk twice"));
@@ -64,7 +56,7 @@ impl Index {
             at = place.end();
         }
         let told = (header.connection_count, header.chunk_count);
-        let found = (Some(index.connections.len() as u32), Some(index.parts.len() as u32));
+        let found = (Some(index.layout.len() as u32), Some(index.parts.len() as u32));
         if at != source.len() || told != found {
             return Err(Error::format("the index is not whole"));
         }
@@ -82,7 +74,7 @@ impl Index {
         let mut channels = Vec::new();
         let mut fields = Fields(data);
         while !fields.is_empty() {
-            let channel = self.connections.channel(Some(fields.u32()?))?;
+            let channel = self.layout.channel(Some(fields.u32()?))?;
             self.summary.count(channel, u64::from(fields.u32()?));
             channels.push(channel);
         }
@@ -112,13 +104,12 @@ impl Index {
             match header.op {
                 op::CHUNK => {
                     index.add_loose(source, loose.take());
-                    // A chunk that is damaged is left out; where the next one starts is known.
-                    index.add(source, Stretch::Chunk { offset: at }).ok();
+                    index.add(source, Stretch::Chunk { offset: at });
                 }
                 op::MESSAGE | op::CONNECTION => {
                     let (offset, _) = loose.unwrap_or((at, 0));
                     loose = Some((offset, place.end() - offset));
-                    if place.end() - offset > 1 << 20 {
+                    if place.end() - offset > TOGETHER {
                         index.add_loose(source, loose.take());
                     }
                 }
@@ -129,26 +120,5 @@ impl Index {
         }
         index.add_loose(source, loose);
         index
-    }
-
-    fn add_loose(&mut self, source: &Source, loose: Option<(u64, u64)>) {
-        if let Some((offset, len)) = loose {
-            self.add(source, Stretch::Loose { offset, len }).ok();
-        }
-    }
-
-    fn add(&mut self, source: &Source, stretch: Stretch) -> Result<()> {
-        let bytes = stretch.read(source)?;
-        chunk::connections(&bytes, &mut self.connections, &mut self.summary)?;
-        let loaded = chunk::load(bytes, &self.connections, |_, _| true)?;
-        let times = || loaded.entries.iter().map(|entry| entry.log_time_ns);
-        let (Some(start), Some(end)) = (times().min(), times().max()) else { return Ok(()) };
-        let mut channels: Vec<_> = loaded.entries.iter().map(|entry| entry.channel as usize).collect();
-        channels.iter().for_each(|channel| self.summary.count(*channel, 1));
-        channels.sort_unstable();
-        channels.dedup();
-        self.summary.cover(start, end);
-        self.parts.push(Part { stretch, span: (start, end), channels });
-        Ok(())
     }
 }

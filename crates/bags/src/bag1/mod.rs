@@ -4,11 +4,10 @@
 mod chunk;
 mod connection;
 mod index;
-mod reader;
 mod record;
 mod writer;
 
-pub(crate) use reader::Bag1;
+pub(crate) use index::open;
 pub(crate) use writer::Bag1Writer;
 
 /// What a file starts with.

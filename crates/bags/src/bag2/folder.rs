@@ -12,7 +12,7 @@ use super::SQLITE_MAGIC;
 use super::compressed::decompressed;
 use super::metadata::Metadata;
 use super::sqlite::Sqlite;
-use crate::mcap::{self, Mcap};
+use crate::mcap;
 use crate::recorded::{Recorded, Stream};
 use crate::selection::Wanted;
 use crate::source::Source;
@@ -89,7 +89,7 @@ impl Folder {
                 is_sqlite = true;
                 Box::new(Sqlite::open(file, is_zstd)?)
             } else if start.starts_with(mcap::MAGIC) && !is_zstd {
-                Box::new(Mcap::open(source).context(|| format!("reading {}", file.display()))?)
+                Box::new(mcap::open(source).context(|| format!("reading {}", file.display()))?)
             } else {
                 let file = file.display();
                 return Err(Error::unsupported(format!(

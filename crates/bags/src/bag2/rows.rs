@@ -34,8 +34,8 @@ enum Order {
     Sorted(std::vec::IntoIter<i64>),
 }
 
-/// So many bytes are read at a time, or one larger message.
-const BATCH: usize = 1 << 20;
+/// About so many bytes are read at a time, or one larger message.
+const BATCH: usize = 1 << 18;
 
 impl Rows {
     pub fn new(
@@ -44,24 +44,33 @@ impl Rows {
         wanted: &Wanted,
         is_zstd: bool,
     ) -> Result<Self> {
-        let numbers = topics.iter().filter(|(_, channel)| wanted.channel(**channel));
-        let numbers = numbers.map(|(topic, _)| topic.to_string()).collect::<Vec<_>>().join(",");
+        let mut only = String::new();
+        if topics.values().any(|channel| !wanted.channel(*channel)) {
+            let numbers = topics.iter().filter(|(_, channel)| wanted.channel(**channel));
+            let numbers = numbers.map(|(topic, _)| topic.to_string()).collect::<Vec<_>>().join(",");
+            only += &format!(" AND topic_id IN ({numbers})");
+        }
         let (start, end) = wanted.times.clone().into_inner();
-        let from =
-            format!("FROM messages WHERE topic_id IN ({numbers}) AND timestamp BETWEEN {start} AND {end}");
-        let select = format!("SELECT timestamp, id, topic_id, data {from}");
+        if (start, end) != (i64::MIN, i64::MAX) {
+            // The plus keeps SQLite from choosing an index for it.
+            only += &format!(" AND +timestamp BETWEEN {start} AND {end}");
+        }
+        let select = "SELECT timestamp, id, topic_id, data FROM messages";
         let order = if wanted.in_file_order {
-            Order::File(format!("{select} AND ?1 = ?1 AND id > ?2 ORDER BY id"))
+            Order::File(format!("{select} NOT INDEXED WHERE ?1 = ?1 AND id > ?2{only} ORDER BY id"))
         } else if has_time_index(&database).map_err(refused)? {
-            Order::Time(format!("{select} AND (timestamp, id) > (?1, ?2) ORDER BY timestamp, id"))
+            let range = format!("timestamp <= {end} AND (timestamp, id) > (?1, ?2)");
+            Order::Time(format!("{select} WHERE {range}{only} ORDER BY timestamp, id"))
         } else {
-            let query = format!("SELECT id {from} ORDER BY timestamp, id");
+            let query = format!("SELECT id FROM messages WHERE id > ?1{only} ORDER BY timestamp, id");
             let sorted = || -> rusqlite::Result<Vec<i64>> {
-                database.prepare(&query)?.query_map([], |row| row.get(0))?.collect()
+                database.prepare(&query)?.query_map([i64::MIN], |row| row.get(0))?.collect()
             };
             Order::Sorted(sorted().map_err(refused)?.into_iter())
         };
-        let (after, bytes, ready) = ((i64::MIN, i64::MIN), Bytes::new(), VecDeque::new());
+        let after = if wanted.in_file_order { i64::MIN } else { start };
+        let after = (after, i64::MIN);
+        let (bytes, ready) = (Bytes::new(), VecDeque::new());
         Ok(Self { database, topics, is_zstd, order, after, bytes, ready })
     }
 

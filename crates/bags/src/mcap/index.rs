@@ -5,31 +5,23 @@ use std::collections::HashSet;
 use opendr_engine::{Error, Result};
 
 use super::channels::Channels;
-use super::chunk::{self, Stretch};
 use super::record::{Place, time_ns};
 use super::{FOOTER, MAGIC, op};
+use crate::chunked::{self, Chunked, Part, Stretch, TOGETHER};
 use crate::fields::Fields;
 use crate::source::{Source, Window};
-use crate::storage::Summary;
+use crate::storage::Storage;
 
-/// A stretch with what is known of it.
-pub(super) struct Part {
-    pub stretch: Stretch,
-    pub span: (i64, i64),
-    /// The channels of its messages; none are known when the file has no indices of messages.
-    pub channels: Vec<usize>,
+/// Opens an MCAP file.
+pub(crate) fn open(source: Source) -> Result<impl Storage + use<>> {
+    let index = Index::read(&source)?;
+    Ok(Chunked::new(source, index))
 }
 
-/// Everything but the messages.
-#[derive(Default)]
-pub(super) struct Index {
-    pub summary: Summary,
-    pub channels: Channels,
-    pub parts: Vec<Part>,
-}
+type Index = chunked::Index<Channels>;
 
 impl Index {
-    pub fn read(source: &Source) -> Result<Self> {
+    fn read(source: &Source) -> Result<Self> {
         let start = MAGIC.len() as u64;
         let header = Place::read(&mut Window::new(source), start)?;
         if header.op != op::HEADER {
@@ -61,8 +53,8 @@ impl Index {
                 _ => Default::default(),
             };
             match place.op {
-                op::SCHEMA => index.channels.add_schema(&body)?,
-                op::CHANNEL => index.channels.add_channel(&mut index.summary, &body)?,
+                op::SCHEMA => index.layout.add_schema(&body)?,
+                op::CHANNEL => index.layout.add_channel(&mut index.summary, &body)?,
                 op::CHUNK_INDEX => infos.push(body),
                 op::STATISTICS => statistics = Some(body),
                 _ => {}
@@ -84,7 +76,7 @@ impl Index {
         fields.take(8)?;
         let told = fields.u32()? as usize;
         // Messages outside of chunks are in no index.
-        if channels != self.channels.len() || told != chunks || (messages > 0 && chunks == 0) {
+        if channels != self.layout.len() || told != chunks || (messages > 0 && chunks == 0) {
             return Err(Error::format("the summary is not whole"));
         }
         let (start, end) = (time_ns(fields.u64()?)?, time_ns(fields.u64()?)?);
@@ -94,7 +86,7 @@ impl Index {
         let mut counts = Fields(fields.sized()?);
         let mut total = 0_u64;
         while !counts.is_empty() {
-            let (channel, count) = (self.channels.index(counts.u16()?)?, counts.u64()?);
+            let (channel, count) = (self.layout.index(counts.u16()?)?, counts.u64()?);
             self.summary.count(channel, count);
             total = total.saturating_add(count);
         }
@@ -114,7 +106,7 @@ impl Index {
         let mut offsets = Fields(fields.sized()?);
         let mut channels = Vec::new();
         while !offsets.is_empty() {
-            channels.push(self.channels.index(offsets.u16()?)?);
+            channels.push(self.layout.index(offsets.u16()?)?);
             offsets.u64()?;
         }
         self.parts.push(Part { stretch: Stretch::Chunk { offset }, span, channels });
@@ -131,15 +123,14 @@ impl Index {
                 break;
             }
             match place.op {
-                // A part that is damaged is left out; where the next one starts is known.
                 op::CHUNK => {
                     index.add_loose(source, loose.take());
-                    index.add(source, Stretch::Chunk { offset: at }).ok();
+                    index.add(source, Stretch::Chunk { offset: at });
                 }
                 op::SCHEMA | op::CHANNEL | op::MESSAGE => {
                     let (offset, _) = loose.unwrap_or((at, 0));
                     loose = Some((offset, place.end() - offset));
-                    if place.end() - offset > 1 << 20 {
+                    if place.end() - offset > TOGETHER {
                         index.add_loose(source, loose.take());
                     }
                 }
@@ -150,27 +141,6 @@ impl Index {
         }
         index.add_loose(source, loose);
         index
-    }
-
-    fn add_loose(&mut self, source: &Source, loose: Option<(u64, u64)>) {
-        if let Some((offset, len)) = loose {
-            self.add(source, Stretch::Loose { offset, len }).ok();
-        }
-    }
-
-    fn add(&mut self, source: &Source, stretch: Stretch) -> Result<()> {
-        let bytes = stretch.read(source)?;
-        chunk::channels(&bytes, &mut self.channels, &mut self.summary)?;
-        let loaded = chunk::load(bytes, &self.channels, |_, _| true)?;
-        let times = || loaded.entries.iter().map(|entry| entry.log_time_ns);
-        let (Some(start), Some(end)) = (times().min(), times().max()) else { return Ok(()) };
-        let mut channels: Vec<_> = loaded.entries.iter().map(|entry| entry.channel as usize).collect();
-        channels.iter().for_each(|channel| self.summary.count(*channel, 1));
-        channels.sort_unstable();
-        channels.dedup();
-        self.summary.cover(start, end);
-        self.parts.push(Part { stretch, span: (start, end), channels });
-        Ok(())
     }
 }
 

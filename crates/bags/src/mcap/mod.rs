@@ -4,11 +4,10 @@
 mod channels;
 mod chunk;
 mod index;
-mod reader;
 mod record;
 mod writer;
 
-pub(crate) use reader::Mcap;
+pub(crate) use index::open;
 pub(crate) use writer::McapWriter;
 
 /// What a file starts and ends with.
