@@ -1,5 +1,6 @@
 // What every fuzz target feeds, shared with the test that replays the corpora (`crates/opendr/tests/corpus.rs`).
 
+use opendr_bags::{Bag, Selection};
 use opendr_engine::Value;
 use opendr_engine::data::Image;
 use opendr_engine::model::Manifest;
@@ -10,7 +11,7 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 21] = [
+pub const PARSERS: [(&str, Parser); 23] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("card_toml", card_toml),
@@ -32,6 +33,8 @@ pub const PARSERS: [(&str, Parser); 21] = [
     ("optuna_sqlite", optuna_sqlite),
     ("xml_rpc", opendr_ros1::fuzzing::xml_rpc),
     ("tcpros_header", opendr_ros1::fuzzing::tcpros_header),
+    ("bag1", recording),
+    ("mcap", recording),
 ];
 
 fn manifest_json(bytes: &[u8]) {
@@ -142,6 +145,18 @@ fn optuna_journal(bytes: &[u8]) {
 
 fn optuna_sqlite(bytes: &[u8]) {
     opendr_tuning::Storage::from_sqlite_bytes(bytes).ok();
+}
+
+/// Every format that is read from memory, by its first bytes.
+fn recording(bytes: &[u8]) {
+    let Ok(bag) = Bag::from_bytes(bytes.to_vec()) else { return };
+    assert_eq!(bag.channels().len(), bag.message_counts().len());
+    for in_file_order in [false, true] {
+        let messages = bag.select(&Selection { in_file_order, ..Selection::default() }).unwrap();
+        for message in messages.take(1000).flatten() {
+            assert!(message.channel < bag.channels().len());
+        }
+    }
 }
 
 /// Feeds the parser called `name`.

@@ -95,6 +95,11 @@ pub trait Graph: Send {
     /// As [`Graph::advertise`].
     fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()>;
 
+    /// Whether somebody else has ended the node (`rosnode kill`).
+    fn is_over(&self) -> bool {
+        false
+    }
+
     /// The clock of the ROS.
     fn clock(&self) -> Clock;
 

@@ -64,11 +64,6 @@ impl Ros1Node {
         let text = |(name, value)| param_value(&value).map(|value| (name, value.to_string()));
         Ok(parameters.into_iter().filter_map(text).collect())
     }
-
-    /// Whether `rosnode kill` or a second node of the same name has ended it.
-    pub fn is_shut_down(&self) -> bool {
-        self.node.is_shut_down()
-    }
 }
 
 impl Graph for Ros1Node {
@@ -159,6 +154,11 @@ impl Graph for Ros1Node {
             self.watches.push(self.node.watch_parameter(&key, changed)?.0);
         }
         Ok(())
+    }
+
+    /// By `rosnode kill` or a second node of the same name.
+    fn is_over(&self) -> bool {
+        self.node.is_shut_down()
     }
 
     fn clock(&self) -> Clock {

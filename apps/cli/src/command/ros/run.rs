@@ -7,7 +7,7 @@ use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::ros::{
-    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, Ros2Node, Ros2Options, RosArgs, Severity,
+    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, Ros2Options, RosArgs, Severity,
 };
 
 use super::node::{node_grammar, options, set_parameters};
@@ -89,37 +89,40 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     }
     let Some(first) = nodes.first() else { return Ok(Outcome::Done) };
     let mut feeds = Feeds::default();
-    match ros {
-        Ros::One => {
-            let mut running = Vec::new();
-            for matches in &nodes {
-                running.push(start_ros1(matches, &ros_words, &mut feeds)?);
+    let mut running = Vec::new();
+    // The participant stays until its nodes are gone.
+    let mut participant = None;
+    for matches in &nodes {
+        running.push(match ros {
+            Ros::One => start_ros1(matches, &ros_words, &mut feeds)?,
+            Ros::Two => {
+                let options = || Ros2Options {
+                    domain_id: first.get_one("domain-id").copied(),
+                    networks: first.get_many("network").into_iter().flatten().copied().collect(),
+                };
+                let ros2 = match &mut participant {
+                    Some(ros2) => ros2,
+                    none => none.insert(Ros2::new(&options())?),
+                };
+                start_ros2(ros2, matches, &ros_words, &mut feeds)?
             }
-            let shut_down = |graph: &Ros1Node| graph.is_shut_down();
-            serve(running, &shut_down);
-        }
-        Ros::Two => {
-            let ros2 = Ros2::new(&Ros2Options {
-                domain_id: first.get_one("domain-id").copied(),
-                networks: first.get_many("network").into_iter().flatten().copied().collect(),
-            })?;
-            let mut running = Vec::new();
-            for matches in &nodes {
-                running.push(start_ros2(&ros2, matches, &ros_words, &mut feeds)?);
-            }
-            serve(running, &|_: &Ros2Node| false);
-        }
+        });
     }
+    serve(running);
     Ok(Outcome::Done)
 }
 
-/// Runs all nodes until Ctrl-C or until they are over.
-fn serve<G: Sync>(running: Vec<(G, LearnerNode)>, is_over: &(impl Fn(&G) -> bool + Sync)) {
-    let (graphs, nodes): (Vec<G>, Vec<LearnerNode>) = running.into_iter().unzip();
+type Running = (Box<dyn Graph>, LearnerNode);
+
+/// Runs all nodes until Ctrl-C or until they are over; none goes before all do, since they share what they listen to.
+fn serve(running: Vec<Running>) {
     std::thread::scope(|scope| {
-        for (graph, node) in graphs.iter().zip(nodes) {
-            scope.spawn(move || node.run(&|| interrupted() || is_over(graph)));
-        }
+        let work = |(graph, node): Running| {
+            node.run(&|| interrupted() || graph.is_over());
+            graph
+        };
+        let threads: Vec<_> = running.into_iter().map(|one| scope.spawn(move || work(one))).collect();
+        drop(threads.into_iter().map(std::thread::ScopedJoinHandle::join).collect::<Vec<_>>());
     });
 }
 
@@ -134,31 +137,22 @@ fn parse(ros: Ros, words: &[OsString]) -> Result<Result<ArgMatches, Outcome>> {
     }))
 }
 
-fn start_ros2(
-    ros2: &Ros2,
-    matches: &ArgMatches,
-    ros_words: &[String],
-    feeds: &mut Feeds,
-) -> Result<(Ros2Node, LearnerNode)> {
+fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = ros2.node(names)?;
     let node = learner_node(&mut graph, matches, &args.parameters, feeds)?;
     graph.start()?;
-    Ok((graph, node))
+    Ok((Box::new(graph), node))
 }
 
-fn start_ros1(
-    matches: &ArgMatches,
-    ros_words: &[String],
-    feeds: &mut Feeds,
-) -> Result<(Ros1Node, LearnerNode)> {
+fn start_ros1(matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = Ros1Node::new(names)?;
     // What a launch file has set; the words are closer.
     let mut parameters = graph.private_parameters()?;
     parameters.extend(args.parameters);
     let node = learner_node(&mut graph, matches, &parameters, feeds)?;
-    Ok((graph, node))
+    Ok((Box::new(graph), node))
 }
 
 /// The node's names and what the words after `--ros-args` say.
