@@ -9,22 +9,23 @@ Each runs peer/peer_*.py with the interpreter that has its ROS and is told what 
         [message] = seen.wait(1)
         detections = peer.decode("vision_msgs/msg/Detection2DArray", message.data)
 
-Messages are bytes: CDR with its header for ROS 2, ROS 1's format for ROS 1.
+`to=seen` has `publish` wait until a Subscription of another peer is connected. Messages are bytes: CDR with its header
+for ROS 2, ROS 1's format for ROS 1.
 """
 
 import itertools
 import json
 import os
 import queue
-import signal
-import socket
 import subprocess
 import sys
 import threading
-import time
-import xmlrpc.client
 from concurrent.futures import Future
 from pathlib import Path
+
+from patience import PATIENCE, wait_until
+from roscore import Roscore  # noqa: F401
+from subscription import Subscription
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
@@ -32,8 +33,6 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 DEBIAN_PYTHON = "/usr/bin/python3"
 ROS1_MESSAGES = Path(os.environ.get("OPENDR_ROS1_MESSAGES", TARGET / "ros1-messages"))
 DISTRIBUTIONS = ["jazzy", "kilted"]
-# Waits end as soon as there is what they wait for; this is for a machine that is busy.
-PATIENCE = 60
 
 domains = itertools.count(1 + os.getpid() % 50)
 
@@ -51,53 +50,6 @@ def new_domain():
 
 class PeerError(Exception):
     """What a peer could not do."""
-
-
-class Received:
-    """A message that a peer received."""
-
-    def __init__(self, event):
-        # Nanoseconds since 1970, when the peer had it.
-        self.at = event["at"]
-        self.size = event["bytes"]
-        self.sha256 = event["sha256"]
-        # (seconds, nanoseconds) of its header, or None.
-        self.stamp = event["stamp"] and tuple(event["stamp"])
-        # None when it is longer than 64 KiB.
-        self.data = bytes.fromhex(event["hex"]) if "hex" in event else None
-
-
-class Subscription:
-    """What came on a topic."""
-
-    def __init__(self, peer, number):
-        self.peer = peer
-        self.number = number
-        self.messages = []
-        self.arrived = threading.Condition()
-
-    def take(self, event):
-        with self.arrived:
-            self.messages.append(Received(event))
-            self.arrived.notify_all()
-
-    def wait(self, count, timeout=PATIENCE):
-        """The messages, when there are `count`; AssertionError when there are fewer after `timeout` seconds."""
-        with self.arrived:
-            if not self.arrived.wait_for(lambda: len(self.messages) >= count, timeout):
-                raise AssertionError(f"{len(self.messages)} of {count} messages within {timeout} s")
-            return list(self.messages)
-
-    def clear(self):
-        with self.arrived:
-            self.messages.clear()
-
-    def wait_for_publishers(self, count=1, timeout=PATIENCE):
-        """Until the peer knows of `count` publishers."""
-        self.peer.request("wait_for_publishers", timeout, subscription=self.number, count=count)
-
-    def close(self):
-        self.peer.request("unsubscribe", subscription=self.number)
 
 
 class Peer:
@@ -272,14 +224,6 @@ class Peer:
 WAITING = {"call", "wait_for_publishers"}
 
 
-def wait_until(done, timeout, what):
-    end = time.monotonic() + timeout
-    while not done():
-        if time.monotonic() > end:
-            raise AssertionError(f"{what} not within {timeout} s")
-        time.sleep(0.05)
-
-
 class Ros2Peer(Peer):
     """rclpy of a distribution; `domain` is the ROS_DOMAIN_ID, `environment` what else it shall have."""
 
@@ -289,7 +233,10 @@ class Ros2Peer(Peer):
         super().__init__(program, {"ROS_DOMAIN_ID": str(domain), **(environment or {})})
 
     def fields_alone(self, type, data):
-        """What rclpy wrote of a message, with zeros between the fields and nothing after them (peer/ros2_messages.py)."""
+        """What rclpy wrote of a message, with zeros between the fields and nothing after them (peer/ros2_messages.py).
+
+        PeerError when that is not as long as rclpy's messages are.
+        """
         return bytes.fromhex(self.request("fields_alone", type=type, hex=data.hex()))
 
     def declare_parameters(self, values):
@@ -330,57 +277,3 @@ class CyclonePeer(Peer):
     def random_big_endian(self, type, seed):
         """`random`'s message with the most significant bytes first."""
         return bytes.fromhex(self.request("random", type=type, seed=seed, big_endian=True))
-
-
-class Roscore:
-    """ROS 1's master at a port of its own; `environment` is what its nodes need."""
-
-    def __init__(self, folder):
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            port = probe.getsockname()[1]
-        self.uri = f"http://127.0.0.1:{port}/"
-        self.environment = {
-            "ROS_MASTER_URI": self.uri,
-            "ROS_IP": "127.0.0.1",
-            "ROS_HOSTNAME": "127.0.0.1",
-            "ROS_HOME": str(folder),
-            "ROS_LOG_DIR": str(folder),
-        }
-        self.process = subprocess.Popen(
-            ["roscore", "-p", str(port)],
-            env={**os.environ, **self.environment},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            start_new_session=True,
-        )
-        try:
-            wait_until(self.answers, PATIENCE, f"roscore at {self.uri}")
-        except AssertionError:
-            self.close()
-            raise
-
-    def answers(self):
-        """Whether the master and rosout, which comes last, are there."""
-        try:
-            _, _, (_, subscribers, _) = xmlrpc.client.ServerProxy(self.uri).getSystemState("/test")
-        except OSError:
-            return False
-        return any(topic == "/rosout" for topic, _ in subscribers)
-
-    def __enter__(self):
-        return self
-
-    def __exit__(self, *_):
-        self.close()
-
-    def close(self):
-        for wanted in (signal.SIGINT, signal.SIGKILL):
-            try:
-                os.killpg(self.process.pid, wanted)
-                self.process.wait(15)
-                return
-            except subprocess.TimeoutExpired:
-                continue
-            except ProcessLookupError:
-                return

@@ -1,4 +1,4 @@
-"""Values for the fields of messages that find what ordinary ones do not: extremes, NaN, nothing, much, other scripts."""
+"""Values for fields that find what ordinary ones do not: extremes, NaN, nothing, much, other scripts."""
 
 import random
 import struct
