@@ -1,0 +1,200 @@
+"""Nodes of OpenDR among real nodes of ROS 2."""
+
+import json
+import signal
+import struct
+import subprocess
+
+import peers
+import pytest
+from node import Node, environment, opendr
+from pictures import image_fields, noise, photograph
+
+IMAGE, BOXES = "sensor_msgs/msg/Image", "vision_msgs/msg/Detection2DArray"
+COMPRESSED, TRIGGER = "sensor_msgs/msg/CompressedImage", "std_srvs/srv/Trigger"
+DETECTOR, CLASSIFIER = "single_shot_detector", "image_classifier"
+
+
+@pytest.fixture(scope="module")
+def detector(ros2):
+    """A node around the detector that the command brings along."""
+    with Node("ros2", DETECTOR, "--image", "/camera/image_raw", ROS_DOMAIN_ID=ros2.domain) as node:
+        ros2.wait_for_node(f"/{DETECTOR}")
+        yield node
+
+
+def inferred(path):
+    """What the command answers to the picture, without a ROS."""
+    command = [opendr(), "infer", DETECTOR, path, "--json", "--quiet"]
+    done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)["outputs"]["boxes"]["boxes"]
+
+
+def test_detections_are_those_of_the_library(ros2, detector):
+    path = photograph("bus.jpg")
+    photo = path.read_bytes()
+    seen = ros2.subscribe(f"/{DETECTOR}/boxes", BOXES)
+    seen.wait_for_publishers()
+    # The same bytes, so that decoders cannot differ; a node of its own for the other message.
+    words = [DETECTOR, "--name", "zipped", "--image", "/camera/compressed", "--image-message", COMPRESSED]
+    with Node("ros2", *words, ROS_DOMAIN_ID=ros2.domain):
+        answers = ros2.subscribe("/zipped/boxes", BOXES)
+        answers.wait_for_publishers()
+        message = {"header": {"stamp": {"sec": 12, "nanosec": 34}, "frame_id": "eye"}, "format": "jpeg", "data": list(photo)}
+        ros2.publish("/camera/compressed", COMPRESSED, [ros2.encode(COMPRESSED, message)])
+        [answer] = answers.wait(1)
+    detections = ros2.decode(BOXES, answer.data)
+    assert detections["header"] == message["header"]
+    wanted = inferred(path)
+    assert len(wanted) > 0 and len(detections["detections"]) == len(wanted)
+    for found, box in zip(detections["detections"], wanted):
+        [result] = found["results"]
+        assert result["hypothesis"]["class_id"] == "person"
+        assert result["hypothesis"]["score"] == pytest.approx(box["confidence"], rel=1e-6)
+        centre = found["bbox"]["center"]["position"]
+        assert centre["x"] == pytest.approx(box["left"] + box["width"] / 2, rel=1e-5)
+        assert found["bbox"]["size_y"] == pytest.approx(box["height"], rel=1e-5)
+        assert found["header"] == message["header"]
+
+
+def test_every_picture_arrives_and_stamps_rise(ros2):
+    with Node("ros2", CLASSIFIER, ROS_DOMAIN_ID=ros2.domain):
+        seen = ros2.subscribe(f"/{CLASSIFIER}/category", "vision_msgs/msg/Classification")
+        told = ros2.subscribe("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray")
+        seen.wait_for_publishers()
+        told.wait_for_publishers()
+        rgb = noise(640, 480)
+        frames = [ros2.encode(IMAGE, image_fields(640, 480, rgb, sec=2, nanosec=index)) for index in range(10)]
+        ros2.publish("/image_raw", IMAGE, frames, count=300, rate=30, timeout=120)
+
+        def received():
+            for message in reversed(list(told.messages)):
+                for status in ros2.decode("diagnostic_msgs/msg/DiagnosticArray", message.data)["status"]:
+                    if status["hardware_id"] == CLASSIFIER:
+                        return {value["key"]: value["value"] for value in status["values"]}
+            return {"received": "0"}
+
+        peers.wait_until(lambda: received()["received"] == "300", 60, "300 of 300 pictures")
+        counts = received()
+    assert int(counts["errors"]) == 0
+    assert int(counts["processed"]) + int(counts["left out for newer ones"]) == 300
+    assert len(seen.messages) == int(counts["processed"])
+
+
+def test_parameters_have_ranges_and_change_while_it_runs(ros2, detector):
+    node = f"/{DETECTOR}"
+    assert {"threshold", "annotate", "use_sim_time"} <= set(ros2.list_parameters(node))
+    threshold, sim = ros2.describe_parameters(node, ["threshold", "use_sim_time"])
+    assert threshold["floating_point_range"] == [{"from_value": 0.0, "to_value": 1.0, "step": 0.0}]
+    assert threshold["description"] and not threshold["read_only"] and sim["read_only"]
+    before = ros2.get_parameters(node, ["threshold"])
+    assert ros2.set_parameters(node, {"threshold": 0.125}) == [{"successful": True, "reason": ""}]
+    assert ros2.get_parameters(node, ["threshold"]) == [0.125]
+    [refused] = ros2.set_parameters(node, {"threshold": 1.5})
+    assert not refused["successful"] and "out of range" in refused["reason"]
+    [refused] = ros2.set_parameters(node, {"threshold": float("nan")})
+    assert not refused["successful"]
+    [refused] = ros2.set_parameters(node, {"use_sim_time": True})
+    assert not refused["successful"] and "cannot change" in refused["reason"]
+    [refused] = ros2.set_parameters(node, {"nonsense": 1})
+    assert not refused["successful"]
+    assert ros2.get_parameters(node, ["threshold"]) == [0.125]
+    ros2.set_parameters(node, {"threshold": before[0]})
+
+
+def test_words_of_ros_name_and_set_it(ros2):
+    words = ["--ros-args", "-r", "__ns:=/robot", "-r", "__node:=eyes", "-r", "image_raw:=/front", "-p", "threshold:=0.75"]
+    with Node("ros2", DETECTOR, *words, ROS_DOMAIN_ID=ros2.domain):
+        ros2.wait_for_node("/robot/eyes")
+        assert ros2.get_parameters("/robot/eyes", ["threshold"]) == [0.75]
+        peers.wait_until(lambda: ros2.subscribers("/front"), 30, "a subscription to /front")
+        assert "/robot/eyes/boxes" in ros2.topics()
+
+
+def test_learners_of_one_process_share_the_picture(ros2):
+    words = [DETECTOR, "--image", "/shared", "+", CLASSIFIER, "--image", "/shared"]
+    with Node("ros2", *words, ready=2, ROS_DOMAIN_ID=ros2.domain):
+        boxes = ros2.subscribe(f"/{DETECTOR}/boxes", BOXES)
+        category = ros2.subscribe(f"/{CLASSIFIER}/category", "vision_msgs/msg/Classification")
+        boxes.wait_for_publishers()
+        category.wait_for_publishers()
+        peers.wait_until(lambda: ros2.subscribers("/shared"), 30, "a subscription")
+        assert len(ros2.subscribers("/shared")) == 1
+        ros2.publish("/shared", IMAGE, [ros2.encode(IMAGE, image_fields(64, 48, noise(64, 48), sec=9))])
+        assert boxes.wait(1)[0].stamp == category.wait(1)[0].stamp == (9, 0)
+
+
+def test_the_annotated_picture_is_compressed(ros2, detector):
+    seen = ros2.subscribe(f"/{DETECTOR}/annotated/compressed", COMPRESSED)
+    seen.wait_for_publishers()
+    picture = ros2.encode(IMAGE, image_fields(64, 48, noise(64, 48), sec=5))
+    # The node looks now and then whether somebody listens.
+    background = ros2.publish("/camera/image_raw", IMAGE, [picture], count=60, rate=20, background=True)
+    message = ros2.decode(COMPRESSED, seen.wait(1)[0].data)
+    background.result(60)
+    assert bytes(message["data"][:2]) == b"\xff\xd8" and "jpeg" in message["format"]
+    assert message["header"]["stamp"] == {"sec": 5, "nanosec": 0}
+
+
+def test_reset_and_labels(ros2, detector):
+    response = ros2.decode(f"{TRIGGER}_Response", ros2.call(f"/{DETECTOR}/reset", TRIGGER, ros2.encode(f"{TRIGGER}_Request", {})))
+    assert response["success"]
+    labels = ros2.subscribe(
+        f"/{DETECTOR}/label_info", "vision_msgs/msg/LabelInfo", qos=["reliable", "transient_local"], depth=1
+    )
+    [info] = labels.wait(1)
+    names = [row["class_name"] for row in ros2.decode("vision_msgs/msg/LabelInfo", info.data)["class_map"]]
+    assert "person" in names
+
+
+def test_nonsense_does_not_stop_it(ros2, detector):
+    """Broken CDR, lengths of 4 GB, pictures that contradict themselves, another type on the topic."""
+    seen = ros2.subscribe(f"/{DETECTOR}/boxes", BOXES)
+    seen.wait_for_publishers()
+    good = ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=77))
+    length = good.rindex(struct.pack("<I", 32 * 24 * 3))
+    huge = good[:length] + b"\xff\xff\xff\xff" + good[length + 4 :]
+    wide = ros2.encode(IMAGE, {**image_fields(32, 24, noise(32, 24)), "width": 4_000_000_000})
+    odd = ros2.encode(IMAGE, {**image_fields(32, 24, noise(32, 24)), "encoding": "nonsense"})
+    broken = [huge, wide, odd, good[:40], good[:4], b"\x00\x07\x00\x00" + good[4:], b"\x00\x01\x00\x00"]
+    ros2.publish("/camera/image_raw", IMAGE, broken, rate=20)
+    with peers.Ros2Peer("jazzy", ros2.domain, "stranger") as stranger:
+        stranger.advertise("/camera/image_raw", "std_msgs/msg/String")
+        ros2.publish("/camera/image_raw", IMAGE, [good], count=20, rate=20)
+        peers.wait_until(lambda: any(message.stamp == (77, 0) for message in seen.messages), 30, "an answer")
+    assert detector.process.poll() is None
+    assert detector.memory() < 1 << 30
+
+
+def test_peers_may_die_and_come_back(ros2, detector):
+    for stamp in (101, 102):
+        with peers.Ros2Peer("jazzy", ros2.domain, f"camera{stamp}") as camera:
+            seen = camera.subscribe(f"/{DETECTOR}/boxes", BOXES)
+            seen.wait_for_publishers()
+            picture = camera.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=stamp))
+            camera.publish("/camera/image_raw", IMAGE, [picture], count=200, rate=20, background=True)
+            peers.wait_until(lambda: any(message.stamp == (stamp, 0) for message in seen.messages), 30, "an answer")
+            camera.process.kill()
+
+
+def test_it_ends_when_it_is_told_to(ros2):
+    for how in (signal.SIGINT, signal.SIGTERM):
+        with Node("ros2", CLASSIFIER, ROS_DOMAIN_ID=ros2.domain) as node:
+            assert node.stop(how) == 130
+
+
+def test_usage_errors_are_told():
+    def run(*words):
+        command = [opendr(), "ros2", "run", *words]
+        return subprocess.run(command, env=environment(), capture_output=True, text=True, timeout=60)
+
+    assert run("--help").returncode == 0
+    helped = run(DETECTOR, "--help")
+    assert helped.returncode == 0 and "--image <TOPIC>" in helped.stdout and "image_raw" in helped.stdout
+    assert run(DETECTOR, "--nonsense", "1").returncode == 2
+    wrong = run(DETECTOR, "--image-message", "std_msgs/msg/String")
+    assert wrong.returncode == 11 and "there are sensor_msgs/msg/Image" in wrong.stderr
+    assert run(DETECTOR, "--ros-args", "-p", "threshold:=7").returncode == 12
+    assert run(DETECTOR, "--image", "a b").returncode == 11
+
+
