@@ -27,7 +27,9 @@ fn page() -> String {
         assert!(topics.inputs.len() == entry.ports.len() && topics.outputs.len() == entry.outputs.len());
         for row in 0..rows {
             let cells = |topics: &[opendr::ros::TopicOptions]| match topics.get(row) {
-                Some(topic) => (format!("`{}`", topic.topic), format!("`{}`", topic.message_type.ros2_name())),
+                Some(topic) => {
+                    (format!("`{}`", topic.topic), format!("`{}`", topic.message_type.ros2_name()))
+                }
                 None => Default::default(),
             };
             let name = if row == 0 { format!("`{}`", entry.spec.name) } else { String::new() };

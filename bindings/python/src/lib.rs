@@ -18,6 +18,8 @@ mod param;
 mod pixels;
 mod plugin;
 mod registry;
+#[cfg(feature = "ros")]
+mod ros_bridge;
 mod source;
 mod study;
 mod target;
@@ -42,6 +44,14 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<environment::VectorEnvironment>()?;
     module.add_class::<environment::SharedArray>()?;
     module.add_class::<study::Study>()?;
+    #[cfg(feature = "ros")]
+    for function in [
+        wrap_pyfunction!(ros_bridge::ros_message_types, module)?,
+        wrap_pyfunction!(ros_bridge::value_from_ros, module)?,
+        wrap_pyfunction!(ros_bridge::ros_from_value, module)?,
+    ] {
+        module.add_function(function)?;
+    }
     for function in [
         wrap_pyfunction!(registry::entries, module)?,
         wrap_pyfunction!(environment::environments, module)?,

@@ -19,3 +19,4 @@ pub use parameter_table::ParameterTable;
 pub use ros_args::RosArgs;
 pub use ros1::Ros1Node;
 pub use ros2::{Ros2, Ros2Node, Ros2Options};
+pub use {opendr_messages as messages, opendr_ros_bridge as bridge};

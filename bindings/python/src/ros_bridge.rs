@@ -1,0 +1,77 @@
+//! Messages of rclpy and rospy, as bytes, to data and targets and back.
+
+use opendr::ros::bridge::{RosBridge, message_types};
+use opendr::ros::messages::{Message, MessageType, Wire};
+use opendr::{Error, Result, ValueType};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::datum::{python_from_value, value_from_python};
+use crate::error::ToPython;
+
+/// The names of the messages of ROS 2 that stand for the type called `kind`; the first is the usual one.
+#[pyfunction]
+pub fn ros_message_types(py: Python<'_>, kind: &str) -> PyResult<Vec<&'static str>> {
+    let kind: ValueType = kind.parse().to_python(py)?;
+    Ok(message_types(kind).map(MessageType::ros2_name).collect())
+}
+
+/// The data or target in the bytes of a message; `kind` is the name of its type, the first that the message stands for when
+/// it is not given.
+#[pyfunction]
+pub fn value_from_ros<'py>(
+    py: Python<'py>,
+    bytes: &[u8],
+    message: &str,
+    is_ros1: bool,
+    kind: Option<&str>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let bytes = bytes.to_vec();
+    let read = || -> Result<_> {
+        let message: MessageType = message.parse()?;
+        let kind = match kind {
+            Some(kind) => kind.parse()?,
+            None => usual_type(message)?,
+        };
+        RosBridge::default().value_from_message(kind, Message::from_bytes(message, wire(is_ros1), &bytes)?)
+    };
+    let value = py.detach(read).to_python(py)?;
+    python_from_value(py, value.as_value_ref())
+}
+
+/// The bytes of the message for a datum or target of the type called `kind`.
+#[pyfunction]
+pub fn ros_from_value<'py>(
+    py: Python<'py>,
+    value: &Bound<'_, PyAny>,
+    kind: &str,
+    message: &str,
+    is_ros1: bool,
+    class_ids: &str,
+    jpeg_quality: u8,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let kind: ValueType = kind.parse().to_python(py)?;
+    let value = value_from_python(value, kind)?;
+    let write = || -> Result<_> {
+        let class_ids = opendr::params::Param::from_value(&class_ids.into()).ok_or_else(|| {
+            Error::invalid_param(format!("class_ids = {class_ids:?}: give names or numbers"))
+        })?;
+        let bridge = RosBridge { class_ids, jpeg_quality };
+        bridge.message_from_value(value.as_value_ref(), message.parse()?)?.to_bytes(wire(is_ros1))
+    };
+    Ok(PyBytes::new(py, &py.detach(write).to_python(py)?))
+}
+
+const fn wire(is_ros1: bool) -> Wire {
+    if is_ros1 { Wire::Ros1 } else { Wire::Cdr }
+}
+
+fn usual_type(message: MessageType) -> Result<ValueType> {
+    let stands = |kind: &ValueType| message_types(*kind).next() == Some(message);
+    let kinds = ValueType::ALL.iter().copied();
+    kinds
+        .clone()
+        .find(stands)
+        .or_else(|| kinds.clone().find(|kind| message_types(*kind).any(|known| known == message)))
+        .ok_or_else(|| Error::unsupported(format!("{} stands for no data or target", message.ros2_name())))
+}
