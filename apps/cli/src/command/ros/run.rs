@@ -6,11 +6,10 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
-use opendr::ros::{
-    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, Ros2Options, RosArgs, Severity,
-};
+use opendr::ros::{Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity};
 
 use super::node::{node_grammar, options, set_parameters};
+use super::participant;
 use crate::exit::Outcome;
 use crate::progress_bar::{Bar, interrupted};
 use crate::{learner_flags, loading};
@@ -58,7 +57,7 @@ const WORDS: &str = "words";
 /// What stands between the nodes of one process.
 const NEXT: &str = "+";
 /// What begins the words that ROS's own tools write.
-const ROS_ARGS: &str = "--ros-args";
+pub const ROS_ARGS: &str = "--ros-args";
 
 pub fn grammar(ros: Ros) -> Command {
     Command::new("run")
@@ -91,18 +90,14 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let mut feeds = Feeds::default();
     let mut running = Vec::new();
     // The participant stays until its nodes are gone.
-    let mut participant = None;
+    let mut joined = None;
     for matches in &nodes {
         running.push(match ros {
             Ros::One => start_ros1(matches, &ros_words, &mut feeds)?,
             Ros::Two => {
-                let options = || Ros2Options {
-                    domain_id: first.get_one("domain-id").copied(),
-                    networks: first.get_many("network").into_iter().flatten().copied().collect(),
-                };
-                let ros2 = match &mut participant {
+                let ros2 = match &mut joined {
                     Some(ros2) => ros2,
-                    none => none.insert(Ros2::new(&options())?),
+                    none => none.insert(participant::start_ros2(first)?),
                 };
                 start_ros2(ros2, matches, &ros_words, &mut feeds)?
             }
