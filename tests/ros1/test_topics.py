@@ -112,6 +112,7 @@ def test_a_publisher_that_is_killed_and_started_again(ros):
         seen = len(taker.having("text"))
         taker.wait_for("text", seen + 5)
         giver.kill()
+    assert "/reborn" in taker.wait_for("problem")[0]["problem"]
     peer = ros.peer("take", "/reborn_too", 0)
     for _ in range(2):
         giver = ros.probe("publish", "/reborn_too", 0, 20, "__name:=giver")
