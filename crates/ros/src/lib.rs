@@ -18,7 +18,7 @@ pub use graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger};
 pub use names::Names;
 pub use node::{Feeds, LearnerNode, NodeOptions, NodeParams, TopicOptions, default_topics};
 pub use parameter_table::ParameterTable;
-pub use ros_args::RosArgs;
+pub use ros_args::{RosArgs, words_from_ros1};
 pub use ros1::Ros1Node;
 pub use ros2::{Ros2, Ros2Node, Ros2Options};
 pub use {opendr_messages as messages, opendr_ros_bridge as bridge};

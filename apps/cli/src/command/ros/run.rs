@@ -6,7 +6,9 @@ use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
-use opendr::ros::{Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity};
+use opendr::ros::{
+    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, words_from_ros1,
+};
 
 use super::node::{node_grammar, options, set_parameters};
 use super::participant;
@@ -77,10 +79,17 @@ pub fn grammar(ros: Ros) -> Command {
 pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let words: Vec<OsString> = matches.get_many::<OsString>(WORDS).into_iter().flatten().cloned().collect();
     let at = words.iter().position(|word| word == ROS_ARGS).unwrap_or(words.len());
-    let (words, ros_words) = words.split_at(at);
-    let ros_words: Vec<String> = ros_words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let (words, rest) = words.split_at(at);
+    let mut ros_words: Vec<String> = rest.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let mut own_words = Vec::new();
+    for word in words {
+        match words_from_ros1(&word.to_string_lossy())? {
+            Some(of_ros) => ros_words.extend(of_ros),
+            None => own_words.push(word.clone()),
+        }
+    }
     let mut nodes = Vec::new();
-    for group in words.split(|word| word == NEXT) {
+    for group in own_words.split(|word| word == NEXT) {
         match parse(ros, group)? {
             Ok(matches) => nodes.push(matches),
             Err(outcome) => return Ok(outcome),
