@@ -95,7 +95,7 @@ def stream(ros, node, name, output, width, height, rate, count):
     connected(ros, answers)
     times.clear()
     rgb = noise(width, height)
-    frames = [ros.peer.encode(ros.image, image_fields(width, height, rgb, sec=1, nanosec=index)) for index in range(20)]
+    frames = [ros.peer.encode(ros.image, image_fields(width, height, rgb, sec=1, nanosec=index)) for index in range(20 if width > 100 else 1000)]
     before = node.memory()
     sent = ros.peer.publish("/image_raw", ros.image, frames, count=count, rate=rate, timeout=30 + 3 * count / rate)
     time.sleep(2)
