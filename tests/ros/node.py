@@ -29,9 +29,9 @@ class Node:
 
     verb = "run"
 
-    def __init__(self, ros, *words, binary=None, ready=1, **more):
+    def __init__(self, ros, *words, ready=1, **more):
         self.process = subprocess.Popen(
-            [binary or opendr(), ros, self.verb, *map(str, words)],
+            self.command(ros, *words),
             env={**environment(), **{name: str(value) for name, value in more.items()}},
             stdin=subprocess.DEVNULL,
             stderr=subprocess.PIPE,
@@ -43,6 +43,9 @@ class Node:
         threading.Thread(target=self._listen, daemon=True).start()
         for _ in range(ready):
             self.wait_for_line("is ready as", START)
+
+    def command(self, ros, *words):
+        return [opendr(), ros, self.verb, *map(str, words)]
 
     def _listen(self):
         for line in self.process.stderr:

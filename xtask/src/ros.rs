@@ -11,7 +11,7 @@ use crate::tools::{Python, install_debian};
 const DISTRIBUTIONS: [&str; 2] = ["jazzy", "kilted"];
 
 /// The examples that the tests speak to.
-const EXAMPLES: [&str; 2] = ["message_types", "message_echo"];
+const EXAMPLES: [&str; 3] = ["message_types", "message_echo", "slow_node"];
 
 /// What the tests need and nothing else of the test command, then the tests.
 pub fn run_alone() -> Result<()> {

@@ -14,6 +14,11 @@ const DEPTH: usize = 32;
 /// Pieces of a stream that are kept for a learner that is slow for a while.
 const STREAM_DEPTH: usize = 512;
 
+/// Whether every message of a type counts, as of sound and signals; of pictures and clouds only the newest does.
+pub(super) const fn is_streamed(value_type: ValueType) -> bool {
+    matches!(value_type, ValueType::Audio | ValueType::Timeseries)
+}
+
 /// One frame for each port that has one.
 pub(crate) type Set = Vec<Option<Arc<Frame>>>;
 
@@ -50,14 +55,15 @@ pub(crate) struct Counts {
 
 impl Inbox {
     pub(crate) fn new(entry: &Entry) -> Self {
-        let kind = |port: &opendr_engine::learner::Port| {
-            let streamed = matches!(port.value_type, ValueType::Audio | ValueType::Timeseries);
-            match (port.init, port.optional, streamed && entry.capabilities.streaming) {
-                (true, ..) => Kind::Init,
-                (_, true, _) => Kind::Optional,
-                (.., true) => Kind::Stream,
-                _ => Kind::Newest,
-            }
+        let kind = |port: &opendr_engine::learner::Port| match (
+            port.init,
+            port.optional,
+            is_streamed(port.value_type),
+        ) {
+            (true, ..) => Kind::Init,
+            (_, true, _) => Kind::Optional,
+            (.., true) => Kind::Stream,
+            _ => Kind::Newest,
         };
         Self::of(entry.ports.iter().map(kind).collect())
     }

@@ -5,6 +5,7 @@ use opendr_engine::{Error, Result, ValueType};
 use opendr_messages::MessageType;
 use opendr_ros_bridge::message_types;
 
+use super::inbox::is_streamed;
 use crate::{NodeParams, Qos};
 
 /// A topic for a port or an output.
@@ -44,9 +45,11 @@ pub fn default_topics(entry: &Entry) -> NodeOptions {
         } else {
             port.name.to_owned()
         };
-        // Every piece of a stream counts; of pictures and clouds only the newest does.
-        let streamed = matches!(port.value_type, ValueType::Audio | ValueType::Timeseries) || port.init;
-        let qos = if streamed { Qos { depth: 100, ..Qos::RESULT } } else { Qos::SENSOR };
+        let qos = if is_streamed(port.value_type) || port.init {
+            Qos { depth: 100, ..Qos::RESULT }
+        } else {
+            Qos::SENSOR
+        };
         usual(port.name, port.value_type, topic, qos)
     });
     let outputs = entry.outputs.iter().filter_map(|output| {

@@ -11,7 +11,7 @@ use opendr_messages::{MessageType, std_msgs};
 
 use super::annotated::Annotated;
 use super::diagnostics::Diagnostics;
-use super::inbox::{Inbox, Set};
+use super::inbox::{Inbox, Set, is_streamed};
 use super::labels::Labels;
 use super::outputs::OutputTopics;
 use super::{NodeOptions, NodeParams};
@@ -111,7 +111,8 @@ impl Worker {
             }
         }
         let mut answers: Vec<Outputs> = Vec::new();
-        if self.entry.capabilities.streaming {
+        let streamed = self.entry.ports.iter().any(|port| is_streamed(port.value_type));
+        if streamed && self.entry.capabilities.streaming {
             self.stream.push(Some(&ports), &mut |outputs| answers.push(outputs))?;
         } else {
             answers.push(self.stream.infer(&ports)?);
