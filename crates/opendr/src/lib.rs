@@ -51,7 +51,7 @@ pub use opendr_perception::{
     pose_estimation, speech_recognition, suppression,
 };
 #[cfg(feature = "ros")]
-pub use opendr_ros as ros;
+pub use {opendr_recordings as bags, opendr_ros as ros};
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, TuneData, TuneOptions, Tuned, search_space, tune};

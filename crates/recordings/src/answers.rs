@@ -83,7 +83,13 @@ impl Answers {
     ///
     /// # Errors
     /// As [`Answers::write`].
-    pub fn write_action(&mut self, topic: &str, value: ValueRef<'_>, header: &Header, log_time_ns: i64) -> Result<()> {
+    pub fn write_action(
+        &mut self,
+        topic: &str,
+        value: ValueRef<'_>,
+        header: &Header,
+        log_time_ns: i64,
+    ) -> Result<()> {
         let Some(action) = value.action() else { return Ok(()) };
         self.write_message(topic, &view_action(action, header)?.into(), log_time_ns)
     }

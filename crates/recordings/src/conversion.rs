@@ -16,13 +16,14 @@ pub struct Conversion {
     pub options: WriteOptions,
     /// Only these topics; `None` is all of them.
     pub topics: Option<Vec<String>>,
-    /// Whose messages an MCAP file gets; `None` leaves them as they are. The other formats keep those of one ROS only.
-    pub wire: Option<Wire>,
+    /// An MCAP file gets messages of ROS 2 also from a recording of ROS 1. The other formats keep those of one ROS only.
+    pub is_ros2: bool,
 }
 
-impl From<BagFormat> for Conversion {
-    fn from(format: BagFormat) -> Self {
-        Self { options: format.into(), topics: None, wire: None }
+/// All topics as they are, as far as the format keeps them.
+impl<O: Into<WriteOptions>> From<O> for Conversion {
+    fn from(options: O) -> Self {
+        Self { options: options.into(), topics: None, is_ros2: false }
     }
 }
 
@@ -48,7 +49,8 @@ impl Conversion {
     ) -> Result<u64> {
         let bag = recording.bag();
         let mut selection = Selection { topics: self.topics.clone(), ..Selection::default() };
-        let wants = |channel: &Channel| self.topics.as_ref().is_none_or(|topics| topics.contains(&channel.topic));
+        let wants =
+            |channel: &Channel| self.topics.as_ref().is_none_or(|topics| topics.contains(&channel.topic));
         let mut writer = BagWriter::create(path, self.options)?;
         let (mut ways, mut total, mut kept) = (Vec::new(), 0_u64, Vec::new());
         for (at, (channel, known)) in bag.channels().iter().zip(recording.known()).enumerate() {
@@ -111,7 +113,7 @@ impl Conversion {
         };
         let wanted = match self.options.format {
             BagFormat::Bag1 => Some(Wire::Ros1),
-            BagFormat::Mcap => self.wire.or(own),
+            BagFormat::Mcap if !self.is_ros2 => own,
             _ => Some(Wire::Cdr),
         };
         match (known, wanted) {

@@ -29,6 +29,7 @@ mod channels;
 mod conversion;
 mod recording;
 mod sets;
+mod stamp;
 mod topic;
 
 pub use answers::Answers;
@@ -36,4 +37,5 @@ pub use conversion::Conversion;
 pub use opendr_bags::*;
 pub use recording::{Recording, is_recording};
 pub use sets::{Need, PortTopic, Set, Sets};
+pub use stamp::{stamp_of, value_of};
 pub use topic::Topic;

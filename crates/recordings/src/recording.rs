@@ -16,7 +16,8 @@ const EXTENSIONS: [&str; 3] = ["bag", "mcap", "db3"];
 pub fn is_recording(path: &Path) -> bool {
     let has_extension = |path: &Path| {
         let extension = path.extension().and_then(|extension| extension.to_str());
-        extension.is_some_and(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
+        extension
+            .is_some_and(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
     };
     if !path.is_dir() {
         return has_extension(path);

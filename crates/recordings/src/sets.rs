@@ -5,11 +5,11 @@ use std::collections::VecDeque;
 use opendr_bags::{Channel, Messages, Recorded, Selection};
 use opendr_engine::{Result, ResultExt, Value, ValueType};
 use opendr_messages::Message;
-use opendr_ros_bridge::{RosBridge, nanoseconds, time};
 
 use crate::Recording;
 use crate::channels::Known;
 use crate::recording::decode;
+use crate::stamp::{stamp_of, value_of};
 
 /// How far stamps of what belongs together may lie apart, as in nodes.
 const SLOP_NS: i64 = 20_000_000;
@@ -27,7 +27,7 @@ pub enum Need {
     Required,
     /// Where there is one that fits.
     Optional,
-    /// The newest that came since the last set, however old: what begins a stream.
+    /// The newest that came since the last set, however old: what begins a stream. Before the first there is no set.
     Init,
 }
 
@@ -73,6 +73,8 @@ pub struct Sets {
     known: Vec<Known>,
     messages: Option<Messages>,
     queues: Vec<VecDeque<Waiting>>,
+    /// Whether each port had a message in a set.
+    has_begun: Vec<bool>,
     /// Bytes in the queues.
     held: usize,
     now_ns: i64,
@@ -96,8 +98,10 @@ impl Sets {
         let topics = ports.iter().map(|port| port.topic.clone());
         let messages = Some(bag.select(&Selection::topics(topics))?);
         let queues = ports.iter().map(|_| VecDeque::new()).collect();
+        let has_begun = vec![false; ports.len()];
         let (channels, known) = (bag.channels().to_vec(), recording.known().to_vec());
-        Ok(Self { ports, channels, known, messages, queues, held: 0, now_ns: i64::MIN, unmatched: 0 })
+        let (held, now_ns, unmatched) = (0, i64::MIN, 0);
+        Ok(Self { ports, channels, known, messages, queues, has_begun, held, now_ns, unmatched })
     }
 
     /// Messages of the first port so far for which another port had none.
@@ -113,7 +117,7 @@ impl Sets {
                 continue;
             }
             let message = decode(&self.known, &self.channels, recorded)?;
-            let (message, stamp_ns) = stamped(message, recorded.log_time_ns);
+            let stamp_ns = stamp_of(&message, recorded.log_time_ns);
             self.held += recorded.bytes.len();
             queue.push_back(Waiting { message, recorded: recorded.clone(), stamp_ns });
         }
@@ -135,12 +139,13 @@ impl Sets {
         let Some(first) = lead.front() else { return false };
         let waited = self.now_ns.saturating_sub(first.recorded.log_time_ns) > PATIENCE_NS;
         let is_full = self.held > MOST_BYTES || lead.len() > MOST_WAITING;
-        let came = |queue: &VecDeque<Waiting>| queue.back().is_some_and(|last| last.stamp_ns >= first.stamp_ns);
+        let came =
+            |queue: &VecDeque<Waiting>| queue.back().is_some_and(|last| last.stamp_ns >= first.stamp_ns);
         self.messages.is_none() || waited || is_full || others.iter().all(came)
     }
 
     /// The set around the first that waits; `None` when a port that it needs has nothing.
-    fn take(&mut self, bridge: &RosBridge) -> Option<Result<Set>> {
+    fn take(&mut self) -> Option<Result<Set>> {
         let lead = self.queues.first_mut()?.pop_front()?;
         self.held -= lead.recorded.bytes.len();
         let (stamp_ns, log_time_ns) = (lead.stamp_ns, lead.recorded.log_time_ns);
@@ -165,8 +170,16 @@ impl Sets {
             let taken = queue.drain(..=at).inspect(|old| self.held -= old.recorded.bytes.len());
             waiting.push(taken.last());
         }
-        let is_missing = |(port, other): (&PortTopic, &Option<Waiting>)| port.need == Need::Required && other.is_none();
-        if self.ports.iter().zip(&waiting).any(is_missing) {
+        let mut is_missing = false;
+        for ((port, other), has_begun) in self.ports.iter().zip(&waiting).zip(&mut self.has_begun) {
+            *has_begun |= other.is_some();
+            is_missing |= match port.need {
+                Need::Required => other.is_none(),
+                Need::Optional => false,
+                Need::Init => !*has_begun,
+            };
+        }
+        if is_missing {
             self.unmatched += 1;
             return None;
         }
@@ -177,7 +190,7 @@ impl Sets {
                 set.messages.push(None);
                 continue;
             };
-            match value(port, message, stamp_ns, bridge).context(|| port.topic.clone()) {
+            match value_of(port.value_type, message, stamp_ns).context(|| port.topic.clone()) {
                 Ok(value) => set.values.push(Some(value)),
                 Err(error) => return Some(Err(error)),
             }
@@ -191,11 +204,10 @@ impl Iterator for Sets {
     type Item = Result<Set>;
 
     fn next(&mut self) -> Option<Self::Item> {
-        let bridge = RosBridge::default();
         loop {
             let waits = self.queues.first().is_some_and(|lead| !lead.is_empty());
             if waits && self.is_decided() {
-                match self.take(&bridge) {
+                match self.take() {
                     Some(set) => return Some(set),
                     None => continue,
                 }
@@ -216,25 +228,6 @@ impl Iterator for Sets {
             }
         }
     }
-}
-
-/// A message whose stamp is known: one without has that of its recording.
-fn stamped(mut message: Message, log_time_ns: i64) -> (Message, i64) {
-    let mut stamp_ns = log_time_ns;
-    if let Some(header) = message.header_mut() {
-        match nanoseconds(&header.stamp) {
-            0 => header.stamp = time(log_time_ns).unwrap_or_default(),
-            stamp => stamp_ns = stamp,
-        }
-    }
-    (message, stamp_ns)
-}
-
-fn value(port: &PortTopic, message: Message, stamp_ns: i64, bridge: &RosBridge) -> Result<Value> {
-    let mut value = bridge.value_from_message(port.value_type, message)?;
-    let header = value.header_mut();
-    header.stamp_ns = header.stamp_ns.or(Some(stamp_ns));
-    Ok(value)
 }
 
 #[cfg(test)]
