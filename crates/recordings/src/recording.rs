@@ -93,6 +93,10 @@ impl Recording {
     pub fn topic_for(&self, value_type: ValueType, name: Option<&str>) -> Result<Topic> {
         let topics = self.topics();
         let path = self.path.display();
+        if topics.is_empty() {
+            let cut = if self.bag.is_complete() { "" } else { ": it was cut off or is damaged" };
+            return Err(Error::not_found(format!("{path} has no messages{cut}")));
+        }
         let list = || topics.iter().map(|topic| topic.line(value_type)).collect::<String>();
         let wanted = value_type.name();
         if let Some(name) = name {

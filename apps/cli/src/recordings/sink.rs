@@ -162,9 +162,8 @@ impl FileClock {
                 if item.is_of_stream() && stamp.is_none_or(|stamp| stamp < next) { next } else { 0 };
         }
         let time = stamp.map_or(next, |stamp| stamp.saturating_add(self.base_ns));
-        // Rosbag 1 has no time 0.
-        let time = time.max(1);
         self.last_ns = Some(time);
-        time
+        // Rosbag 1 has no time 0.
+        time.max(1)
     }
 }
