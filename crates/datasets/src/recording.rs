@@ -229,9 +229,7 @@ impl Format for AnnotatedRecording {
     const NAME: &'static str = "recording";
     const ALIASES: &'static [&'static str] = &["rosbag", "rosbag2", "mcap"];
     const ABOUT: &'static str = "recordings of robots with annotations among their topics";
-    const LAYOUT: &'static str = "a .bag, .mcap or .db3 file, or a folder with metadata.yaml; annotations as vision_msgs/Detection2DArray, Detection3DArray,\n\
-        Classification or opendr_msgs/Pose2DArray, with the stamps of what they annotate (20 ms apart at most);\n\
-        where several topics fit, the part is called TOPIC,TOPIC";
+    const LAYOUT: &'static str = "a .bag, .mcap or .db3 file, or a folder with metadata.yaml; annotations as vision_msgs Detection2DArray, Detection3DArray or Classification, or opendr_msgs Pose2DArray, stamped as what they annotate; where several topics fit, a part is TOPIC,TOPIC";
     const TARGETS: &'static [ValueType] = &[
         ValueType::BoundingBoxList,
         ValueType::TrackingAnnotationList,
