@@ -7,7 +7,9 @@ mod place;
 use std::path::Path;
 
 use opendr::bags::{Answers, BagFormat, PortTopic, Recording, Sets};
-use opendr::data::{Audio, Timeseries};
+use opendr::data::{Audio, Image, Timeseries};
+use opendr::model::{Manifest, ModelWriter};
+use opendr::target::{BoundingBox, BoundingBoxList};
 use opendr::{Header, Value, ValueType};
 use place::Place;
 
@@ -137,4 +139,55 @@ fn pieces_of_sound_are_one_stream() {
     let stamps: Vec<_> =
         pieces.iter().map(|category| category["stamp_ns"].as_i64().unwrap() - START).collect();
     assert_eq!(stamps, [9, 14, 19, 24].map(|piece| piece * STEP));
+}
+
+/// The learner that every surface is tested with: boxes in pictures are counted, from a number that begins a stream.
+#[test]
+fn further_inputs_come_from_topics() {
+    if opendr::registry().find("counter").is_err() {
+        println!("skipped: no feature opendr/test-learner");
+        return;
+    }
+    let place = Place::new();
+    let mut model = ModelWriter::new(place.path("model"), Manifest::new("counter", "")).unwrap();
+    model.add("bias.bin", &[0]).unwrap();
+    model.finish().unwrap();
+    let mut answers = Answers::create(place.path("a.mcap"), BagFormat::Mcap).unwrap();
+    let boxes = |count: usize, stamp: i64| {
+        let list = vec![BoundingBox::new(0, 0.0, 0.0, 1.0, 1.0, 0.9); count];
+        Value::from(BoundingBoxList { header: Header::new(stamp, "camera"), ..list.into() })
+    };
+    for number in 0..6 {
+        let stamp = START + number * STEP;
+        let image = Image::from_rgb8(vec![0; 12], 2, 2).unwrap().with_header(Header::new(stamp, "camera"));
+        answers.write("/image", Value::from(image).as_value_ref(), stamp).unwrap();
+        // The fourth picture has none.
+        if number != 3 {
+            answers.write("/boxes", boxes(1, stamp + 5_000_000).as_value_ref(), stamp + 9 * STEP).unwrap();
+        }
+        if let Some(count) = [(0, 3), (4, 1)].iter().find_map(|(at, count)| (*at == number).then_some(*count))
+        {
+            answers.write("/first", boxes(count, stamp).as_value_ref(), stamp + 1).unwrap();
+        }
+    }
+    answers.finish().unwrap();
+    let infer = ["infer", "counter", "a.mcap", "--model", "model", "--json"];
+    let topics =
+        ["--topic", "detections=/boxes", "--topic", "first=/first", "--out", "b.bag", "--with-input"];
+    let done = place.run(infer.iter().chain(&topics)).ends_with(1);
+    assert!(done.stderr.contains("1 messages for image had none for detections, first"), "{done:?}");
+    let answered: Vec<_> = done.lines().into_iter().filter(|line| line["outputs"].is_object()).collect();
+    let counts: Vec<_> = answered.iter().map(|line| &line["outputs"]["count"]["boxes"][0]["left"]).collect();
+    // Two boxes a telling, each counts twice; the last is what is told at the end.
+    assert_eq!(counts, [3.0 + 4.0, 1.0 + 4.0, 2.0]);
+    let info = place.run(["bag", "info", "b.bag", "--json"]).ends_with(0).lines();
+    let topics: Vec<_> = info[0]["topics"].as_array().unwrap().iter().collect();
+    let messages =
+        |name: &str| topics.iter().find(|topic| topic["name"] == name).unwrap()["messages"].clone();
+    assert_eq!([messages("/image"), messages("/boxes"), messages("/first")], [5, 5, 2]);
+    assert_eq!(messages("/counter/count"), 3);
+    let unclear = place.run(infer.iter().chain(&["--topic", "first=/first"])).ends_with(11);
+    assert!(unclear.stderr.contains("--topic detections=TOPIC chooses"), "{unclear:?}");
+    let missing = place.run(infer).ends_with(2);
+    assert!(missing.stderr.contains("--detections"), "{missing:?}");
 }

@@ -90,7 +90,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let limit = matches.get_one("limit").copied().unwrap_or(u64::MAX);
     let frames = items.len_hint().map_or((limit < u64::MAX).then_some(limit), |count| Some(count.min(limit)));
     let mut out = match (sink, out) {
-        (Some(sink), _) => Out::Recorded(sink),
+        (Some(sink), _) => Out::Recorded(Box::new(sink)),
         (None, Some(out)) => Out::Drawn(Writer::new(out, frames)?),
         (None, None) => Out::Nowhere,
     };
@@ -138,7 +138,7 @@ struct Worker {
 enum Out {
     Nowhere,
     Drawn(Writer),
-    Recorded(RecordingSink),
+    Recorded(Box<RecordingSink>),
 }
 
 impl Out {
@@ -228,7 +228,7 @@ impl Job {
         for (name, value) in item.further() {
             ports = ports.with(name, value);
         }
-        let is_piece = self.entry.capabilities.streaming && item.is_of_stream();
+        let is_piece = self.entry.capabilities.streaming && item.recorded.is_some();
         Timings::of(|| {
             if !is_piece {
                 return worker.learner.infer(&ports).map(|outputs| vec![outputs]);
