@@ -157,11 +157,14 @@ impl FileClock {
         let stamp = item.stamp_ns();
         if self.path.as_ref() != Some(item.path()) {
             self.path = Some(item.path().clone());
-            // Stamps of a video begin with 0; those of cameras and of pictures that know theirs stay.
-            self.base_ns =
-                if item.is_of_stream() && stamp.is_none_or(|stamp| stamp < next) { next } else { 0 };
+            self.base_ns = 0;
         }
-        let time = stamp.map_or(next, |stamp| stamp.saturating_add(self.base_ns));
+        let mut time = stamp.map_or(next, |stamp| stamp.saturating_add(self.base_ns));
+        // The stamps of every video begin with 0.
+        if self.last_ns.is_some_and(|last| time <= last) {
+            self.base_ns = next.saturating_sub(stamp.unwrap_or(0));
+            time = next;
+        }
         self.last_ns = Some(time);
         // Rosbag 1 has no time 0.
         time.max(1)
