@@ -27,9 +27,11 @@ def environment():
 class Node:
     """A node, from when it says that it is ready until the block ends."""
 
+    verb = "run"
+
     def __init__(self, ros, *words, binary=None, ready=1, **more):
         self.process = subprocess.Popen(
-            [binary or opendr(), ros, "run", *map(str, words)],
+            [binary or opendr(), ros, self.verb, *map(str, words)],
             env={**environment(), **{name: str(value) for name, value in more.items()}},
             stdin=subprocess.DEVNULL,
             stderr=subprocess.PIPE,

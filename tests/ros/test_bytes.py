@@ -45,6 +45,14 @@ def test_ros1(known, ros1, echo):
             assert ros1.again(name, again) == again, f"{name} with seed {seed}"
 
 
+def test_ros1_counters_become_zero(ros1, echo):
+    """OpenDR's headers have no `seq`, as ROS 2's."""
+    header = {"stamp": {"sec": 2**32 - 1, "nanosec": 999_999_999}, "frame_id": "map"}
+    name, data = "geometry_msgs/PoseArray", {"poses": [{}]}
+    counted = ros1.encode(name, {"header": {**header, "seq": 77}, **data})
+    assert echo.again(name, "ros1", counted) == ros1.encode(name, {"header": header, **data})
+
+
 # They hold the picture or the points that they were found in, or say apart from the track's name that there is one.
 LOSSY = {f"vision_msgs/{name}" for name in ("Classification2D", "Detection2D", "Detection3D")}
 LOSSY |= {"vision_msgs/Detection2DArray", "vision_msgs/Detection3DArray", "opendr_msgs/ImageWithDetections"}

@@ -64,6 +64,9 @@ def test_a_master_that_is_killed_and_started_again(program, tmp_path):
         held.wait_for("ready")
         speaker = ros.probe("publish", "/heard", 0, 20, "__name:=speaker")
         held.wait_for("text", 5)
+        # rospy never registers again: what it sends must go on coming through the connection that is there.
+        ros.peer("publish", "/heard", "faithful", 20)
+        held.wait_for("text", where=lambda line: line["text"].startswith("faithful"))
         watcher = ros.probe("watch", "/gain", "__name:=watcher")
         watcher.wait_for("value")
         for round in range(2):
@@ -82,6 +85,10 @@ def test_a_master_that_is_killed_and_started_again(program, tmp_path):
             time.sleep(0.5)
             ros.tool("rosparam", "set", "/gain", round)
             watcher.wait_for("changed", round + 1)
+            for caller, text in [("/speaker", "/speaker"), ("/peer", "faithful")]:
+                seen = [line for line in held.having("text") if line["text"].startswith(text)]
+                assert seen[-1]["from"].startswith(caller)
+                held.wait_for("text", len(seen) + 5, where=lambda line: line["text"].startswith(text))
         speaker.kill()
         ros.peer("publish", "/heard", "rospy", 20)
         held.wait_for("text", where=lambda line: line["text"].startswith("rospy"))

@@ -4,7 +4,7 @@ import re
 import statistics
 import time
 
-from conftest import IMAGE, STRING, until
+from conftest import IMAGE, ROS, STRING, until
 
 
 def check_images(lines, count=300):
@@ -92,7 +92,7 @@ def test_a_slow_subscriber_does_not_hold_up_a_publisher(ros):
     assert giver.having("published")[0]["dropped"] > 500
 
 
-PEER_THAT_STOPS = ["/usr/bin/python3", "-c", """
+PEER_THAT_STOPS = [ROS / "python3", "-c", """
 import os, signal, sys, rospy
 from sensor_msgs.msg import Image
 rospy.init_node("stuck", disable_signals=True)
@@ -112,6 +112,7 @@ def test_a_publisher_that_is_killed_and_started_again(ros):
         seen = len(taker.having("text"))
         taker.wait_for("text", seen + 5)
         giver.kill()
+    assert "/reborn" in taker.wait_for("problem")[0]["problem"]
     peer = ros.peer("take", "/reborn_too", 0)
     for _ in range(2):
         giver = ros.probe("publish", "/reborn_too", 0, 20, "__name:=giver")
@@ -160,7 +161,7 @@ def test_the_ros_cpp_node_of_roscore(ros):
     taker = ros.probe("subscribe", "/rosout_agg", "rosgraph_msgs/Log", "acffd30cd6b6de30f120938c17c593fb", 1)
     until(lambda: ros.subscribers("/rosout_agg"))
     log = "{header: {frame_id: x}, level: 4, name: /someone, msg: 'hello roscpp', file: a, function: b, line: 1}"
-    sender = ros.run(["/usr/bin/rostopic", "pub", "-r", "5", "/rosout", "rosgraph_msgs/Log", log])
+    sender = ros.run([ROS / "rostopic", "pub", "-r", "5", "/rosout", "rosgraph_msgs/Log", log])
     assert taker.end().having("text")[0]["from"] == "/rosout"
     sender.kill()
     # Once only: Debian's rosout dies after any call of its services, by rosservice too, and is started again.

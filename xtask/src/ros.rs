@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use crate::python_package;
 use crate::shell::{Result, command, step, target};
 use crate::tools::{Python, install_debian};
 
@@ -15,16 +16,19 @@ const EXAMPLES: [&str; 2] = ["message_types", "message_echo"];
 /// What the tests need and nothing else of the test command, then the tests.
 pub fn run_alone() -> Result<()> {
     install_debian()?;
-    step(
-        "examples of messages",
-        command("cargo").args(["build", "--package", "opendr-messages", "--examples"]),
-    )?;
+    step("release build", command("cargo").args(["build", "--release"]))?;
     run(|_| ())
 }
 
-/// Brings the peers up to date and runs `tests/ros` beside them; the examples are built.
+/// Brings the peers up to date and runs `tests/ros1`, then `tests/ros`; the command is built.
 pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
     let tests = Python::install("ros-venv", "tests/ros/requirements.txt")?;
+    let package = target().join("ros-python");
+    python_package::build(&package)?;
+    let mut ros1 = command(tests.program());
+    ros1.args(["-m", "pytest", "-ra", "tests/ros1"]);
+    ros1.env("OPENDR_ROS1_PROBE", target().join("debug/examples/ros1_probe"));
+    step("tests of the ROS 1 client", &mut ros1)?;
     let mut pytest = isolated(&tests.program());
     pytest.args(["-m", "pytest", "-ra", "tests/ros"]);
     for name in DISTRIBUTIONS {
@@ -43,6 +47,7 @@ pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
         pytest.env(format!("OPENDR_{}", example.to_uppercase()), program);
     }
     environment(&mut pytest);
+    pytest.env("OPENDR_BIN", target().join("release/opendr")).env("OPENDR_PYTHON_PACKAGE", package);
     step("tests beside real ROS peers", &mut pytest)
 }
 

@@ -67,7 +67,7 @@ pub fn run() -> Result<()> {
 
 /// Metrics, data sets, logs of trainings and exported networks beside the tools that papers cite and people use.
 fn references(environment: &Environment) -> Result<()> {
-    let tests = ["tests/metrics", "tests/datasets", "tests/training", "tests/simulation"];
+    let tests = ["tests/metrics", "tests/datasets", "tests/training", "tests/simulation", "tests/bags"];
     let requirements = tests.map(|tests| format!("{tests}/requirements.txt"));
     let alone = Some("tests/metrics/requirements_without_dependencies.txt");
     let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
@@ -80,6 +80,8 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
         .env("OPENDR_MFCC", examples.join("mfcc"))
         .env("OPENDR_SIMULATION_SERVE", examples.join("serve_environments"))
+        .env("OPENDR_BAG_DUMP", examples.join("bag_dump"))
+        .env("OPENDR_BAG_COPY", examples.join("bag_copy"))
         .env("OPENDR_RUNLOG_LOG", examples.join("log"))
         .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"))
         .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"))

@@ -99,6 +99,29 @@ impl RosArgs {
     }
 }
 
+/// What `roslaunch` and `rosrun` write (`from:=to`, `__name:=node`, `_param:=value`) in the words of [`RosArgs::parse`]; `None` for
+/// another word.
+///
+/// # Errors
+/// `Unsupported` for what stands in the environment of a node here (`__master`, `__ip`, `__hostname`).
+pub fn words_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
+    let Some((name, value)) = word.split_once(":=") else { return Ok(None) };
+    if name.is_empty() || name.starts_with('-') {
+        return Ok(None);
+    }
+    let words = |flag: &str, rule: String| Ok(Some(vec![flag.to_owned(), rule]));
+    match name {
+        "__log" => Ok(Some(Vec::new())),
+        "__name" | "__ns" => words("-r", word.to_owned()),
+        "__master" => Err(Error::unsupported("__master; set ROS_MASTER_URI")),
+        "__ip" | "__hostname" => Err(Error::unsupported(format!("{name}; set ROS_IP or ROS_HOSTNAME"))),
+        _ => match name.strip_prefix('_') {
+            Some(parameter) => words("-p", format!("{parameter}:={value}")),
+            None => words("-r", word.to_owned()),
+        },
+    }
+}
+
 /// The parameters in a file that hold for the node `full`: under its name, or under `/**`.
 fn parameters_of_file(path: &Path, full: &str) -> Result<Vec<(String, String)>> {
     let context = || format!("reading {}", path.display());
@@ -120,6 +143,17 @@ fn parameters_of_file(path: &Path, full: &str) -> Result<Vec<(String, String)>> 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_roslaunch_writes() {
+        let words = |word| words_from_ros1(word).unwrap().map(|words| words.join(" "));
+        assert_eq!(words("image_raw:=/camera").as_deref(), Some("-r image_raw:=/camera"));
+        assert_eq!(words("__name:=eyes").as_deref(), Some("-r __name:=eyes"));
+        assert_eq!(words("_threshold:=0.5").as_deref(), Some("-p threshold:=0.5"));
+        assert_eq!(words("__log:=/tmp/x.log").as_deref(), Some(""));
+        assert_eq!((words("nanodet"), words("--image")), (None, None));
+        assert!(words_from_ros1("__master:=http://x").is_err());
+    }
 
     #[test]
     fn what_launch_files_write() {

@@ -2,7 +2,7 @@
 //! JSON.
 //!
 //! ```text
-//! ros1_probe publish TOPIC COUNT RATE [latched] [queue=N]   numbered texts (std_msgs/String); COUNT 0: no end
+//! ros1_probe publish TOPIC COUNT RATE [latched] [queue=N]   std_msgs/String, numbered; COUNT 0: no end
 //! ros1_probe images TOPIC COUNT RATE [queue=N]              640x480 pictures to the first subscriber
 //! ros1_probe subscribe TOPIC TYPE MD5 COUNT [slow=MS] [queue=N] [max=BYTES]
 //! ros1_probe serve SERVICE                                  std_srvs/SetBool; false is refused

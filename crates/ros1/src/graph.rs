@@ -92,10 +92,7 @@ impl Graph {
     }
 
     /// Registers everything again, with a master that may know nothing of it.
-    ///
-    /// # Errors
-    /// `Network` when the master is gone meanwhile.
-    pub fn register_all(&self) -> Result<()> {
+    pub fn register_all(&self) {
         let publications: Vec<_> = lock(&self.publications).values().cloned().collect();
         let subscriptions: Vec<_> = lock(&self.subscriptions).clone();
         let services: Vec<_> = lock(&self.services).values().cloned().collect();
@@ -105,12 +102,9 @@ impl Graph {
         let each = each.chain(watches.iter().map(|watch| watch.register(self).map(|_| ())));
         let errors = each.filter_map(Result::err).collect::<Vec<_>>();
         errors.into_iter().for_each(|error| self.problem(error));
-        for subscribed in subscriptions {
-            if let Err(error) = subscribed.register() {
-                self.problem(error);
-            }
+        for error in subscriptions.iter().filter_map(|subscribed| subscribed.register(true).err()) {
+            self.problem(error);
         }
-        Ok(())
     }
 
     /// Whether the node is being shut down or was.

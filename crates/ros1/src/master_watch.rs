@@ -53,7 +53,7 @@ impl Known {
         let missed = graph.unregistered.swap(false, Ordering::AcqRel);
         self.pid = Some(pid);
         if std::mem::take(&mut self.lost) || other || missed || !is_known(graph)? {
-            graph.register_all()?;
+            graph.register_all();
         }
         Ok(())
     }

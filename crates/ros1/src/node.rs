@@ -229,3 +229,32 @@ fn retry(time: Duration, attempt: impl Fn() -> Result<()>) -> Result<()> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Listener, ParameterWatch};
+
+    #[test]
+    fn handles_go_between_threads() {
+        fn check<T: Send + Sync>() {}
+        check::<Node>();
+        check::<(Publisher, Subscription, Listener)>();
+        check::<(ServiceServer, ServiceClient, ParameterWatch)>();
+    }
+
+    #[test]
+    fn a_node_without_a_master_says_what_to_do() {
+        // Port 1 has no listener.
+        let mut options = NodeOptions::new("lonely");
+        (options.master_uri, options.host) =
+            (Some("http://127.0.0.1:1".to_owned()), Some("127.0.0.1".to_owned()));
+        let error = Node::new(options.clone()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Network);
+        assert!(error.to_string().contains("start roscore"), "{error}");
+        options.master_uri = Some("localhost".to_owned());
+        assert_eq!(Node::new(options.clone()).unwrap_err().kind(), ErrorKind::InvalidParam);
+        options.name = "a/b".to_owned();
+        assert!(Node::new(options).is_err());
+    }
+}

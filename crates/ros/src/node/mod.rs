@@ -5,6 +5,7 @@ mod diagnostics;
 mod feeds;
 mod frame;
 mod inbox;
+mod labels;
 mod outputs;
 mod params;
 mod topics;
@@ -59,7 +60,7 @@ impl LearnerNode {
                 Ok("the next input begins a new stream".to_owned())
             }),
         )?;
-        let worker = Worker::new(graph, entry, stream, classes, inbox.clone(), params, reset, &options)?;
+        let worker = Worker::new(graph, entry, stream, &classes, inbox.clone(), params, reset, &options)?;
         for (index, port) in entry.ports.iter().enumerate() {
             let Some(topic) = options.inputs.iter().find(|topic| topic.name == port.name) else { continue };
             feeds.subscribe(graph, topic, port.value_type, &inbox, index)?;

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use opendr_engine::learner::Outputs;
-use opendr_engine::target::Classes;
-use opendr_engine::{ErrorKind, Header, Result, Value};
+use opendr_engine::{Result, Value};
 use opendr_messages::{Message, MessageType};
-use opendr_ros_bridge::{RosBridge, label_info, view_action};
+use opendr_ros_bridge::{RosBridge, view_action};
 
 use super::topics::TopicOptions;
 use crate::{Graph, Publisher, Qos};
@@ -25,20 +24,11 @@ pub(super) struct OutputTopics {
 }
 
 impl OutputTopics {
-    pub(super) fn new(graph: &mut dyn Graph, topics: &[TopicOptions], classes: &Classes) -> Result<Self> {
+    pub(super) fn new(graph: &mut dyn Graph, topics: &[TopicOptions]) -> Result<Self> {
         let mut own = Vec::with_capacity(topics.len());
         for TopicOptions { name, topic, message_type, qos } in topics {
             let publisher = graph.advertise(topic, *message_type, *qos)?;
             own.push(OutputTopic { name: name.clone(), message_type: *message_type, publisher });
-        }
-        if !classes.is_empty() {
-            let info = label_info(classes, &Header::default(), 0.0)?;
-            match graph.advertise("~/label_info", MessageType::VisionMsgsLabelInfo, Qos::LATCHED) {
-                Ok(publisher) => publisher.publish(info.into())?,
-                // ROS 1 has no such message.
-                Err(error) if error.kind() == ErrorKind::Unsupported => {}
-                Err(error) => return Err(error),
-            }
         }
         let view_action =
             graph.advertise("~/set_view_action", MessageType::OpendrMsgsViewAction, Qos::RESULT)?;

@@ -12,6 +12,7 @@ use opendr_messages::{MessageType, std_msgs};
 use super::annotated::Annotated;
 use super::diagnostics::Diagnostics;
 use super::inbox::{Inbox, Set};
+use super::labels::Labels;
 use super::outputs::OutputTopics;
 use super::{NodeOptions, NodeParams};
 use crate::{Clock, Graph, Log, Publisher, Qos, Severity};
@@ -26,6 +27,7 @@ pub(super) struct Worker {
     params: Arc<Mutex<NodeParams>>,
     reset: Arc<AtomicBool>,
     outputs: OutputTopics,
+    labels: Option<Labels>,
     annotated: Option<Annotated>,
     diagnostics: Diagnostics,
     processing_time: Arc<dyn Publisher>,
@@ -42,7 +44,7 @@ impl Worker {
         graph: &mut dyn Graph,
         entry: &'static Entry,
         stream: Box<dyn AnyStream>,
-        classes: Classes,
+        classes: &Classes,
         inbox: Arc<Inbox>,
         params: Arc<Mutex<NodeParams>>,
         reset: Arc<AtomicBool>,
@@ -54,7 +56,8 @@ impl Worker {
             inbox,
             params,
             reset,
-            outputs: OutputTopics::new(graph, &options.outputs, &classes)?,
+            outputs: OutputTopics::new(graph, &options.outputs)?,
+            labels: Labels::new(graph, classes)?,
             annotated: Annotated::new(graph, entry)?,
             diagnostics: Diagnostics::new(graph, entry.spec.name)?,
             processing_time: graph.advertise(
@@ -81,9 +84,11 @@ impl Worker {
                 Some(set) => self.answer(&set, &params),
                 None => self.idle(&params),
             };
-            let told = done.and_then(|()| self.diagnostics.tick(self.inbox.counts()));
-            if let Err(error) = told {
-                self.tell(&error);
+            let labelled = self.labels.as_mut().map_or(Ok(()), Labels::tick);
+            for told in [done, labelled, self.diagnostics.tick(self.inbox.counts())] {
+                if let Err(error) = told {
+                    self.tell(&error);
+                }
             }
         }
         // Nothing goes on moving when the node is stopped.

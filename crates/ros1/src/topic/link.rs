@@ -22,6 +22,9 @@ use crate::types::agree;
 /// The first wait before connecting again, doubled up to the last.
 const WAITS: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(5)];
 
+/// Failures in a row before an unreachable publisher is told of.
+const PATIENCE: u32 = 4;
+
 /// A connection to one publisher, made again whenever it breaks, with what getBusStats and getBusInfo tell of
 /// it.
 #[derive(Debug)]
@@ -30,6 +33,10 @@ pub(crate) struct Link {
     /// The address of the publisher's XML-RPC server.
     pub uri: String,
     pub connected: AtomicBool,
+    /// Whether a restarted master does not know of the publisher: the connection is kept, but not made again.
+    pub orphaned: AtomicBool,
+    /// Whether no thread serves the link any more.
+    pub finished: AtomicBool,
     pub received_bytes: AtomicU64,
     pub received_messages: AtomicU64,
     /// The two ends of the connection.
@@ -44,6 +51,8 @@ impl Link {
             id: graph.connection_id(),
             uri: uri.to_owned(),
             connected: AtomicBool::new(false),
+            orphaned: AtomicBool::new(false),
+            finished: AtomicBool::new(false),
             received_bytes: AtomicU64::new(0),
             received_messages: AtomicU64::new(0),
             ends: Mutex::default(),
@@ -51,7 +60,10 @@ impl Link {
         });
         let (this, graph, subscribed) = (Arc::clone(&link), Arc::clone(graph), Arc::clone(subscribed));
         let tasks = Arc::clone(&graph.tasks);
-        let cancel = tasks.spawn("subscriber", move |cancel| this.run(&graph, &subscribed, cancel))?;
+        let cancel = tasks.spawn("subscriber", move |cancel| {
+            this.run(&graph, &subscribed, cancel);
+            this.finished.store(true, Ordering::Relaxed);
+        })?;
         *lock(&link.cancel) = Some(cancel);
         Ok(link)
     }
@@ -64,25 +76,26 @@ impl Link {
     }
 
     fn run(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) {
-        let mut pause = WAITS[0];
-        let mut told = String::new();
+        let (mut pause, mut failures, mut told) = (WAITS[0], 0, String::new());
         while !cancel.is_asked() {
             let before = self.received_messages.load(Ordering::Relaxed);
             let ended = self.receive(graph, subscribed, cancel);
             self.connected.store(false, Ordering::Relaxed);
             cancel.release();
             if self.received_messages.load(Ordering::Relaxed) > before {
-                (pause, told) = (WAITS[0], String::new());
+                (pause, failures, told) = (WAITS[0], 0, String::new());
             }
             if let Err(error) = ended {
-                // A publisher that goes is no problem, and one problem is told once.
+                // A publisher that goes is no problem, one that stays out of reach is; each is told once.
+                failures += 1;
                 let text = error.to_string();
-                if error.kind() != ErrorKind::Network && text != told && !cancel.is_asked() {
+                let serious = error.kind() != ErrorKind::Network || failures >= PATIENCE;
+                if serious && text != told && !cancel.is_asked() {
                     graph.problem(error.context(format!("receiving {} from {}", subscribed.topic, self.uri)));
+                    told = text;
                 }
-                told = text;
             }
-            if cancel.wait(pause) {
+            if self.orphaned.load(Ordering::Relaxed) || cancel.wait(pause) {
                 return;
             }
             pause = (pause * 2).min(WAITS[1]);

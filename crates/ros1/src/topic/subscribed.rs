@@ -1,6 +1,7 @@
 //! A topic that the node subscribes to.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, Weak};
 
 use opendr_engine::{Error, Result};
@@ -39,14 +40,15 @@ impl Subscribed {
         }
     }
 
-    /// Tells the master of the subscription, and connects to the publishers it answers with.
-    pub fn register(self: &Arc<Self>) -> Result<()> {
+    /// Tells the master of the subscription, and connects to the publishers it answers with. A master that is
+    /// told again may have been restarted, and many nodes never register twice: connections that work stay.
+    pub fn register(self: &Arc<Self>, again: bool) -> Result<()> {
         let Some(graph) = self.graph.upgrade() else { return Ok(()) };
         let params =
             [self.topic.as_str().into(), self.kind.name.as_str().into(), graph.api_uri.as_str().into()];
         let _changing = lock(&self.changing);
         if let Some(publishers) = graph.register("registerSubscriber", &params)? {
-            self.set_publishers(&graph, &uris(&publishers)?);
+            self.set_publishers(&graph, &uris(&publishers)?, again);
         }
         Ok(())
     }
@@ -55,11 +57,11 @@ impl Subscribed {
     pub fn update(self: &Arc<Self>, publishers: &[String]) {
         let _changing = lock(&self.changing);
         if let Some(graph) = self.graph.upgrade() {
-            self.set_publishers(&graph, publishers);
+            self.set_publishers(&graph, publishers, false);
         }
     }
 
-    fn set_publishers(self: &Arc<Self>, graph: &Arc<Graph>, uris: &[String]) {
+    fn set_publishers(self: &Arc<Self>, graph: &Arc<Graph>, uris: &[String], again: bool) {
         if uris.len() > MOST_PUBLISHERS {
             graph.problem(Error::unsupported(format!(
                 "{} publishers of {}; {MOST_PUBLISHERS} are listened to",
@@ -67,10 +69,15 @@ impl Subscribed {
                 self.topic
             )));
         }
-        let wanted = uris.iter().take(MOST_PUBLISHERS).collect::<std::collections::BTreeSet<_>>();
+        let wanted = uris.iter().take(MOST_PUBLISHERS).collect::<BTreeSet<_>>();
         let mut links = lock(&self.links);
         links.retain(|uri, link| {
-            let stays = wanted.contains(uri) && !self.inbox.is_closed();
+            let known = wanted.contains(uri);
+            let connected = link.connected.load(Ordering::Relaxed);
+            let orphaned = !known && connected && (again || link.orphaned.load(Ordering::Relaxed));
+            link.orphaned.store(orphaned, Ordering::Relaxed);
+            let finished = link.finished.load(Ordering::Relaxed);
+            let stays = (known || orphaned) && !finished && !self.inbox.is_closed();
             if !stays {
                 link.cancel();
             }

@@ -59,7 +59,7 @@ impl Subscription {
         drop(subscriptions);
         // A refused topic leaves again when `subscription` goes.
         let subscription = Self { graph: Arc::clone(graph), subscribed };
-        subscription.subscribed.register()?;
+        subscription.subscribed.register(false)?;
         Ok(subscription)
     }
 
@@ -109,7 +109,7 @@ impl Subscription {
         links.iter().filter(|link| link.connected.load(Ordering::Relaxed)).count()
     }
 
-    /// How many messages have come in.
+    /// How many messages have come in from the publishers there are now.
     pub fn received(&self) -> u64 {
         self.subscribed.links().iter().map(|link| link.received_messages.load(Ordering::Relaxed)).sum()
     }

@@ -1,6 +1,8 @@
 //! `opendr ros2` and `opendr ros1`: learners as nodes.
 
+mod environment;
 mod node;
+mod participant;
 mod run;
 
 use clap::{ArgMatches, Command};
@@ -23,6 +25,7 @@ fn grammar(ros: Ros, about: &'static str) -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(run::grammar(ros))
+        .subcommand(environment::grammar())
 }
 
 pub fn run_ros2(matches: &ArgMatches) -> Result<Outcome> {
@@ -36,6 +39,7 @@ pub fn run_ros1(matches: &ArgMatches) -> Result<Outcome> {
 fn run_either(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     match matches.subcommand() {
         Some(("run", matches)) => run::run(ros, matches),
+        Some(("env", matches)) => environment::run(ros, matches),
         _ => Ok(Outcome::Done),
     }
 }

@@ -1,13 +1,12 @@
 //! One node's words: topics and parameters as flags, from the learner's tables.
 
-use std::net::IpAddr;
-
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::Entry;
 use opendr::params::{Field, ParamMap, Params as _};
 use opendr::ros::{NodeOptions, NodeParams, default_topics};
 use opendr::{Error, Result, ResultExt};
 
+use super::participant;
 use super::run::Ros;
 use crate::{learner_flags, loading};
 
@@ -41,25 +40,7 @@ pub fn node_grammar(ros: Ros, entry: Option<&'static Entry>) -> Command {
                 .help("Messages that are kept for a slow peer"),
         )
         .after_help(ros.examples());
-    let command = match ros {
-        Ros::One => command,
-        Ros::Two => command
-            .arg(
-                Arg::new("domain-id")
-                    .long("domain-id")
-                    .value_parser(value_parser!(u16))
-                    .value_name("N")
-                    .help("The DDS domain [env: ROS_DOMAIN_ID]"),
-            )
-            .arg(
-                Arg::new("network")
-                    .long("network")
-                    .action(ArgAction::Append)
-                    .value_parser(value_parser!(IpAddr))
-                    .value_name("ADDRESS")
-                    .help("An address of this machine whose network is used; all of them otherwise"),
-            ),
-    };
+    let command = if ros == Ros::Two { participant::add_flags(command) } else { command };
     let Some(entry) = entry else { return command };
     let mut command = learner_flags::with_params(command, entry);
     let usual = default_topics(entry);

@@ -7,10 +7,11 @@ use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::ros::{
-    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, Ros2Options, RosArgs, Severity,
+    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, words_from_ros1,
 };
 
 use super::node::{node_grammar, options, set_parameters};
+use super::participant;
 use crate::exit::Outcome;
 use crate::progress_bar::{Bar, interrupted};
 use crate::{learner_flags, loading};
@@ -58,7 +59,7 @@ const WORDS: &str = "words";
 /// What stands between the nodes of one process.
 const NEXT: &str = "+";
 /// What begins the words that ROS's own tools write.
-const ROS_ARGS: &str = "--ros-args";
+pub const ROS_ARGS: &str = "--ros-args";
 
 pub fn grammar(ros: Ros) -> Command {
     Command::new("run")
@@ -78,10 +79,17 @@ pub fn grammar(ros: Ros) -> Command {
 pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let words: Vec<OsString> = matches.get_many::<OsString>(WORDS).into_iter().flatten().cloned().collect();
     let at = words.iter().position(|word| word == ROS_ARGS).unwrap_or(words.len());
-    let (words, ros_words) = words.split_at(at);
-    let ros_words: Vec<String> = ros_words.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let (words, rest) = words.split_at(at);
+    let mut ros_words: Vec<String> = rest.iter().map(|word| word.to_string_lossy().into_owned()).collect();
+    let mut own_words = Vec::new();
+    for word in words {
+        match words_from_ros1(&word.to_string_lossy())? {
+            Some(of_ros) => ros_words.extend(of_ros),
+            None => own_words.push(word.clone()),
+        }
+    }
     let mut nodes = Vec::new();
-    for group in words.split(|word| word == NEXT) {
+    for group in own_words.split(|word| word == NEXT) {
         match parse(ros, group)? {
             Ok(matches) => nodes.push(matches),
             Err(outcome) => return Ok(outcome),
@@ -91,18 +99,14 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let mut feeds = Feeds::default();
     let mut running = Vec::new();
     // The participant stays until its nodes are gone.
-    let mut participant = None;
+    let mut joined = None;
     for matches in &nodes {
         running.push(match ros {
             Ros::One => start_ros1(matches, &ros_words, &mut feeds)?,
             Ros::Two => {
-                let options = || Ros2Options {
-                    domain_id: first.get_one("domain-id").copied(),
-                    networks: first.get_many("network").into_iter().flatten().copied().collect(),
-                };
-                let ros2 = match &mut participant {
+                let ros2 = match &mut joined {
                     Some(ros2) => ros2,
-                    none => none.insert(Ros2::new(&options())?),
+                    none => none.insert(participant::start_ros2(first)?),
                 };
                 start_ros2(ros2, matches, &ros_words, &mut feeds)?
             }

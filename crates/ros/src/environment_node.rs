@@ -1,0 +1,222 @@
+//! An embedded world as a node: simulation over ROS.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TrySendError, sync_channel};
+use std::time::{Duration, Instant};
+
+use opendr_engine::data::Observation;
+use opendr_engine::environment::{Environment, ResetOptions};
+use opendr_engine::target::RlTarget;
+use opendr_engine::{Error, Header, Result, Value, ValueType};
+use opendr_messages::{Message, MessageType, std_msgs};
+use opendr_ros_bridge::RosBridge;
+
+use crate::{Clock, Graph, Log, Publisher, Qos, Severity};
+
+/// How a world runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvironmentOptions {
+    /// Where actions come from.
+    pub action_topic: String,
+    /// Their message: an array, or a velocity.
+    pub action_message: MessageType,
+    /// Seed of the first episode.
+    pub seed: u64,
+    /// Steps a second with the last action that came; `None` for a step with each action.
+    pub rate: Option<f64>,
+}
+
+impl Default for EnvironmentOptions {
+    /// A step with each array on `~/action`, seed 0.
+    fn default() -> Self {
+        Self {
+            action_topic: "~/action".to_owned(),
+            action_message: MessageType::OpendrMsgsFloat32MultiArrayStamped,
+            seed: 0,
+            rate: None,
+        }
+    }
+}
+
+/// Writes an observation with the names of its parts.
+pub type Observe = Box<dyn Fn(&[f32]) -> Result<Observation> + Send>;
+
+/// A world that takes actions and answers with observation (`~/observation`), reward (`~/reward`) and whether the episode is
+/// over (`~/is_over`), and then begins the next. `~/reset` begins one at once.
+pub struct EnvironmentNode {
+    environment: Box<dyn Environment>,
+    observe: Observe,
+    options: EnvironmentOptions,
+    actions: Receiver<Result<Message>>,
+    reset: Arc<AtomicBool>,
+    observations: Arc<dyn Publisher>,
+    rewards: Arc<dyn Publisher>,
+    overs: Arc<dyn Publisher>,
+    pictures: Arc<dyn Publisher>,
+    clock: Clock,
+    log: Log,
+}
+
+/// How long the loop waits for an action before it looks at everything else.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// How long a world that waits for an action is silent.
+const REMINDER: Duration = Duration::from_secs(1);
+
+impl EnvironmentNode {
+    /// Declares the topics of `environment` on `graph`; `observe` gives observations the names of their parts.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a message that is no action; `Io` when the network cannot be used.
+    pub fn new(
+        graph: &mut dyn Graph,
+        environment: Box<dyn Environment>,
+        observe: Observe,
+        options: EnvironmentOptions,
+    ) -> Result<Self> {
+        let known = opendr_ros_bridge::message_types(ValueType::RlTarget);
+        if !known.into_iter().any(|known| known == options.action_message) {
+            return Err(Error::invalid_input(format!(
+                "{} is no action; give an array or a velocity",
+                options.action_message.ros2_name()
+            )));
+        }
+        // The world answers to the newest action; one that waits besides is enough.
+        let (sender, actions) = sync_channel(2);
+        graph.subscribe(
+            &options.action_topic,
+            options.action_message,
+            Qos::RESULT,
+            Box::new(move |message| {
+                if let Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) = sender.try_send(message) {
+                }
+            }),
+        )?;
+        let reset = Arc::new(AtomicBool::new(false));
+        let asked = reset.clone();
+        graph.serve(
+            "~/reset",
+            Box::new(move || {
+                asked.store(true, Ordering::Relaxed);
+                Ok("an episode begins".to_owned())
+            }),
+        )?;
+        let mut topic = |name, message_type, qos| graph.advertise(name, message_type, qos);
+        Ok(Self {
+            observations: topic("~/observation", MessageType::OpendrMsgsObservation, Qos::LATCHED)?,
+            rewards: topic("~/reward", MessageType::StdMsgsFloat32, Qos::RESULT)?,
+            overs: topic("~/is_over", MessageType::StdMsgsBool, Qos::RESULT)?,
+            pictures: topic("~/image/compressed", MessageType::SensorMsgsCompressedImage, Qos::RESULT)?,
+            clock: graph.clock(),
+            log: graph.log(),
+            environment,
+            observe,
+            options,
+            actions,
+            reset,
+        })
+    }
+
+    /// Lives until `stop` says so.
+    ///
+    /// # Errors
+    /// Those of the environment, but for actions that do not fit, which are told and left out.
+    pub fn run(mut self, stop: &dyn Fn() -> bool) -> Result<()> {
+        let spec = self.environment.spec().clone();
+        let mut seen = vec![0.0; spec.observation.len()];
+        let mut action = vec![0.0; spec.action.len()];
+        self.begin(Some(self.options.seed), &mut seen)?;
+        let period = self.options.rate.map(|rate| Duration::from_secs_f64(1.0 / rate.max(1e-3)));
+        let (mut next, mut answered) = (Instant::now(), Instant::now());
+        while !stop() {
+            if self.reset.swap(false, Ordering::Relaxed) {
+                self.begin(None, &mut seen)?;
+            }
+            let wait =
+                period.map_or(PATIENCE, |_| next.saturating_duration_since(Instant::now()).min(PATIENCE));
+            let came = match self.actions.recv_timeout(wait) {
+                Ok(message) => self.take(message, &mut action),
+                Err(RecvTimeoutError::Timeout) => false,
+                Err(RecvTimeoutError::Disconnected) => return Ok(()),
+            };
+            if came {
+                answered = Instant::now();
+            } else if period.is_none() && answered.elapsed() > REMINDER {
+                // Who acts may have come late, or missed it.
+                answered = Instant::now();
+                self.show(&seen)?;
+            }
+            let due = match period {
+                None => came,
+                Some(period) if Instant::now() >= next => {
+                    next += period;
+                    true
+                }
+                Some(_) => false,
+            };
+            if due {
+                self.step(&action, &mut seen)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The action of a message; one that does not fit is told.
+    fn take(&self, message: Result<Message>, action: &mut [f32]) -> bool {
+        let read = message
+            .and_then(|message| RosBridge::default().value_from_message(ValueType::RlTarget, message))
+            .and_then(|value| {
+                let Value::RlTarget(RlTarget { values, .. }) = value else {
+                    return Err(Error::internal("an action of another type"));
+                };
+                // A velocity has six numbers, of which a world takes the first it knows.
+                let values = values.get(..action.len()).ok_or_else(|| {
+                    Error::invalid_input(format!(
+                        "an action of {} numbers; the world takes {}",
+                        values.len(),
+                        action.len()
+                    ))
+                })?;
+                self.environment.spec().action.check(values)?;
+                action.copy_from_slice(values);
+                Ok(())
+            });
+        if let Err(error) = &read {
+            (self.log)(Severity::Warn, &error.to_string());
+        }
+        read.is_ok()
+    }
+
+    fn begin(&mut self, seed: Option<u64>, seen: &mut [f32]) -> Result<()> {
+        self.environment.reset(seed, &ResetOptions::new(), seen)?;
+        self.show(seen)
+    }
+
+    fn step(&mut self, action: &[f32], seen: &mut [f32]) -> Result<()> {
+        let step = self.environment.step(action, seen)?;
+        self.rewards.publish(std_msgs::Float32 { data: step.reward as f32 }.into())?;
+        self.overs.publish(std_msgs::Bool { data: step.is_over() }.into())?;
+        if step.is_over() {
+            return self.begin(None, seen);
+        }
+        self.show(seen)
+    }
+
+    fn show(&mut self, seen: &[f32]) -> Result<()> {
+        let bridge = RosBridge::default();
+        let header = Header { stamp_ns: Some((self.clock)()), frame_id: Some("world".into()) };
+        let observation = Value::from((self.observe)(seen)?.with_header(header.clone()));
+        let message =
+            bridge.message_from_value(observation.as_value_ref(), MessageType::OpendrMsgsObservation)?;
+        self.observations.publish(message)?;
+        if self.pictures.subscribers() > 0
+            && let Some(picture) = self.environment.render()?
+        {
+            let picture = Value::from(picture.with_header(header));
+            let compressed = MessageType::SensorMsgsCompressedImage;
+            self.pictures.publish(bridge.message_from_value(picture.as_value_ref(), compressed)?)?;
+        }
+        Ok(())
+    }
+}
