@@ -1,6 +1,7 @@
 """`opendr infer`, `eval` and `bag` beside rosbags and mcap: recordings of theirs are answered, ours are read by them."""
 
 import json
+import shutil
 import signal
 import subprocess
 
@@ -158,6 +159,22 @@ def test_answers_to_pictures_are_recorded(tmp_path, opendr, name, flags):
     assert [len(one.detections) for _, _, one in found] == counts
     again = opendr(*DETECTOR, out, "--json").lines
     assert len(again) == robot.FRAMES
+
+
+@pytest.mark.skipif(shutil.which("ffmpeg") is None, reason="no ffmpeg")
+def test_answers_to_videos_are_recorded(tmp_path, opendr, recording):
+    """One after the other, each with its own stamps."""
+    video, out = tmp_path / "seen.mp4", tmp_path / "answers.bag"
+    opendr(*DETECTOR, recording("bag1"), "--out", video)
+    shutil.copy(video, tmp_path / "again.mp4")
+    opendr(*DETECTOR, video, tmp_path / "again.mp4", "--out", out, "--with-input")
+    times = [logged for logged, _, _ in on(BOXES, read(out, True))]
+    # Ten frames a second, as the recording had them.
+    first = [max(number * robot.STEP, 1) for number in range(robot.FRAMES)]
+    assert times[: robot.FRAMES] == pytest.approx(first, abs=1_000_000)
+    second = [time - times[robot.FRAMES] for time in times[robot.FRAMES :]]
+    assert second == pytest.approx(first, abs=1_000_000)
+    assert times == sorted(set(times))
 
 
 @pytest.mark.parametrize("storage", ["bag1", "mcap"])

@@ -104,6 +104,11 @@ fn nothing_is_lost_by_a_name() {
     place.run(["infer", LEARNER, "a.bag", "--out", "b.mcap", "--overwrite"]).ends_with(0);
     let info = place.run(["bag", "info", "b.mcap", "--json"]).ends_with(0).lines();
     assert_eq!(info[0]["topics"][0]["messages"], 20, "{info:?}");
+    // A folder with other things stays as it is.
+    place.write("mine/notes.txt", "mine");
+    let folder = ["--out", "mine", "--bag-format", "bag2_sqlite", "--overwrite"];
+    let done = place.run(["infer", LEARNER, "a.bag"].iter().chain(&folder)).ends_with(11);
+    assert!(done.stderr.contains("holds no recording"), "{done:?}");
     // A command that does not come to an answer leaves nothing.
     place.run(["infer", LEARNER, "a.bag", "--out", "c.mcap", "--model", "none"]).ends_with(13);
     assert!(!place.path("c.mcap").exists());

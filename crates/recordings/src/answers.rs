@@ -23,7 +23,7 @@ pub struct Answers {
     bridge: RosBridge,
     channels: HashMap<(String, MessageType), usize>,
     /// Channels of messages that are handed on as they are.
-    copied: HashMap<String, usize>,
+    copied: HashMap<(String, String), usize>,
 }
 
 impl Answers {
@@ -131,11 +131,12 @@ impl Answers {
     }
 
     fn hand_on(&mut self, channel: &Channel, message: &Recorded) -> Result<()> {
-        let number = match self.copied.get(&channel.topic) {
+        let key = (channel.topic.clone(), channel.message_type.clone());
+        let number = match self.copied.get(&key) {
             Some(number) => *number,
             None => {
                 let number = self.writer.add_channel(channel.clone())?;
-                self.copied.insert(channel.topic.clone(), number);
+                self.copied.insert(key, number);
                 number
             }
         };

@@ -1,5 +1,7 @@
 //! A recording whose messages are known.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use opendr_bags::{Bag, Recorded};
@@ -9,26 +11,28 @@ use opendr_messages::{Message, MessageType};
 use crate::Topic;
 use crate::channels::Known;
 
-/// Extensions of recordings that are a file.
-const EXTENSIONS: [&str; 3] = ["bag", "mcap", "db3"];
+/// How the `metadata.yaml` of rosbag 2 begins; other folders have files of this name, too.
+const METADATA: &[u8] = b"rosbag2_bagfile_information";
 
-/// Whether `path` looks like a recording: by its extension, or a folder with the `metadata.yaml` of rosbag 2 or nothing but its files.
+/// Whether `path` looks like a recording: by its extension, or a folder with the `metadata.yaml` of rosbag 2 or nothing
+/// but its files.
 pub fn is_recording(path: &Path) -> bool {
-    let has_extension = |path: &Path| {
+    let is_one_of = |path: &Path, known: &[&str]| {
         let extension = path.extension().and_then(|extension| extension.to_str());
-        extension
-            .is_some_and(|extension| EXTENSIONS.iter().any(|known| known.eq_ignore_ascii_case(extension)))
+        extension.is_some_and(|extension| known.iter().any(|known| known.eq_ignore_ascii_case(extension)))
     };
     if !path.is_dir() {
-        return has_extension(path);
+        return is_one_of(path, &["bag", "mcap", "db3"]);
     }
-    if path.join("metadata.yaml").is_file() {
-        return true;
+    let mut start = Vec::new();
+    let read = File::open(path.join("metadata.yaml")).and_then(|file| file.take(256).read_to_end(&mut start));
+    if read.is_ok() {
+        return start.windows(METADATA.len()).any(|window| window == METADATA);
     }
     // What a crash left: files without their metadata.
     let Ok(entries) = path.read_dir() else { return false };
     let mut files = entries.flatten().map(|entry| entry.path()).peekable();
-    files.peek().is_some() && files.all(|file| has_extension(&file))
+    files.peek().is_some() && files.all(|file| is_one_of(&file, &["db3", "mcap"]))
 }
 
 /// An opened recording.
@@ -162,4 +166,27 @@ pub(crate) fn decode(
 fn names(value_type: ValueType) -> String {
     let types = opendr_ros_bridge::message_types(value_type);
     types.map(MessageType::ros2_name).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    #[test]
+    fn folders_of_other_things_are_no_recordings() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        assert!(
+            is_recording(&path("a.BAG")) && is_recording(&path("a.mcap")) && !is_recording(&path("a.png"))
+        );
+        assert!(!is_recording(folder.path()));
+        fs::write(path("a.mcap"), "").unwrap();
+        assert!(is_recording(folder.path()));
+        fs::write(path("metadata.yaml"), "license: CC-BY\n").unwrap();
+        assert!(!is_recording(folder.path()));
+        fs::write(path("metadata.yaml"), "rosbag2_bagfile_information:\n  version: 5\n").unwrap();
+        assert!(is_recording(folder.path()));
+    }
 }

@@ -106,6 +106,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let count = if alone { 1 } else { loading::how_many(matches, frames)? };
     let learners = loading::side_by_side(count, load)?;
     let mut workers: Vec<_> = learners.into_iter().map(|learner| Worker { learner, stream: None }).collect();
+    if let Out::Recorded(sink) = &mut out {
+        sink.begin()?;
+    }
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }

@@ -20,7 +20,7 @@ pub struct RecordingSink {
     entry: &'static Entry,
     out: PathBuf,
     options: WriteOptions,
-    /// Begun with the first answer, so that a command that does not come so far leaves nothing.
+    /// Once it is begun.
     answers: Option<Answers>,
     with_input: bool,
     classes_written: bool,
@@ -31,7 +31,7 @@ impl RecordingSink {
     /// The recording that `--out` and `--bag-format` name; `None` when they name none.
     ///
     /// # Errors
-    /// `InvalidParam` when it would replace an input, or flags do not fit; as [`Answers::create`].
+    /// `InvalidParam` when it would replace an input, or flags do not fit.
     pub fn new(entry: &'static Entry, matches: &ArgMatches, inputs: &[&PathBuf]) -> Result<Option<Self>> {
         let Some(out) = matches.get_one::<PathBuf>("out") else { return Ok(None) };
         let named = matches.get_one::<String>("bag-format").map(|name| name.parse::<BagFormat>());
@@ -75,6 +75,15 @@ impl RecordingSink {
         }))
     }
 
+    /// Begins the file; before, nothing is written, so that a command that does not come so far leaves nothing.
+    ///
+    /// # Errors
+    /// As [`Answers::create`].
+    pub fn begin(&mut self) -> Result<()> {
+        self.answers = Some(Answers::create(&self.out, self.options)?);
+        Ok(())
+    }
+
     /// Records what was found in an item, at the log time of its message; of a file, at its stamp.
     ///
     /// # Errors
@@ -89,9 +98,8 @@ impl RecordingSink {
 
     fn record(&mut self, item: &Item, outputs: &[Outputs], classes: &Classes, time_ns: i64) -> Result<()> {
         let name = self.entry.spec.name;
-        let answers = match &mut self.answers {
-            Some(answers) => answers,
-            none => none.insert(Answers::create(&self.out, self.options)?),
+        let Some(answers) = &mut self.answers else {
+            return Err(Error::internal("a recording before its begin"));
         };
         if !std::mem::replace(&mut self.classes_written, true) {
             answers.write_classes(&format!("/{name}/label_info"), classes, time_ns)?;
@@ -117,11 +125,8 @@ impl RecordingSink {
     /// # Errors
     /// `Io` when the disk is full.
     pub fn finish(self) -> Result<()> {
-        let answers = match self.answers {
-            Some(answers) => Ok(answers),
-            None => Answers::create(&self.out, self.options),
-        };
-        answers.and_then(Answers::finish).context(|| format!("writing {}", self.out.display()))
+        let finished = self.answers.map_or(Ok(()), Answers::finish);
+        finished.context(|| format!("writing {}", self.out.display()))
     }
 }
 
