@@ -44,3 +44,32 @@ def copy():
         return target
 
     return run
+
+
+class Command:
+    """The opendr command: runs it, checks its exit code, tells what it printed."""
+
+    def __init__(self):
+        program = os.environ.get("OPENDR_BIN")
+        self.program = [program] if program else ["cargo", "run", "-q", "-p", "opendr-cli", "--"]
+
+    def __call__(self, *words, code=0):
+        command = [*self.program, *map(str, words)]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+        assert done.returncode == code, f"{command}: {done.returncode}\n{done.stdout}\n{done.stderr}"
+        assert "panicked" not in done.stderr
+        return Done(done.stdout, done.stderr)
+
+
+class Done:
+    def __init__(self, stdout, stderr):
+        self.stdout, self.stderr = stdout, stderr
+
+    @property
+    def lines(self):
+        return [json.loads(line) for line in self.stdout.splitlines()]
+
+
+@pytest.fixture(scope="session")
+def opendr():
+    return Command()

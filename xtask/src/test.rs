@@ -76,6 +76,7 @@ fn references(environment: &Environment) -> Result<()> {
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra"]).args(tests);
     pytest
+        .env("OPENDR_BIN", target().join("debug/opendr"))
         .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
         .env("OPENDR_MFCC", examples.join("mfcc"))

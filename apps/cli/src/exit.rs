@@ -14,6 +14,7 @@ pub enum Outcome {
     /// Some inputs failed, and were reported; the rest is done: exit code 1.
     SomeFailed,
     /// The flags are none, which was told: exit code 2.
+    #[cfg_attr(not(feature = "ros"), allow(dead_code))]
     WrongUsage,
 }
 

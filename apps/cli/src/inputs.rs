@@ -1,12 +1,15 @@
-//! What `opendr infer` is given: frames for a learner of pictures, else a file for each call.
+//! What `opendr infer` is given: frames for a learner of pictures, else a file for each call; or recordings.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::ArgMatches;
 use opendr::datasets::{open_value, value_files};
+use opendr::learner::Entry;
 use opendr::vision::{Frame, Source, SourceOptions};
 use opendr::{Error, Result, Value, ValueRef, ValueType};
 
+use crate::recordings::{RecordedSet, Recordings};
 use crate::report::Report;
 
 /// Everything that one call of the command reads, in order.
@@ -20,22 +23,53 @@ pub enum Inputs {
         /// How many were given out.
         given: usize,
     },
+    /// Recordings of robots.
+    Recordings(Recordings),
+}
+
+/// What one call is given.
+pub struct Item {
+    /// What goes into the first port.
+    pub datum: Datum,
+    /// What a recording has besides.
+    pub recorded: Option<Box<RecordedSet>>,
 }
 
 /// What goes into the first port in one call.
-pub enum Item {
+pub enum Datum {
     Frame(Frame),
-    File { value: Box<Value>, path: Arc<Path>, index: u64 },
+    Value {
+        value: Box<Value>,
+        path: Arc<Path>,
+        /// Among all that is read.
+        index: u64,
+        /// Within its file.
+        number: u64,
+        /// Whether it is a piece of a recording, not a file of its own.
+        is_of_stream: bool,
+    },
 }
 
+/// The next item, or why it could not be read, with its file where there is one.
+pub type Next = std::result::Result<Item, (Option<PathBuf>, Error)>;
+
 impl Inputs {
-    /// Opens all inputs for a port of the type `kind`. Those that cannot be opened are reported and left out, unless
-    /// there is only one.
+    /// Opens all inputs for the ports of a learner. Those that cannot be opened are reported and left out, unless there
+    /// is only one.
     ///
     /// # Errors
     /// `NotFound` when nothing is left, else what kept the only input from being opened, or the report from being
     /// written.
-    pub fn open(kind: ValueType, inputs: &[&PathBuf], report: &mut Report<'_>) -> Result<Self> {
+    pub fn open(
+        entry: &'static Entry,
+        inputs: &[&PathBuf],
+        matches: &ArgMatches,
+        report: &mut Report<'_>,
+    ) -> Result<Self> {
+        if let Some(recordings) = Recordings::open(entry, inputs, matches, report)? {
+            return Ok(Self::Recordings(recordings));
+        }
+        let kind = entry.ports.first().map_or(ValueType::Image, |port| port.value_type);
         if kind == ValueType::Image {
             return frames(inputs, report).map(Self::Frames);
         }
@@ -58,6 +92,7 @@ impl Inputs {
         match self {
             Self::Frames(source) => source.len_hint(),
             Self::Files { paths, given, .. } => Some((paths.len() - given) as u64),
+            Self::Recordings(recordings) => Some(recordings.len_hint()),
         }
     }
 
@@ -66,31 +101,33 @@ impl Inputs {
         match self {
             Self::Frames(source) => source.is_pictures(),
             Self::Files { .. } => true,
+            Self::Recordings(_) => false,
         }
     }
 }
 
-/// The next item, or why it could not be read, with its file where there is one.
 impl Iterator for Inputs {
-    type Item = std::result::Result<Item, (Option<PathBuf>, Error)>;
+    type Item = Next;
 
-    fn next(&mut self) -> Option<Self::Item> {
+    fn next(&mut self) -> Option<Next> {
+        let item = |datum| Item { datum, recorded: None };
         match self {
             Self::Frames(source) => {
                 let frame = source.next()?;
-                Some(frame.map(Item::Frame).map_err(|error| (source.last_path().map(Path::to_owned), error)))
+                let frame = frame.map(|frame| item(Datum::Frame(frame)));
+                Some(frame.map_err(|error| (source.last_path().map(Path::to_owned), error)))
             }
             Self::Files { kind, paths, given } => {
                 let path = paths.get(*given)?;
                 let index = *given as u64;
                 *given += 1;
-                let item = open_value(*kind, path).map(|value| Item::File {
-                    value: value.into(),
-                    path: path.as_path().into(),
-                    index,
+                let value = open_value(*kind, path).map(|value| {
+                    let (value, path) = (Box::new(value), path.as_path().into());
+                    item(Datum::Value { value, path, index, number: 0, is_of_stream: false })
                 });
-                Some(item.map_err(|error| (Some(path.clone()), error)))
+                Some(value.map_err(|error| (Some(path.clone()), error)))
             }
+            Self::Recordings(recordings) => recordings.next(),
         }
     }
 }
@@ -98,39 +135,56 @@ impl Iterator for Inputs {
 impl Item {
     /// The file or device it came from.
     pub fn path(&self) -> &Arc<Path> {
-        match self {
-            Self::Frame(frame) => &frame.path,
-            Self::File { path, .. } => path,
+        match &self.datum {
+            Datum::Frame(frame) => &frame.path,
+            Datum::Value { path, .. } => path,
         }
     }
 
-    /// What is given to the learner.
+    /// What is given to the learner's first port.
     pub fn value(&self) -> ValueRef<'_> {
-        match self {
-            Self::Frame(frame) => ValueRef::Image(&frame.image),
-            Self::File { value, .. } => value.as_value_ref(),
+        match &self.datum {
+            Datum::Frame(frame) => ValueRef::Image(&frame.image),
+            Datum::Value { value, .. } => value.as_value_ref(),
         }
+    }
+
+    /// What a recording has for further ports, by their names.
+    pub fn further(&self) -> &[(&'static str, Value)] {
+        self.recorded.as_deref().map_or(&[], |recorded| &recorded.further)
     }
 
     /// Its number among all that was read, from 0.
     pub fn index(&self) -> u64 {
-        match self {
-            Self::Frame(frame) => frame.index,
-            Self::File { index, .. } => *index,
+        match &self.datum {
+            Datum::Frame(frame) => frame.index,
+            Datum::Value { index, .. } => *index,
         }
     }
 
     /// Its number within its file, from 0.
     pub fn number(&self) -> u64 {
-        match self {
-            Self::Frame(frame) => frame.number,
-            Self::File { .. } => 0,
+        match &self.datum {
+            Datum::Frame(frame) => frame.number,
+            Datum::Value { number, .. } => *number,
         }
     }
 
-    /// Whether it is a frame of a video or camera.
-    pub fn is_of_video(&self) -> bool {
-        matches!(self, Self::Frame(frame) if frame.video.is_some())
+    /// When it was taken, where that is known, nanoseconds.
+    #[cfg(feature = "ros")]
+    pub fn stamp_ns(&self) -> Option<i64> {
+        match &self.datum {
+            Datum::Frame(frame) => frame.image.header.stamp_ns,
+            Datum::Value { value, .. } => value.header().stamp_ns,
+        }
+    }
+
+    /// Whether it is a frame of a video or camera, or of a recording.
+    pub fn is_of_stream(&self) -> bool {
+        match &self.datum {
+            Datum::Frame(frame) => frame.video.is_some(),
+            Datum::Value { is_of_stream, .. } => *is_of_stream,
+        }
     }
 }
 

@@ -12,6 +12,8 @@ mod peak_memory;
 mod port_file;
 mod progress_bar;
 mod progress_lines;
+#[cfg_attr(not(feature = "ros"), path = "recordings_absent.rs")]
+mod recordings;
 mod report;
 mod stdout;
 mod timings;

@@ -85,7 +85,7 @@ impl<'a> Report<'a> {
         let input = item.path().to_string_lossy();
         let timings_ms = self.timings.then_some(timings);
         if !matches!(self.json, Json::Stdout) {
-            let name = match item.is_of_video() {
+            let name = match item.is_of_stream() {
                 true => format!("{input} frame {}", item.number()),
                 false => input.to_string(),
             };

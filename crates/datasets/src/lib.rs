@@ -33,6 +33,8 @@ mod picture_box;
 mod picture_files;
 mod pictures;
 mod problems;
+#[cfg(feature = "recordings")]
+mod recording;
 mod registry;
 mod skeleton;
 mod speech_commands;
@@ -65,6 +67,8 @@ pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use pictures::Pictures;
 pub use problems::{Place, Problem, Problems};
+#[cfg(feature = "recordings")]
+pub use recording::AnnotatedRecording;
 pub use registry::{find, format_of, formats, open, recognise};
 pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
 pub use speech_commands::{SpeechCommands, SpeechSplit, speaker_of_clip, split_of_clip};

@@ -33,6 +33,7 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::Lfw>(),
     FormatEntry::of::<crate::Market1501>(),
     FormatEntry::of::<crate::Hands>(),
+    #[cfg(feature = "recordings")] FormatEntry::of::<crate::AnnotatedRecording>(),
 ];
 
 /// The format called `name`, by its name or another that is used for it; upper and lower case are the same.

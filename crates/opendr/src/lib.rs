@@ -50,8 +50,6 @@ pub use opendr_perception::{
     face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
     pose_estimation, speech_recognition, suppression,
 };
-#[cfg(feature = "ros")]
-pub use opendr_ros as ros;
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, TuneData, TuneOptions, Tuned, search_space, tune};
@@ -60,3 +58,5 @@ pub use {
     opendr_metrics as metrics, opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,
     opendr_simulation as simulation, opendr_tuning as tuning, opendr_vision as vision, opendr_zoo as zoo,
 };
+#[cfg(feature = "ros")]
+pub use {opendr_recordings as bags, opendr_ros as ros};

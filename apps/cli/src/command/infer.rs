@@ -1,20 +1,22 @@
-//! `opendr infer`: a learner over pictures, folders, videos, cameras, and files of what else learners take.
+//! `opendr infer`: a learner over pictures, folders, videos, cameras, files of what else learners take, and recordings.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
-use opendr::{Error, Progress, Result, Unit, ValueType, map_in_order};
+use opendr::target::Classes;
+use opendr::{Error, ErrorKind, Progress, Result, Unit, ValueType, map_in_order};
 
 use crate::exit::Outcome;
-use crate::inputs::{Inputs, Item};
+use crate::inputs::{Datum, Inputs, Item, Next};
 use crate::port_file::PortFile;
 use crate::progress_bar::{Bar, interrupted};
+use crate::recordings::RecordingSink;
 use crate::report::{Json, Report};
 use crate::timings::Timings;
-use crate::writer::Writer;
-use crate::{learner_flags, loading};
+use crate::writer::{Failures, Writer};
+use crate::{learner_flags, loading, recordings};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -25,6 +27,7 @@ Examples:
   opendr infer LEARNER/VARIANT dance.mp4 --out dance-seen.mp4
   opendr infer LEARNER camera:0 --limit 100
   opendr infer matchboxnet yes.wav no.wav                sounds, series (.csv), point clouds
+  opendr infer LEARNER drive.bag --topic /camera/image_raw --out answers.mcap
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
@@ -32,7 +35,7 @@ pub fn grammar() -> Command {
     let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
     let path = |name: &'static str| Arg::new(name).long(name).value_parser(value_parser!(PathBuf));
     Command::new("infer")
-        .about("Run a learner on pictures, videos, a camera, or files of what else it takes")
+        .about("Run a learner on pictures, videos, a camera, files of what else it takes, or recordings")
         .arg(loading::learner())
         .arg(
             Arg::new("input")
@@ -40,13 +43,13 @@ pub fn grammar() -> Command {
                 .num_args(1..)
                 .value_parser(value_parser!(PathBuf))
                 .value_name("INPUT")
-                .help("Pictures, folders, quoted patterns, video files, camera:N; or files of the type that the learner takes"),
+                .help("Pictures, folders, quoted patterns, video files, camera:N; files of the type that the learner takes; or recordings (.bag, .mcap, folders of rosbag2)"),
         )
         .args([
             path("out")
                 .short('o')
                 .value_name("DIR|FILE")
-                .help("Write annotated pictures: into a folder, or to one picture or video file"),
+                .help("Write annotated pictures: into a folder, or to one picture or video file; or record the answers (.bag, .mcap)"),
             path("json").num_args(0..=1).require_equals(true).value_name("FILE").help(
                 "Print a line of JSON a frame instead of text, or write it to FILE besides (docs/command-line.md)",
             ),
@@ -58,6 +61,7 @@ pub fn grammar() -> Command {
                 .value_name("N")
                 .help("Stop after N frames"),
         ])
+        .args(recordings::flags())
         .args(loading::flags())
         .after_help(EXAMPLES)
 }
@@ -75,16 +79,21 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let inputs: Vec<&PathBuf> = matches.get_many("input").into_iter().flatten().collect();
     let port = entry.ports.first().ok_or_else(|| Error::internal("the learner takes nothing"))?;
     let out = matches.get_one::<PathBuf>("out");
-    if out.is_some() && port.value_type != ValueType::Image {
+    let sink = RecordingSink::new(entry, matches, &inputs)?;
+    if out.is_some() && sink.is_none() && port.value_type != ValueType::Image {
         let (class, given) = (entry.spec.class, port.value_type.name());
         return Err(Error::invalid_param(format!(
-            "--out draws on pictures, and {class} takes {given}; leave it away, or write answers by --json=FILE"
+            "--out draws on pictures, and {class} takes {given}; record the answers (--out answers.mcap), or write them by --json=FILE"
         )));
     }
-    let items = Inputs::open(port.value_type, &inputs, &mut report)?;
+    let items = Inputs::open(entry, &inputs, matches, &mut report)?;
     let limit = matches.get_one("limit").copied().unwrap_or(u64::MAX);
     let frames = items.len_hint().map_or((limit < u64::MAX).then_some(limit), |count| Some(count.min(limit)));
-    let writer = out.map(|out| Writer::new(out, frames)).transpose()?;
+    let mut out = match (sink, out) {
+        (Some(sink), _) => Out::Recorded(Box::new(sink)),
+        (None, Some(out)) => Out::Drawn(Writer::new(out, frames)?),
+        (None, None) => Out::Nowhere,
+    };
     let params = learner_flags::params(entry, matches)?;
     let load = || loading::load(spec, &params, matches, &bar);
     let job = Job {
@@ -97,13 +106,16 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let count = if alone { 1 } else { loading::how_many(matches, frames)? };
     let learners = loading::side_by_side(count, load)?;
     let mut workers: Vec<_> = learners.into_iter().map(|learner| Worker { learner, stream: None }).collect();
+    if let Out::Recorded(sink) = &mut out {
+        sink.begin()?;
+    }
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let told = job.run(&mut workers, items, limit, &mut report, writer.as_ref(), &bar);
+    let told = job.run(&mut workers, items, limit, &mut report, &mut out, &bar);
     bar.end();
     // Even when the report cannot go on, what was handed over is finished.
-    for (input, error) in writer.map(Writer::finish).unwrap_or_default() {
+    for (input, error) in out.finish() {
         report.failure(input.as_deref(), &error)?;
     }
     told?;
@@ -125,8 +137,39 @@ struct Worker {
     stream: Option<Arc<Path>>,
 }
 
-/// An item with what was found in it, or what failed and for which input.
-type Answer = std::result::Result<(Item, Outputs, Timings), (Option<PathBuf>, Error)>;
+/// Where answers go besides the report.
+enum Out {
+    Nowhere,
+    Drawn(Writer),
+    Recorded(Box<RecordingSink>),
+}
+
+impl Out {
+    /// Hands over what was found in an item.
+    fn put(&mut self, item: Item, outputs: Vec<Outputs>, classes: &Classes) -> Result<()> {
+        match self {
+            Self::Nowhere => Ok(()),
+            Self::Drawn(writer) => match item.datum {
+                Datum::Frame(frame) => {
+                    outputs.into_iter().next().map_or(Ok(()), |outputs| writer.put(frame, outputs))
+                }
+                Datum::Value { .. } => Ok(()),
+            },
+            Self::Recorded(sink) => sink.put(&item, &outputs, classes),
+        }
+    }
+
+    fn finish(self) -> Failures {
+        match self {
+            Self::Nowhere => Failures::new(),
+            Self::Drawn(writer) => writer.finish(),
+            Self::Recorded(sink) => sink.finish().err().map(|error| (None, error)).into_iter().collect(),
+        }
+    }
+}
+
+/// An item with what was found in it, several times where it is a piece of a stream; or what failed and for which input.
+type Answer = std::result::Result<(Item, Vec<Outputs>, Timings), (Option<PathBuf>, Error)>;
 
 impl Job {
     fn run(
@@ -135,21 +178,29 @@ impl Job {
         mut inputs: Inputs,
         limit: u64,
         report: &mut Report<'_>,
-        writer: Option<&Writer>,
+        out: &mut Out,
         bar: &Bar,
     ) -> Result<()> {
+        let classes = workers.first().map(|worker| worker.learner.classes()).unwrap_or_default();
         let mut left = limit;
         let items = std::iter::from_fn(|| {
             left = left.checked_sub(1).filter(|_| !interrupted())?;
             inputs.next()
         });
-        let answer = |worker: &mut Worker, item: std::result::Result<Item, _>| self.answer(worker, item?);
+        let answer = |worker: &mut Worker, item: Next| self.answer(worker, item?);
         map_in_order(workers, items, answer, |answer| {
             match answer {
                 Ok((item, outputs, timings)) => {
-                    report.item(&item, &outputs, timings)?;
-                    if let (Some(writer), Item::Frame(frame)) = (writer, item) {
-                        writer.put(frame, outputs)?;
+                    for outputs in &outputs {
+                        report.item(&item, outputs, timings)?;
+                    }
+                    let path = item.path().clone();
+                    match out.put(item, outputs, &classes) {
+                        // The next may have a place where this one has none.
+                        Err(error) if error.kind() == ErrorKind::InvalidInput => {
+                            report.failure(Some(&path), &error)?;
+                        }
+                        done => done?,
                     }
                 }
                 Err((input, error)) => report.failure(input.as_deref(), &error)?,
@@ -170,29 +221,48 @@ impl Job {
         }
     }
 
-    fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Outputs, Timings)> {
+    fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Vec<Outputs>, Timings)> {
         let mut ports = Ports::default().with(self.port, item.value());
         for file in &self.further {
-            let is_init = self.entry.ports.iter().any(|port| port.name == file.name() && port.init);
-            if begins || !is_init {
+            if begins || !self.is_init(file.name()) {
                 ports = ports.with(file.name(), file.value(item.index())?);
             }
         }
-        Timings::of(|| worker.learner.infer(&ports))
+        for (name, value) in item.further() {
+            ports = ports.with(name, value);
+        }
+        let is_piece = self.entry.capabilities.streaming && item.recorded.is_some();
+        Timings::of(|| {
+            if !is_piece {
+                return worker.learner.infer(&ports).map(|outputs| vec![outputs]);
+            }
+            let mut outputs = Vec::new();
+            worker.learner.push(Some(&ports), &mut |found| outputs.push(found))?;
+            if item.recorded.as_ref().is_some_and(|recorded| recorded.is_last) {
+                worker.learner.push(None, &mut |found| outputs.push(found))?;
+            }
+            Ok(outputs)
+        })
     }
 
-    /// Every video is a stream of its own, and so is every other file unless they are a sequence. Whether one begins.
+    /// Every video and recording is a stream of its own, and so is every other file unless they are a sequence; what
+    /// begins one may also come in the middle of a recording. Whether one begins.
     fn follow(&self, worker: &mut Worker, item: &Item) -> bool {
-        let stream = match (item.is_of_video(), self.sequence) {
+        let stream = match (item.is_of_stream(), self.sequence) {
             (true, _) => Some(item.path().clone()),
             (false, true) => item.path().parent().map(Arc::from),
             (false, false) => None,
         };
-        let begins = stream.is_none() || stream != worker.stream;
+        let is_begun = item.further().iter().any(|(name, _)| self.is_init(name));
+        let begins = is_begun || stream.is_none() || stream != worker.stream;
         if begins {
             worker.learner.reset();
             worker.stream = stream;
         }
         begins
+    }
+
+    fn is_init(&self, name: &str) -> bool {
+        self.entry.ports.iter().any(|port| port.name == name && port.init)
     }
 }

@@ -1,5 +1,7 @@
 //! The commands, one file each.
 
+#[cfg(feature = "ros")]
+mod bag;
 mod bench;
 mod data;
 mod demo;
@@ -24,7 +26,7 @@ use opendr::Result;
 use opendr::learner::Entry;
 
 use crate::exit::{CODES, Outcome};
-use crate::{environment_flags, learner_flags, loading};
+use crate::{environment_flags, learner_flags, loading, recordings};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -32,6 +34,7 @@ Examples:
   opendr models                                     what there is
   opendr infer LEARNER street.jpg --out seen.png    run one on a picture
   opendr infer LEARNER dance.mp4 --json             ... on a video, as JSON lines
+  opendr infer LEARNER drive.bag --out found.mcap   ... on a recording of a robot
   opendr infer LEARNER --help                       its parameters
   opendr eval LEARNER coco/ --out evaluated/        how good one is
   opendr fit LEARNER coco/ --val-split val2017      train one
@@ -61,6 +64,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         runtime::grammar(),
         demo::grammar(),
         #[cfg(feature = "ros")]
+        bag::grammar(),
+        #[cfg(feature = "ros")]
         ros::ros2(),
         #[cfg(feature = "ros")]
         ros::ros1(),
@@ -75,6 +80,9 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
             learner_flags::add
         };
         *command = add(std::mem::take(command), entry);
+        if name == "infer" {
+            *command = recordings::ports_by_topic(std::mem::take(command), entry);
+        }
         if environment_flags::is_policy(entry) {
             let add = match name.to_str() {
                 Some("eval" | "fit" | "tune") => environment_flags::add_for_episodes,
@@ -115,6 +123,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "bench" => bench::run(matches),
         "runtime" => runtime::run(matches),
         "demo" => demo::run(matches),
+        #[cfg(feature = "ros")]
+        "bag" => bag::run(matches),
         #[cfg(feature = "ros")]
         "ros2" => ros::run_ros2(matches),
         #[cfg(feature = "ros")]

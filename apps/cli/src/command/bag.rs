@@ -1,0 +1,161 @@
+//! `opendr bag`: what is in a recording, and recordings in other formats.
+
+use std::path::PathBuf;
+
+use clap::builder::PossibleValuesParser;
+use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use opendr::bags::{Answers, Bag, BagFormat, Compression, Conversion, Recording, Topic, WriteOptions};
+use opendr::{Error, Progress, Result, ValueType};
+use serde_json::json;
+
+use crate::exit::Outcome;
+use crate::progress_bar::{Bar, interrupted};
+use crate::{loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr bag info drive.bag                              topics, types, counts, and what learners can read them as
+  opendr bag convert drive.bag drive.mcap                the same messages in another format
+  opendr bag convert drive.bag drive/ --to bag2_sqlite   messages of ROS 1 become those of ROS 2
+  opendr bag convert drive/ front.mcap --topic /front/image_raw --lz4";
+
+pub fn grammar() -> Command {
+    let path = |name: &'static str| Arg::new(name).required(true).value_parser(value_parser!(PathBuf));
+    let switch = |name: &'static str| Arg::new(name).long(name).action(ArgAction::SetTrue);
+    Command::new("bag")
+        .about("Look at recordings (rosbag 1, rosbag 2, MCAP) and convert them")
+        .subcommand_required(true)
+        .arg_required_else_help(true)
+        .subcommands([
+            Command::new("info")
+                .about("Topics, types, counts, duration")
+                .arg(path("recording").value_name("RECORDING").help("A .bag or .mcap file, or a folder of rosbag 2"))
+                .arg(switch("json").help("Print one object of JSON")),
+            Command::new("convert")
+                .about("Write a recording in another format; messages of the other ROS are converted where they are known")
+                .args([
+                    path("recording").value_name("RECORDING").help("What to read"),
+                    path("output").value_name("OUTPUT").help("What to write: .bag, .mcap, or a folder with --to"),
+                    Arg::new("to")
+                        .long("to")
+                        .value_name("FORMAT")
+                        .value_parser(PossibleValuesParser::new(BagFormat::ALL.map(BagFormat::name)))
+                        .help("The format; .bag and .mcap tell it by their names"),
+                    Arg::new("topic")
+                        .long("topic")
+                        .action(ArgAction::Append)
+                        .value_name("TOPIC")
+                        .help("Only this topic; may be repeated"),
+                    switch("ros2").help("Write messages of ROS 2 into .mcap also where the recording is of ROS 1"),
+                    switch("lz4").help("Compress by LZ4"),
+                    switch("overwrite").help("Replace a recording that is there already"),
+                    loading::quiet(),
+                ]),
+        ])
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    match matches.subcommand() {
+        Some(("info", matches)) => info(matches),
+        Some(("convert", matches)) => convert(matches),
+        _ => Ok(Outcome::Done),
+    }
+}
+
+fn open(matches: &ArgMatches) -> Result<Recording> {
+    Recording::open(matches.get_one::<PathBuf>("recording").cloned().unwrap_or_default())
+}
+
+fn seconds(bag: &Bag) -> f64 {
+    let span = bag.start_ns().zip(bag.end_ns());
+    span.map_or(0.0, |(start, end)| end.saturating_sub(start) as f64 * 1e-9)
+}
+
+/// What the messages of a topic can be read as.
+fn types(topic: &Topic) -> Vec<&'static str> {
+    let fitting = ValueType::ALL.iter().filter(|value_type| topic.fits(**value_type));
+    fitting.map(|value_type| value_type.name()).collect()
+}
+
+fn info(matches: &ArgMatches) -> Result<Outcome> {
+    let recording = open(matches)?;
+    let (bag, topics) = (recording.bag(), recording.topics());
+    if matches.get_flag("json") {
+        let topics: Vec<_> = topics
+            .iter()
+            .map(|topic| {
+                json!({
+                    "name": topic.name, "type": topic.type_name, "messages": topic.messages, "read_as": types(topic),
+                })
+            })
+            .collect();
+        stdout::print(json!({
+            "recording": recording.path().to_string_lossy(), "format": bag.format().name(),
+            "complete": bag.is_complete(), "messages": bag.message_count(), "start_ns": bag.start_ns(),
+            "end_ns": bag.end_ns(), "duration_s": seconds(bag), "topics": topics,
+        }))?;
+        return Ok(Outcome::Done);
+    }
+    let cut = if bag.is_complete() { "" } else { "; cut off or damaged, told as far as it goes" };
+    let (path, format, count) = (recording.path().display(), bag.format(), bag.message_count());
+    stdout::print(format_args!("{path}: {format}, {count} messages, {:.1} s{cut}", seconds(bag)))?;
+    let width = |text: fn(&Topic) -> usize| topics.iter().map(text).max().unwrap_or(0);
+    let (names, kinds) = (width(|topic| topic.name.len()), width(|topic| topic.type_name.len()));
+    for topic in &topics {
+        let read_as = match (types(topic).join(", "), topic.is_other_version) {
+            (types, false) => types,
+            (_, true) => "another version of this message than OpenDR's".to_owned(),
+        };
+        let Topic { name, type_name, messages, .. } = topic;
+        let line = format!("  {name:names$}  {type_name:kinds$}  {messages:8}  {read_as}");
+        stdout::print(line.trim_end())?;
+    }
+    Ok(Outcome::Done)
+}
+
+fn convert(matches: &ArgMatches) -> Result<Outcome> {
+    let bar = Bar::new(matches.get_flag("quiet"));
+    let recording = open(matches)?;
+    let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
+    let named = matches.get_one::<String>("to").map(|name| name.parse::<BagFormat>()).transpose()?;
+    let format = named.or_else(|| Answers::format_of(&output)).ok_or_else(|| {
+        let output = output.display();
+        Error::invalid_param(format!("{output}: name it .bag or .mcap, or choose a format by --to"))
+    })?;
+    let (overwrite, same) = (matches.get_flag("overwrite"), output.canonicalize().ok());
+    if same.is_some() && same == recording.path().canonicalize().ok() {
+        let output = output.display();
+        return Err(Error::invalid_param(format!("{output} is the input itself; write to another file")));
+    }
+    if output.exists() && !overwrite {
+        let output = output.display();
+        return Err(Error::invalid_param(format!(
+            "{output} is there already; choose another name, or --overwrite it"
+        )));
+    }
+    let compression = if matches.get_flag("lz4") { Compression::Lz4 } else { Compression::None };
+    let options = WriteOptions { overwrite, compression, ..WriteOptions::new(format) };
+    let topics: Option<Vec<String>> = matches.get_many("topic").map(|topics| topics.cloned().collect());
+    let there = recording.topics();
+    if let Some(unknown) = topics.iter().flatten().find(|name| there.iter().all(|topic| topic.name != **name))
+    {
+        let names: Vec<_> = there.iter().map(|topic| topic.name.as_str()).collect();
+        return Err(Error::not_found(format!("no topic {unknown:?}; there are {}", names.join(", "))));
+    }
+    let mut failures = u64::from(!recording.bag().is_complete());
+    if failures > 0 {
+        let path = recording.path().display();
+        eprintln!("error: {path} was cut off or is damaged; it is read as far as it goes");
+    }
+    let mut left_out = |error: Error| {
+        failures += 1;
+        bar.suspend(|| eprintln!("error: left out: {error}"));
+        Ok(())
+    };
+    let conversion = Conversion { topics, is_ros2: matches.get_flag("ros2"), ..Conversion::from(options) };
+    let written = conversion.run(&recording, &output, &mut left_out, &bar)?;
+    let end = if interrupted() { " so far" } else { "" };
+    bar.note(&format!("{written} messages written to {}{end}", output.display()));
+    Ok(if failures == 0 { Outcome::Done } else { Outcome::SomeFailed })
+}

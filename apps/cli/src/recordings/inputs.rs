@@ -1,0 +1,194 @@
+//! Recordings as inputs: each message of the first port's topic is a frame.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::ArgMatches;
+use opendr::bags::{Recorded, Recording, Set, Sets, is_recording};
+use opendr::learner::Entry;
+use opendr::vision::{Frame, VideoInfo};
+use opendr::{Error, Result, Value};
+
+use super::flags::port_topics;
+use crate::inputs::{Datum, Item, Next};
+use crate::report::Report;
+
+/// Frames a second of a recording that does not tell.
+const RATE: f64 = 25.0;
+
+/// What a recording has beside the datum of the first port.
+pub struct RecordedSet {
+    /// The further ports' values by their names.
+    pub further: Vec<(&'static str, Value)>,
+    /// When the first port's message was recorded, nanoseconds.
+    pub log_time_ns: i64,
+    /// Whether nothing follows in its recording.
+    pub is_last: bool,
+    /// The messages that the values were read from.
+    pub messages: Vec<Recorded>,
+    pub recording: Arc<Recording>,
+}
+
+/// Recordings, one after the other.
+pub struct Recordings {
+    waiting: VecDeque<Opened>,
+    given: u64,
+}
+
+struct Opened {
+    recording: Arc<Recording>,
+    path: Arc<Path>,
+    ports: Vec<&'static str>,
+    sets: Sets,
+    /// The set after the one that is given out.
+    ahead: Option<Result<Set>>,
+    info: Arc<VideoInfo>,
+    /// Of the first port's topic, as the index tells.
+    messages: u64,
+    number: u64,
+    told: bool,
+}
+
+impl Recordings {
+    /// Opens `inputs` where they are recordings; `None` where they are not.
+    ///
+    /// # Errors
+    /// `InvalidInput` for recordings among other inputs; what keeps the only one from being read.
+    pub fn open(
+        entry: &'static Entry,
+        inputs: &[&PathBuf],
+        matches: &ArgMatches,
+        report: &mut Report<'_>,
+    ) -> Result<Option<Self>> {
+        let count = inputs.iter().filter(|input| is_recording(input)).count();
+        if count == 0 {
+            return match matches.contains_id("topic") {
+                true => {
+                    Err(Error::invalid_param("--topic chooses among topics, and no input is a recording"))
+                }
+                false => Ok(None),
+            };
+        }
+        if count < inputs.len() {
+            let message = "recordings and other inputs together; read them by a command each";
+            return Err(Error::invalid_input(message));
+        }
+        let mut waiting = VecDeque::new();
+        for input in inputs {
+            match Opened::open(entry, input, matches) {
+                Ok(opened) => {
+                    if !opened.recording.bag().is_complete() {
+                        let path = input.display();
+                        let message =
+                            format!("{path} was cut off or is damaged; it is read as far as it goes");
+                        report.failure(Some(input), &Error::format(message))?;
+                    }
+                    waiting.push_back(opened);
+                }
+                Err(error) if inputs.len() == 1 => return Err(error),
+                Err(error) => report.failure(Some(input), &error)?,
+            }
+        }
+        if waiting.is_empty() {
+            return Err(Error::not_found("none of the inputs can be read; the reasons are above"));
+        }
+        Ok(Some(Self { waiting, given: 0 }))
+    }
+
+    /// How many frames there will be, as far as indices tell.
+    pub fn len_hint(&self) -> u64 {
+        self.waiting.iter().fold(0, |sum, opened| sum.saturating_add(opened.messages))
+    }
+}
+
+impl Opened {
+    fn open(entry: &'static Entry, path: &Path, matches: &ArgMatches) -> Result<Self> {
+        let recording = Arc::new(Recording::open(path)?);
+        let topics = port_topics(entry, &recording, matches)?;
+        let first = topics.first().map(|(_, port)| port.topic.clone()).unwrap_or_default();
+        let topic = recording.topics().into_iter().find(|topic| topic.name == first);
+        let messages = topic.map_or(0, |topic| topic.messages);
+        let (ports, topics): (Vec<_>, Vec<_>) = topics.into_iter().unzip();
+        let mut sets = Sets::open(&recording, topics)?;
+        let ahead = sets.next();
+        let span = recording.bag().start_ns().zip(recording.bag().end_ns());
+        let duration_s = span.map(|(start, end)| end.saturating_sub(start) as f64 * 1e-9);
+        let rate = duration_s.map_or(RATE, |seconds| (messages.saturating_sub(1)) as f64 / seconds);
+        let rate = if rate.is_normal() { rate.clamp(0.1, 240.0) } else { RATE };
+        let info = Arc::new(VideoInfo { rate, frames: Some(messages), duration_s });
+        Ok(Self { recording, path: path.into(), ports, sets, ahead, info, messages, number: 0, told: false })
+    }
+
+    fn next(&mut self) -> Option<Result<Set>> {
+        let next = self.ahead.take()?;
+        self.ahead = self.sets.next();
+        Some(next)
+    }
+
+    fn item(&self, set: Set, index: u64) -> Result<Item> {
+        let Set { values, messages, log_time_ns, .. } = set;
+        let number = self.number;
+        let mut values = self.ports.iter().copied().zip(values);
+        let first = values.next().and_then(|(_, value)| value);
+        let first = first.ok_or_else(|| Error::internal("a set without the first port"))?;
+        let further = values.filter_map(|(port, value)| Some((port, value?))).collect();
+        let path = self.path.clone();
+        let datum = match first {
+            Value::Image(image) => {
+                Datum::Frame(Frame { image, path, index, number, video: Some(self.info.clone()) })
+            }
+            value => Datum::Value { value: Box::new(value), path, index, number, is_of_stream: true },
+        };
+        let messages = messages.into_iter().flatten().collect();
+        let (recording, is_last) = (self.recording.clone(), self.ahead.is_none());
+        let recorded = RecordedSet { further, log_time_ns, is_last, messages, recording };
+        Ok(Item { datum, recorded: Some(Box::new(recorded)) })
+    }
+
+    /// What to say at the end of the recording.
+    fn remark(&mut self) -> Option<Error> {
+        let unmatched = self.sets.unmatched();
+        if unmatched == 0 || std::mem::replace(&mut self.told, true) {
+            return None;
+        }
+        let first = self.ports.first().copied().unwrap_or_default();
+        let further = self.ports.get(1..).unwrap_or_default().join(", ");
+        Some(Error::invalid_input(format!(
+            "{}: {unmatched} messages for {first} had none for {further} within 20 ms and were left out",
+            self.path.display()
+        )))
+    }
+}
+
+impl Iterator for Recordings {
+    type Item = Next;
+
+    fn next(&mut self) -> Option<Next> {
+        loop {
+            let opened = self.waiting.front_mut()?;
+            let path = opened.path.clone();
+            let failed = |error: Error| Some(Err((Some(path.to_path_buf()), error)));
+            let index = self.given;
+            match opened.next() {
+                Some(set) => {
+                    self.given += 1;
+                    let place = || format!("{} frame {}", path.display(), opened.number);
+                    let next = match set.and_then(|set| opened.item(set, index)) {
+                        Ok(item) => Some(Ok(item)),
+                        Err(error) => failed(error.context(place())),
+                    };
+                    opened.number += 1;
+                    return next;
+                }
+                None => {
+                    let remark = opened.remark();
+                    self.waiting.pop_front();
+                    if let Some(error) = remark {
+                        return failed(error);
+                    }
+                }
+            }
+        }
+    }
+}

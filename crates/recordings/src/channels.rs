@@ -1,0 +1,71 @@
+//! Channels and messages: what the bytes of a recording are.
+
+use opendr_bags::{BagFormat, Channel, Encoding, Recorded};
+use opendr_engine::{Error, Result, ResultExt};
+use opendr_messages::{Message, MessageType, Wire};
+
+/// What is known of the messages of a channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Known {
+    Type(MessageType, Wire),
+    OtherVersion,
+    Unknown,
+}
+
+impl Known {
+    /// By name, and by sum or hash where the recording has it.
+    pub fn of(channel: &Channel) -> Self {
+        let wire = match channel.encoding {
+            Encoding::Ros1 => Wire::Ros1,
+            Encoding::Cdr => Wire::Cdr,
+            Encoding::Other(_) => return Self::Unknown,
+        };
+        let Ok(message_type) = channel.message_type.parse::<MessageType>() else { return Self::Unknown };
+        let ours = match wire {
+            Wire::Cdr => Some(message_type.rihs01()),
+            Wire::Ros1 => message_type.ros1().map(|known| known.md5sum),
+        };
+        let Some(ours) = ours else { return Self::Unknown };
+        match channel.type_hash.as_deref() {
+            Some(theirs) if !["", "*", ours].contains(&theirs) => Self::OtherVersion,
+            _ => Self::Type(message_type, wire),
+        }
+    }
+
+    /// Reads a message of the channel.
+    pub fn decode(self, channel: &Channel, message: &Recorded) -> Result<Message> {
+        let Self::Type(message_type, wire) = self else {
+            return Err(unreadable(channel, self));
+        };
+        Message::from_bytes(message_type, wire, &message.bytes).context(|| channel.topic.clone())
+    }
+}
+
+#[cold]
+pub(crate) fn unreadable(channel: &Channel, known: Known) -> Error {
+    let Channel { topic, message_type, encoding, .. } = channel;
+    let why = match known {
+        Known::OtherVersion => "OpenDR knows this message in another version".to_owned(),
+        _ => format!("OpenDR does not know this message in the encoding {encoding}"),
+    };
+    Error::unsupported(format!("{topic} ({message_type}): {why}"))
+}
+
+/// How a format keeps messages that OpenDR writes.
+pub(crate) fn wire_of(format: BagFormat) -> Wire {
+    if format == BagFormat::Bag1 { Wire::Ros1 } else { Wire::Cdr }
+}
+
+/// A channel for messages of a type that OpenDR writes.
+pub(crate) fn channel_of(topic: &str, message_type: MessageType, wire: Wire) -> Result<Channel> {
+    let definition = message_type.definition(wire)?;
+    let (name, hash, encoding) = match wire {
+        Wire::Cdr => (message_type.ros2_name(), message_type.rihs01(), Encoding::Cdr),
+        Wire::Ros1 => {
+            let known = message_type.ros1();
+            let known = known.ok_or_else(|| Error::internal("a definition without a type"))?;
+            (known.name, known.md5sum, Encoding::Ros1)
+        }
+    };
+    Ok(Channel::new(topic, name, encoding).with_definition(definition).with_type_hash(hash))
+}
