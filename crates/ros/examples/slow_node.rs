@@ -50,7 +50,7 @@ impl Learner for Slow {
 
     fn infer_into(&self, (): &mut (), _: &Image, target: &mut Category) -> Result<()> {
         sleep(Duration::from_secs_f64(self.params.delay_ms * 1e-3));
-        *target = Category::new(0, Some(1.0));
+        (target.class, target.confidence) = (0, Some(1.0));
         Ok(())
     }
 }
