@@ -211,3 +211,36 @@ def test_usage_errors_are_told():
     assert run(DETECTOR, "--image", "a b").returncode == 11
 
 
+
+
+def test_the_model_may_be_replaced_while_it_runs(ros2, tmp_path):
+    model = tmp_path / "model"
+    subprocess.run([opendr(), "export", CLASSIFIER, "--output", model], env=environment(), capture_output=True, check=True)
+    words = [CLASSIFIER, "--model", model, "--name", "replaced", "--image", "/replaced_raw"]
+    with Node("ros2", *words, ROS_DOMAIN_ID=ros2.domain) as node:
+        seen = ros2.subscribe("/replaced/category", "vision_msgs/msg/Classification")
+        seen.wait_for_publishers()
+        for stamp, damage in ((21, None), (22, b"nonsense"), (23, b"")):
+            if damage is not None:
+                for file in model.iterdir():
+                    file.write_bytes(damage)
+            answered(ros2, "/replaced_raw", IMAGE, ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=stamp)), seen)
+        assert node.process.poll() is None
+
+
+def test_time_may_jump(ros2):
+    clock = "rosgraph_msgs/msg/Clock"
+    words = [CLASSIFIER, "--name", "timed", "--image", "/timed_raw", "--use-sim-time", "true"]
+    with Node("ros2", *words, ROS_DOMAIN_ID=ros2.domain) as node:
+        seen = ros2.subscribe("/timed/category", "vision_msgs/msg/Classification")
+        latency = ros2.subscribe("/timed/latency_ms", "std_msgs/msg/Float32")
+        seen.wait_for_publishers()
+        latency.wait_for_publishers()
+        ros2.advertise("/clock", clock)
+        for sec, stamp in ((1000, 999), (5, 4), (2_000_000_000, 1_999_999_999)):
+            ros2.publish("/clock", clock, [ros2.encode(clock, {"clock": {"sec": sec}})], count=10, rate=20)
+            latency.clear()
+            answered(ros2, "/timed_raw", IMAGE, ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=stamp)), seen)
+            told = ros2.decode("std_msgs/msg/Float32", latency.messages[-1].data)["data"]
+            assert told == pytest.approx(1000, abs=1)
+        assert node.process.poll() is None
