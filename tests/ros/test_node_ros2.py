@@ -244,3 +244,30 @@ def test_time_may_jump(ros2):
             told = ros2.decode("std_msgs/msg/Float32", latency.messages[-1].data)["data"]
             assert told == pytest.approx(1000, abs=1)
         assert node.process.poll() is None
+
+
+def test_a_managed_node_waits_to_be_activated(ros2):
+    change, get = "lifecycle_msgs/srv/ChangeState", "lifecycle_msgs/srv/GetState"
+    words = [CLASSIFIER, "--name", "managed", "--image", "/managed_raw", "--lifecycle"]
+
+    def changed(label):
+        request = ros2.encode(f"{change}_Request", {"transition": {"id": 0, "label": label}})
+        return ros2.decode(f"{change}_Response", ros2.call("/managed/change_state", change, request))["success"]
+
+    def state():
+        request = ros2.encode(f"{get}_Request", {})
+        return ros2.decode(f"{get}_Response", ros2.call("/managed/get_state", get, request))["current_state"]["label"]
+
+    with Node("ros2", *words, ROS_DOMAIN_ID=ros2.domain) as node:
+        seen = ros2.subscribe("/managed/category", "vision_msgs/msg/Classification")
+        seen.wait_for_publishers()
+        picture = ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=31))
+        assert state() == "unconfigured" and not changed("activate")
+        assert changed("configure") and state() == "inactive"
+        ros2.publish("/managed_raw", IMAGE, [picture], count=20, rate=20)
+        assert seen.messages == []
+        assert changed("activate") and state() == "active"
+        answered(ros2, "/managed_raw", IMAGE, picture, seen)
+        assert changed("deactivate") and state() == "inactive"
+        assert changed("shutdown")
+        assert node.process.wait(30) == 0

@@ -68,6 +68,11 @@ impl LearnerNode {
         Ok(Self { worker })
     }
 
+    /// Whether the node works: while it is false, inputs are left out and nothing is sent.
+    pub fn active(&self) -> Arc<AtomicBool> {
+        self.worker.active()
+    }
+
     /// Works until `stop` says so.
     pub fn run(self, stop: &dyn Fn() -> bool) {
         self.worker.run(stop);

@@ -26,6 +26,7 @@ pub(super) struct Worker {
     inbox: Arc<Inbox>,
     params: Arc<Mutex<NodeParams>>,
     reset: Arc<AtomicBool>,
+    active: Arc<AtomicBool>,
     outputs: OutputTopics,
     labels: Option<Labels>,
     annotated: Option<Annotated>,
@@ -56,6 +57,7 @@ impl Worker {
             inbox,
             params,
             reset,
+            active: Arc::new(AtomicBool::new(true)),
             outputs: OutputTopics::new(graph, &options.outputs)?,
             labels: Labels::new(graph, classes)?,
             annotated: Annotated::new(graph, entry)?,
@@ -72,6 +74,10 @@ impl Worker {
         })
     }
 
+    pub(super) fn active(&self) -> Arc<AtomicBool> {
+        self.active.clone()
+    }
+
     pub(super) fn run(mut self, stop: &dyn Fn() -> bool) {
         while !stop() {
             let params = self.params.lock().unwrap_or_else(PoisonError::into_inner).clone();
@@ -81,6 +87,7 @@ impl Worker {
                 self.stream.reset();
             }
             let done = match set {
+                Some(_) if !self.active.load(Ordering::Relaxed) => self.rest(),
                 Some(set) => self.answer(&set, &params),
                 None => self.idle(&params),
             };
@@ -140,6 +147,15 @@ impl Worker {
             for outputs in &answers {
                 annotated.publish(set, outputs, &bridge)?;
             }
+        }
+        Ok(())
+    }
+
+    /// Not active: what moves is stopped, and what comes later begins a new stream.
+    fn rest(&mut self) -> Result<()> {
+        self.stream.reset();
+        if self.moving_since.take().is_some() {
+            self.outputs.stop((self.clock)())?;
         }
         Ok(())
     }

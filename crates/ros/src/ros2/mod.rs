@@ -1,5 +1,6 @@
 //! ROS 2 over DDS, in Rust alone (ros2-client on RustDDS).
 
+mod lifecycle;
 mod log;
 mod parameter_services;
 mod qos;
@@ -7,7 +8,7 @@ mod service;
 
 use std::net::IpAddr;
 use std::pin::Pin;
-use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -90,6 +91,7 @@ impl Ros2 {
             tasks: Vec::new(),
             threads: Vec::new(),
             sim_time: Arc::new(AtomicI64::new(NO_SIM_TIME)),
+            over: Arc::default(),
             log: Arc::new(|_, _| {}),
         };
         node.log = log::start(&mut node)?;
@@ -109,10 +111,22 @@ pub struct Ros2Node {
     tasks: Vec<Task>,
     threads: Vec<(oneshot::Sender<()>, JoinHandle<()>)>,
     sim_time: Arc<AtomicI64>,
+    /// Whether a manager has shut it down.
+    over: Arc<AtomicBool>,
     log: Log,
 }
 
 impl Ros2Node {
+    /// Has others say when the node works, by the services of a managed node: `active` is false until then. Call it before
+    /// [`Ros2Node::start`].
+    ///
+    /// # Errors
+    /// `Io` when the network cannot be used.
+    pub fn manage(&mut self, active: Arc<AtomicBool>) -> Result<()> {
+        let over = self.over.clone();
+        lifecycle::start(self, active, over)
+    }
+
     /// Starts to answer: call it once everything is declared.
     ///
     /// # Errors
@@ -236,6 +250,10 @@ impl Graph for Ros2Node {
             self.follow_clock()?;
         }
         parameter_services::start(self, parameters)
+    }
+
+    fn is_over(&self) -> bool {
+        self.over.load(Ordering::Relaxed)
     }
 
     fn clock(&self) -> Clock {

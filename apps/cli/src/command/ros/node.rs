@@ -40,7 +40,13 @@ pub fn node_grammar(ros: Ros, entry: Option<&'static Entry>) -> Command {
                 .help("Messages that are kept for a slow peer"),
         )
         .after_help(ros.examples());
-    let command = if ros == Ros::Two { participant::add_flags(command) } else { command };
+    let lifecycle = || {
+        Arg::new("lifecycle")
+            .long("lifecycle")
+            .action(ArgAction::SetTrue)
+            .help("Wait to be configured and activated, as a managed node")
+    };
+    let command = if ros == Ros::Two { participant::add_flags(command).arg(lifecycle()) } else { command };
     let Some(entry) = entry else { return command };
     let mut command = learner_flags::with_params(command, entry);
     let usual = default_topics(entry);

@@ -145,6 +145,9 @@ fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &m
     let (names, args) = names(matches, ros_words)?;
     let mut graph = ros2.node(names)?;
     let node = learner_node(&mut graph, matches, &args.parameters, feeds)?;
+    if matches.get_flag("lifecycle") {
+        graph.manage(node.active())?;
+    }
     graph.start()?;
     Ok((Box::new(graph), node))
 }
