@@ -73,22 +73,29 @@ fn references(environment: &Environment) -> Result<()> {
     let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
     surfaces::build()?;
     let examples = target().join("debug/examples");
+    let [of_libraries @ .., of_recordings] = tests;
     let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra"]).args(tests);
+    pytest.args(["-m", "pytest", "-ra"]).args(of_libraries);
     pytest
-        .env("OPENDR_BIN", target().join("debug/opendr"))
         .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
         .env("OPENDR_MFCC", examples.join("mfcc"))
         .env("OPENDR_SIMULATION_SERVE", examples.join("serve_environments"))
-        .env("OPENDR_BAG_DUMP", examples.join("bag_dump"))
-        .env("OPENDR_BAG_COPY", examples.join("bag_copy"))
         .env("OPENDR_RUNLOG_LOG", examples.join("log"))
         .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"))
         .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"))
         .env("OPENDR_TRAINING_OWN_MODULE", examples.join("own_module"));
     environment.apply(&mut pytest);
-    step("tests beside the reference tools", &mut pytest)
+    step("tests beside the reference tools", &mut pytest)?;
+    // They import from their own conftest, of which a run has one by that name.
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", of_recordings]);
+    pytest
+        .env("OPENDR_BIN", target().join("debug/opendr"))
+        .env("OPENDR_BAG_DUMP", examples.join("bag_dump"))
+        .env("OPENDR_BAG_COPY", examples.join("bag_copy"));
+    environment.apply(&mut pytest);
+    step("tests of recordings beside their tools", &mut pytest)
 }
 
 /// What needs PyTorch, with an interpreter that has it and `tests/extended/requirements.txt`: the normal run does
