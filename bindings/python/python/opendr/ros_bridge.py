@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import importlib
 import io
-from typing import Any, Optional, Union
+from typing import Any, Optional, TypeVar, Union, cast, overload
 
 from opendr import _opendr
 from opendr._errors import NotFound
@@ -29,8 +29,7 @@ from opendr.engine.target import (
     TrackingAnnotationList,
 )
 
-#: A class of data or targets, or its name.
-Kind = Union[type, str]
+T = TypeVar("T")
 
 
 class ROSBridge:
@@ -45,7 +44,13 @@ class ROSBridge:
         self.class_ids = class_ids
         self.jpeg_quality = jpeg_quality
 
-    def from_message(self, message: Any, kind: Optional[Kind] = None) -> Any:
+    @overload
+    def from_message(self, message: Any, kind: type[T]) -> T: ...
+
+    @overload
+    def from_message(self, message: Any, kind: Optional[str] = None) -> Any: ...
+
+    def from_message(self, message: Any, kind: Union[type, str, None] = None) -> Any:
         """The datum or target of a message; ``kind`` where it may be several (e.g. ``TrackingAnnotationList``).
 
         Raises:
@@ -75,11 +80,11 @@ class ROSBridge:
 
     def from_ros_image(self, message: Any) -> Image:
         """The picture of a ``sensor_msgs/Image`` or ``CompressedImage``."""
-        return self.from_message(message, "Image")
+        return self.from_message(message, Image)
 
     def from_ros_image_to_depth(self, message: Any) -> Image:
         """As :meth:`from_ros_image`: 16 bits and floats are kept."""
-        return self.from_message(message, "Image")
+        return self.from_message(message, Image)
 
     def to_ros_boxes(self, boxes: BoundingBoxList) -> Any:
         """``vision_msgs/Detection2DArray``."""
@@ -87,7 +92,7 @@ class ROSBridge:
 
     def from_ros_boxes(self, message: Any) -> BoundingBoxList:
         """The boxes of a ``vision_msgs/Detection2DArray``."""
-        return self.from_message(message, "BoundingBoxList")
+        return self.from_message(message, BoundingBoxList)
 
     to_ros_bounding_box_list = to_ros_boxes
     from_ros_bounding_box_list = from_ros_boxes
@@ -98,7 +103,7 @@ class ROSBridge:
 
     def from_ros_tracking_annotation(self, message: Any) -> TrackingAnnotationList:
         """The followed objects of a ``vision_msgs/Detection2DArray``."""
-        return self.from_message(message, "TrackingAnnotationList")
+        return self.from_message(message, TrackingAnnotationList)
 
     def to_ros_boxes_3d(self, boxes: BoundingBox3DList) -> Any:
         """``vision_msgs/Detection3DArray``, the turn as a quaternion."""
@@ -106,7 +111,7 @@ class ROSBridge:
 
     def from_ros_boxes_3d(self, message: Any) -> BoundingBox3DList:
         """The boxes of a ``vision_msgs/Detection3DArray``."""
-        return self.from_message(message, "BoundingBox3DList")
+        return self.from_message(message, BoundingBox3DList)
 
     def to_ros_poses(self, poses: PoseList) -> Any:
         """``opendr_msgs/Pose2DArray``."""
@@ -114,7 +119,7 @@ class ROSBridge:
 
     def from_ros_poses(self, message: Any) -> PoseList:
         """The poses of an ``opendr_msgs/Pose2DArray``."""
-        return self.from_message(message, "PoseList")
+        return self.from_message(message, PoseList)
 
     def to_ros_category(self, category: Category) -> Any:
         """``vision_msgs/Classification`` (ROS 1: ``Classification2D``)."""
@@ -122,7 +127,7 @@ class ROSBridge:
 
     def from_ros_category(self, message: Any) -> Category:
         """The class of a ``vision_msgs/Classification``."""
-        return self.from_message(message, "Category")
+        return self.from_message(message, Category)
 
     def to_ros_point_cloud2(self, cloud: PointCloud) -> Any:
         """``sensor_msgs/PointCloud2`` of floats."""
@@ -130,18 +135,18 @@ class ROSBridge:
 
     def from_ros_point_cloud2(self, message: Any) -> PointCloud:
         """The cloud of a ``sensor_msgs/PointCloud2`` with any layout of fields."""
-        return self.from_message(message, "PointCloud")
+        return self.from_message(message, PointCloud)
 
     def from_rosarray_to_timeseries(self, message: Any) -> Timeseries:
         """The time series of a ``std_msgs/Float32MultiArray``; without a layout, one feature through time."""
-        return self.from_message(message, "Timeseries")
+        return self.from_message(message, Timeseries)
 
 
 class ROS2Bridge(ROSBridge):
     """OpenDR's name of the bridge for ROS 2; both are the same here."""
 
 
-def _kind_name(kind: Optional[Kind]) -> Optional[str]:
+def _kind_name(kind: Union[type, str, None]) -> Optional[str]:
     return kind.__name__ if isinstance(kind, type) else kind
 
 
@@ -170,7 +175,7 @@ def _usual_class(kind: str) -> type:
     package, _, name = _opendr.ros_message_types(kind)[0].split("/")
     module = importlib.import_module(f"{package}.msg")
     # What ROS 1's vision_msgs calls otherwise.
-    return getattr(module, name, None) or getattr(module, f"{name}2D")
+    return cast(type, getattr(module, name, None) or getattr(module, f"{name}2D"))
 
 
 def _serialized(message: Any, is_ros1: bool) -> bytes:
