@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use opendr_engine::Result;
-use opendr_messages::{Message, MessageType};
+use opendr_messages::{Message, MessageType, std_srvs};
 
 use crate::ParameterTable;
 
@@ -32,6 +32,15 @@ pub type Deliver = Box<dyn FnMut(Result<Message>) + Send>;
 
 /// Answers a `std_srvs/Trigger`: what was done, or why it was not.
 pub type Trigger = Box<dyn FnMut() -> Result<String> + Send>;
+
+/// The answer to who pulled a trigger.
+pub(crate) fn answer_to(trigger: &mut Trigger) -> std_srvs::TriggerResponse {
+    let (success, message) = match trigger() {
+        Ok(message) => (true, message),
+        Err(error) => (false, error.to_string()),
+    };
+    std_srvs::TriggerResponse { success, message }
+}
 
 /// Nanoseconds since the epoch, or of the simulation.
 pub type Clock = Arc<dyn Fn() -> i64 + Send + Sync>;

@@ -1,21 +1,19 @@
 //! ROS 1, over the native client of `opendr-ros1`.
 
-use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::atomic::AtomicI64;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use opendr_engine::params::ParamValue;
 use opendr_engine::{Error, ErrorKind, Result};
-use opendr_messages::{
-    Message, MessageType, RosService as _, StdSrvsTrigger, Wire, ros1_from_message, std_srvs,
-};
+use opendr_messages::{Message, MessageType, RosService as _, StdSrvsTrigger, Wire, ros1_from_message};
 use opendr_ros1::{
     Listener, Node, NodeOptions, ParameterValue, ParameterWatch, PublisherOptions, ServiceServer,
     ServiceType, SubscriberOptions, TopicType,
 };
 
-use crate::clock::NO_SIM_TIME;
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger};
+use crate::clock::{self, NO_SIM_TIME};
+use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger, answer_to};
 use crate::{Names, ParameterTable};
 
 /// How long a node waits for a master that is just being started.
@@ -104,11 +102,7 @@ impl Graph for Ros1Node {
         let kind = StdSrvsTrigger::TYPE;
         let kind = ServiceType::new(format!("{}/{}", kind.package, kind.name), kind.md5sum);
         let answer = move |_: &[u8]| {
-            let (success, message) = match trigger.lock().unwrap_or_else(PoisonError::into_inner)() {
-                Ok(message) => (true, message),
-                Err(error) => (false, error.to_string()),
-            };
-            let response = std_srvs::TriggerResponse { success, message };
+            let response = answer_to(&mut trigger.lock().unwrap_or_else(PoisonError::into_inner));
             ros1_from_message(&response).map_err(|error| error.to_string())
         };
         self.services.push(self.node.serve(&self.names.resolve(service)?, kind, answer)?);
@@ -120,18 +114,8 @@ impl Graph for Ros1Node {
         let sim_time = self.node.parameter_if_set("/use_sim_time")?;
         let own = parameters.get("use_sim_time").map(|(_, value)| value);
         if sim_time == Some(ParameterValue::Bool(true)) || own == Some(ParamValue::Bool(true)) {
-            self.sim_time.store(0, Ordering::Relaxed);
             let sim_time = self.sim_time.clone();
-            self.subscribe(
-                "/clock",
-                MessageType::RosgraphMsgsClock,
-                Qos::SENSOR,
-                Box::new(move |message| {
-                    if let Ok(Message::RosgraphMsgsClock(message)) = message {
-                        sim_time.store(opendr_ros_bridge::nanoseconds(&message.clock), Ordering::Relaxed);
-                    }
-                }),
-            )?;
+            clock::follow(self, &sim_time)?;
         }
         for (field, value) in parameters.rows() {
             let key = format!("{}/{}", self.full_name, field.name);
@@ -162,7 +146,7 @@ impl Graph for Ros1Node {
     }
 
     fn clock(&self) -> Clock {
-        crate::clock::clock(self.sim_time.clone())
+        clock::clock(self.sim_time.clone())
     }
 
     fn log(&self) -> Log {

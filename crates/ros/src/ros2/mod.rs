@@ -18,13 +18,13 @@ use futures::future::{Either, select};
 use futures::{Future, StreamExt};
 use opendr_engine::params::ParamValue;
 use opendr_engine::{Error, Result};
-use opendr_messages::{Message, MessageType, std_srvs};
+use opendr_messages::{Message, MessageType};
 use ros2_client::dds::rustdds::discovery::DiscoveredReaderData;
 use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
 
-use crate::clock::NO_SIM_TIME;
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger};
+use crate::clock::{self, NO_SIM_TIME};
+use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger, answer_to};
 use crate::{Names, ParameterTable};
 
 /// How to take part in DDS.
@@ -170,22 +170,6 @@ impl Ros2Node {
             .create_topic(&name, MessageTypeName::new(package, short), &qos::profile(qos))
             .map_err(|error| network_error(&absolute, &error))
     }
-
-    /// Follows `/clock` from now on.
-    fn follow_clock(&mut self) -> Result<()> {
-        let sim_time = self.sim_time.clone();
-        sim_time.store(0, Ordering::Relaxed);
-        self.subscribe(
-            "/clock",
-            MessageType::RosgraphMsgsClock,
-            Qos::SENSOR,
-            Box::new(move |message| {
-                if let Ok(Message::RosgraphMsgsClock(message)) = message {
-                    sim_time.store(opendr_ros_bridge::nanoseconds(&message.clock), Ordering::Relaxed);
-                }
-            }),
-        )
-    }
 }
 
 impl Graph for Ros2Node {
@@ -236,18 +220,13 @@ impl Graph for Ros2Node {
     }
 
     fn serve(&mut self, service: &str, mut trigger: Trigger) -> Result<()> {
-        service::serve::<opendr_messages::StdSrvsTrigger>(self, service, move |_| {
-            let (success, message) = match trigger() {
-                Ok(message) => (true, message),
-                Err(error) => (false, error.to_string()),
-            };
-            std_srvs::TriggerResponse { success, message }
-        })
+        service::serve::<opendr_messages::StdSrvsTrigger>(self, service, move |_| answer_to(&mut trigger))
     }
 
     fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()> {
         if matches!(parameters.get("use_sim_time"), Some((_, ParamValue::Bool(true)))) {
-            self.follow_clock()?;
+            let sim_time = self.sim_time.clone();
+            clock::follow(self, &sim_time)?;
         }
         parameter_services::start(self, parameters)
     }
@@ -257,7 +236,7 @@ impl Graph for Ros2Node {
     }
 
     fn clock(&self) -> Clock {
-        crate::clock::clock(self.sim_time.clone())
+        clock::clock(self.sim_time.clone())
     }
 
     fn log(&self) -> Log {
