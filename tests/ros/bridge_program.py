@@ -3,12 +3,12 @@
 import json
 import sys
 
-from geometry_msgs.msg import Twist
 from opendr.engine.data import Image
 from opendr.engine.target import BoundingBox, BoundingBoxList, TrackingAnnotationList
 from opendr.ros_bridge import ROS2Bridge, ROSBridge
 from sensor_msgs.msg import CompressedImage, PointCloud2
 from sensor_msgs.msg import Image as ImageMessage
+from std_msgs.msg import String
 from vision_msgs.msg import Detection2DArray
 
 
@@ -28,7 +28,7 @@ def main():
     tracks = bridge.from_message(detections, TrackingAnnotationList)
     compressed = bridge.to_message(image, CompressedImage)
     errors = []
-    for broken in (ImageMessage(height=2, width=2, encoding="rgb8", step=6), PointCloud2(width=1, height=1), Twist(), 3):
+    for broken in (ImageMessage(height=2, width=2, encoding="rgb8", step=6), PointCloud2(width=1, height=1), String(), 3):
         try:
             bridge.from_message(broken, None if broken != 3 else "Image")
         except Exception as error:
