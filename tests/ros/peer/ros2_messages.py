@@ -5,7 +5,7 @@ import re
 
 from random_values import INTEGERS
 
-ARRAY = re.compile(r"^sequence<(?P<item>.+?)(, \d+)?>$|^(?P<fixed>.+)\[(?P<count>\d+)\]$")
+ARRAY = re.compile(r"^sequence<(?P<item>.+?)(, (?P<most>\d+))?>$|^(?P<fixed>.+)\[(?P<count>\d+)\]$")
 
 
 def type_by_name(name):
@@ -41,6 +41,7 @@ def random_field(kind, values, depth):
     if array:
         item = array["item"] or array["fixed"]
         count = int(array["count"]) if array["count"] else values.length(depth, "/" not in item and item != "string")
+        count = min(count, int(array["most"] or count))
         return [random_field(item, values, depth + 1) for _ in range(count)]
     if "/" in kind:
         return random_message(nested(kind), values, depth + 1)
