@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
 use opendr_engine::data::Observation;
@@ -12,6 +12,7 @@ use opendr_engine::{Error, Header, Result, Value, ValueType};
 use opendr_messages::{Message, MessageType, std_msgs};
 use opendr_ros_bridge::RosBridge;
 
+use crate::graph::serve_reset;
 use crate::{Clock, Graph, Log, Publisher, Qos, Severity};
 
 /// How a world runs.
@@ -89,25 +90,24 @@ impl EnvironmentNode {
             options.action_message,
             Qos::RESULT,
             Box::new(move |message| {
-                if let Err(TrySendError::Full(_) | TrySendError::Disconnected(_)) = sender.try_send(message) {
-                }
+                // Who acts faster than the world answers is not waited for.
+                let _ = sender.try_send(message);
             }),
         )?;
-        let reset = Arc::new(AtomicBool::new(false));
-        let asked = reset.clone();
-        graph.serve(
-            "~/reset",
-            Box::new(move || {
-                asked.store(true, Ordering::Relaxed);
-                Ok("an episode begins".to_owned())
-            }),
-        )?;
-        let mut topic = |name, message_type, qos| graph.advertise(name, message_type, qos);
+        let reset = serve_reset(graph, "an episode begins")?;
         Ok(Self {
-            observations: topic("~/observation", MessageType::OpendrMsgsObservation, Qos::LATCHED)?,
-            rewards: topic("~/reward", MessageType::StdMsgsFloat32, Qos::RESULT)?,
-            overs: topic("~/is_over", MessageType::StdMsgsBool, Qos::RESULT)?,
-            pictures: topic("~/image/compressed", MessageType::SensorMsgsCompressedImage, Qos::RESULT)?,
+            observations: graph.advertise(
+                "~/observation",
+                MessageType::OpendrMsgsObservation,
+                Qos::LATCHED,
+            )?,
+            rewards: graph.advertise("~/reward", MessageType::StdMsgsFloat32, Qos::RESULT)?,
+            overs: graph.advertise("~/is_over", MessageType::StdMsgsBool, Qos::RESULT)?,
+            pictures: graph.advertise(
+                "~/image/compressed",
+                MessageType::SensorMsgsCompressedImage,
+                Qos::RESULT,
+            )?,
             clock: graph.clock(),
             log: graph.log(),
             environment,

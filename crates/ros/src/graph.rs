@@ -1,6 +1,7 @@
 //! What a node needs of a ROS, whichever it is.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use opendr_engine::Result;
 use opendr_messages::{Message, MessageType, std_srvs};
@@ -40,6 +41,18 @@ pub(crate) fn answer_to(trigger: &mut Trigger) -> std_srvs::TriggerResponse {
         Err(error) => (false, error.to_string()),
     };
     std_srvs::TriggerResponse { success, message }
+}
+
+/// Serves `~/reset`: what it sets when somebody asks, who then is told `done`.
+pub(crate) fn serve_reset(graph: &mut dyn Graph, done: &'static str) -> Result<Arc<AtomicBool>> {
+    let reset = Arc::new(AtomicBool::new(false));
+    let asked = reset.clone();
+    let trigger = move || {
+        asked.store(true, Ordering::Relaxed);
+        Ok(done.to_owned())
+    };
+    graph.serve("~/reset", Box::new(trigger))?;
+    Ok(reset)
 }
 
 /// Nanoseconds since the epoch, or of the simulation.

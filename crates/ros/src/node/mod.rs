@@ -15,13 +15,14 @@ pub use feeds::Feeds;
 pub use params::NodeParams;
 pub use topics::{NodeOptions, TopicOptions, default_topics};
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::learner::{AnyLearner, Entry};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Result};
 
+use crate::graph::serve_reset;
 use crate::{Graph, ParameterTable};
 use inbox::Inbox;
 use worker::Worker;
@@ -50,16 +51,8 @@ impl LearnerNode {
         let params = Arc::new(Mutex::new(options.params.clone()));
         let stream = learner.stream()?;
         let classes = learner.classes();
-        let reset = Arc::new(AtomicBool::new(false));
         declare_parameters(graph, entry, learner, &params)?;
-        let asked = reset.clone();
-        graph.serve(
-            "~/reset",
-            Box::new(move || {
-                asked.store(true, Ordering::Relaxed);
-                Ok("the next input begins a new stream".to_owned())
-            }),
-        )?;
+        let reset = serve_reset(graph, "the next input begins a new stream")?;
         let worker = Worker::new(graph, entry, stream, &classes, inbox.clone(), params, reset, &options)?;
         for (index, port) in entry.ports.iter().enumerate() {
             let Some(topic) = options.inputs.iter().find(|topic| topic.name == port.name) else { continue };
