@@ -171,10 +171,14 @@ impl Checkpoints {
         let steps = self.steps()?;
         let newest = steps.iter().rev().take(self.keep);
         let kept: Vec<u64> = newest.copied().chain(best).chain([saved]).collect();
-        for (_, path) in self.list()?.into_iter().filter(|(step, _)| !kept.contains(step)) {
+        let found = self.list()?;
+        // A kill may leave what was replaced, half removed, before its successor.
+        let succeeded = |at: usize| found.get(at + 1).is_some_and(|next| next.0 == found[at].0);
+        let goes = |at: usize| succeeded(at) || !kept.contains(&found[at].0);
+        for path in (0..found.len()).filter(|at| goes(*at)).map(|at| &found[at].1) {
             // A folder that is being removed is no checkpoint any more.
-            let removed = unfinished(&path).and_then(|gone| fs::rename(&path, &gone));
-            removed.map_err(|error| refused(&path, error))?;
+            let removed = unfinished(path).and_then(|gone| fs::rename(path, &gone));
+            removed.map_err(|error| refused(path, error))?;
         }
         self.remove_unfinished();
         Ok(())
