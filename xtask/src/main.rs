@@ -24,6 +24,8 @@ usage: cargo xtask VERB
              these alone
   test-c     the part of it that tests the C library
   ros        the part of it that tests messages and nodes beside real ROS peers
+  ros --zenoh
+             the command with the feature zenoh beside a Zenoh router and peer; no part of the test command
   generate   write stubs, C headers and docs/learners.md, which are made of the registry
   realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
   install-c PREFIX
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
         ["test-extended"] => test::run_extended(),
         ["test-c"] => test::run_c(),
         ["ros"] => ros::run_alone(),
+        ["ros", "--zenoh"] => ros::run_zenoh(),
         ["generate"] => generate::run(),
         ["realtime"] => realtime::run(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),

@@ -20,6 +20,21 @@ pub fn run_alone() -> Result<()> {
     run(|_| ())
 }
 
+/// The command over Zenoh, beside a router and a peer out of Python packages. Zenoh takes minutes to build, so that this is no
+/// part of the test command.
+pub fn run_zenoh() -> Result<()> {
+    install_debian()?;
+    step("build with Zenoh", command("cargo").args(["build", "--package", "opendr-cli", "--features=zenoh"]))?;
+    step(
+        "tests of keys and tokens",
+        command("cargo").args(["test", "--package", "opendr-ros", "--features=zenoh", "--lib"]),
+    )?;
+    let python = Python::install("ros-zenoh-venv", "tests/ros_zenoh/requirements.txt")?;
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", "tests/ros_zenoh"]).env("OPENDR_BIN", target().join("debug/opendr"));
+    step("tests over Zenoh", &mut pytest)
+}
+
 /// Brings the peers up to date and runs `tests/ros1`, then `tests/ros`; the command is built.
 pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
     let tests = Python::install("ros-venv", "tests/ros/requirements.txt")?;

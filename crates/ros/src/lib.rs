@@ -1,4 +1,4 @@
-//! Every learner as a node: ROS 2 over DDS and ROS 1, spoken natively.
+//! Every learner as a node: ROS 2 over DDS or Zenoh and ROS 1, spoken natively.
 //!
 //! A [`LearnerNode`] knows types and tables, never a learner: its topics follow from ports and outputs, its parameters from
 //! `Params`. It speaks through a [`Graph`], which ROS 2 and ROS 1 implement.
@@ -20,5 +20,5 @@ pub use node::{Feeds, LearnerNode, NodeOptions, NodeParams, TopicOptions, defaul
 pub use parameter_table::ParameterTable;
 pub use ros_args::{RosArgs, words_from_ros1};
 pub use ros1::Ros1Node;
-pub use ros2::{Ros2, Ros2Node, Ros2Options};
+pub use ros2::{Middleware, Ros2, Ros2Node, Ros2Options};
 pub use {opendr_messages as messages, opendr_ros_bridge as bridge};

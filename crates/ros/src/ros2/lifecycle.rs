@@ -14,10 +14,9 @@ use opendr_messages::{
     LifecycleMsgsGetState, MessageType,
 };
 
-use super::Ros2Node;
-use super::service::serve;
+use super::typed_services::TypedServices;
 use crate::clock::system_time_ns;
-use crate::{Graph as _, Publisher, Qos};
+use crate::{Publisher, Qos};
 
 /// A transition: its number, its label, from which state it goes to which.
 type Row = (u8, &'static str, u8, u8);
@@ -49,26 +48,30 @@ struct Machine {
 }
 
 /// Serves the states of `node`, which begins unconfigured: `active` says whether it works, `over` that it has been shut down.
-pub(super) fn start(node: &mut Ros2Node, active: Arc<AtomicBool>, over: Arc<AtomicBool>) -> Result<()> {
+pub(super) fn start(
+    node: &mut impl TypedServices,
+    active: Arc<AtomicBool>,
+    over: Arc<AtomicBool>,
+) -> Result<()> {
     active.store(false, Ordering::Relaxed);
     let events =
         node.advertise("~/transition_event", MessageType::LifecycleMsgsTransitionEvent, Qos::RESULT)?;
     let machine = Arc::new(Machine { state: Mutex::new(UNCONFIGURED), active, over, events });
     let own = machine.clone();
-    serve::<LifecycleMsgsChangeState>(node, "~/change_state", move |request| ChangeStateResponse {
+    node.serve_typed::<LifecycleMsgsChangeState>("~/change_state", move |request| ChangeStateResponse {
         success: own.change(&request),
     })?;
     let own = machine.clone();
-    serve::<LifecycleMsgsGetState>(node, "~/get_state", move |_| GetStateResponse {
+    node.serve_typed::<LifecycleMsgsGetState>("~/get_state", move |_| GetStateResponse {
         current_state: state(own.now()),
     })?;
-    serve::<LifecycleMsgsGetAvailableStates>(node, "~/get_available_states", move |_| {
+    node.serve_typed::<LifecycleMsgsGetAvailableStates>("~/get_available_states", move |_| {
         GetAvailableStatesResponse { available_states: STATES.iter().map(|(id, _)| state(*id)).collect() }
     })?;
-    serve::<LifecycleMsgsGetAvailableTransitions>(node, "~/get_transition_graph", move |_| {
+    node.serve_typed::<LifecycleMsgsGetAvailableTransitions>("~/get_transition_graph", move |_| {
         GetAvailableTransitionsResponse { available_transitions: TRANSITIONS.iter().map(described).collect() }
     })?;
-    serve::<LifecycleMsgsGetAvailableTransitions>(node, "~/get_available_transitions", move |_| {
+    node.serve_typed::<LifecycleMsgsGetAvailableTransitions>("~/get_available_transitions", move |_| {
         let now = machine.now();
         let available = TRANSITIONS.iter().filter(|(_, _, from, _)| *from == now);
         GetAvailableTransitionsResponse { available_transitions: available.map(described).collect() }

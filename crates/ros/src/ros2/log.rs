@@ -6,16 +6,15 @@ use opendr_engine::Result;
 use opendr_messages::{MessageType, rcl_interfaces};
 use opendr_ros_bridge::time;
 
-use super::Ros2Node;
 use crate::clock::system_time_ns;
-use crate::{Graph as _, Log, Qos, Severity};
+use crate::{Graph, Log, Qos, Severity};
 
 /// As rclcpp offers `/rosout`.
 const QOS: Qos = Qos { reliable: true, latched: true, depth: 1000 };
 
-pub(super) fn start(node: &mut Ros2Node) -> Result<Log> {
+pub(super) fn start(node: &mut impl Graph) -> Result<Log> {
     let publisher = node.advertise("/rosout", MessageType::RclInterfacesLog, QOS)?;
-    let name = node.full_name.trim_start_matches('/').replace('/', ".");
+    let name = node.name().trim_start_matches('/').replace('/', ".");
     Ok(Arc::new(move |severity, text| {
         let level = match severity {
             Severity::Info => rcl_interfaces::Log::INFO,

@@ -1,54 +1,93 @@
-//! ROS 2 over DDS, in Rust alone (ros2-client on RustDDS).
+//! ROS 2, over DDS or Zenoh.
 
+mod dds;
 mod lifecycle;
 mod log;
 mod parameter_services;
-mod qos;
-mod service;
+mod typed_services;
+#[cfg(feature = "zenoh")]
+mod zenoh;
 
+use std::fmt::Debug;
 use std::net::IpAddr;
-use std::pin::Pin;
-use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
+use std::str::FromStr;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use futures::channel::oneshot;
-use futures::future::{Either, select};
-use futures::{Future, StreamExt};
-use opendr_engine::params::ParamValue;
-use opendr_engine::{Error, Result};
-use opendr_messages::{Message, MessageType};
-use ros2_client::dds::rustdds::discovery::DiscoveredReaderData;
-use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
-use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
+use opendr_engine::{Error, ErrorKind, Result};
 
-use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger, answer_to};
-use crate::{Names, ParameterTable};
+use crate::{Graph, Names};
 
-/// How to take part in DDS.
+/// What carries the messages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Middleware {
+    /// As Fast DDS and Cyclone DDS speak it.
+    Dds,
+    /// As `rmw_zenoh_cpp` speaks it; in builds with the feature `zenoh`.
+    Zenoh,
+}
+
+impl FromStr for Middleware {
+    type Err = Error;
+
+    /// Of `dds`, `zenoh`, or the name of an RMW implementation.
+    fn from_str(text: &str) -> Result<Self> {
+        match text {
+            "zenoh" | "rmw_zenoh_cpp" => Ok(Self::Zenoh),
+            "dds"
+            | "rmw_fastrtps_cpp"
+            | "rmw_fastrtps_dynamic_cpp"
+            | "rmw_cyclonedds_cpp"
+            | "rmw_connextdds" => Ok(Self::Dds),
+            other => Err(Error::invalid_param(format!(
+                "the middleware {other:?}; give dds, zenoh, or the name of an RMW implementation"
+            ))),
+        }
+    }
+}
+
+/// How to take part in ROS 2.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ros2Options {
+    /// What carries the messages; as `RMW_IMPLEMENTATION` says, or DDS, when it is not given.
+    pub middleware: Option<Middleware>,
     /// The domain; `ROS_DOMAIN_ID` or 0 when it is not given.
     pub domain_id: Option<u16>,
-    /// The addresses of the networks to use; all when there is none.
+    /// The addresses of the networks that DDS uses; all when there is none.
     pub networks: Vec<IpAddr>,
 }
 
-/// A participant, which several nodes of a process share.
-pub struct Ros2 {
-    context: Context,
+/// A participant of DDS or a session of Zenoh, which several nodes of a process share.
+pub struct Ros2(Joined);
+
+enum Joined {
+    Dds(dds::Participant),
+    #[cfg(feature = "zenoh")]
+    Zenoh(zenoh::Session),
 }
 
-/// Room for many large pictures, where the system grants it: DDS sends them in pieces that come all at once.
-const RECEIVE_BUFFER_BYTES: usize = 8 << 20;
+/// A node of ROS 2.
+pub trait Ros2Node: Graph {
+    /// Has others say when the node works, by the services of a managed node: `active` is false until then. Call it before
+    /// [`Ros2Node::start`].
+    ///
+    /// # Errors
+    /// `Io` when the network cannot be used.
+    fn manage(&mut self, active: Arc<AtomicBool>) -> Result<()>;
+
+    /// Starts to answer: call it once everything is declared.
+    ///
+    /// # Errors
+    /// `Io` when the network cannot be used.
+    fn start(&mut self) -> Result<()>;
+}
 
 impl Ros2 {
     /// Joins the domain.
     ///
     /// # Errors
-    /// `InvalidParam` for a domain that is none; `Io` when the network cannot be used.
+    /// `InvalidParam` for a domain or a middleware that is none; `Unsupported` for a middleware that this build has not;
+    /// `Io` when the network cannot be used.
     pub fn new(options: &Ros2Options) -> Result<Self> {
         let domain_id = match (options.domain_id, std::env::var("ROS_DOMAIN_ID")) {
             (Some(domain_id), _) => domain_id,
@@ -61,244 +100,63 @@ impl Ros2 {
         if domain_id > 232 {
             return Err(Error::invalid_param(format!("the domain {domain_id}; give a number from 0 to 232")));
         }
-        let mut builder =
-            DomainParticipantBuilder::new(domain_id).socket_receive_buffer_size(RECEIVE_BUFFER_BYTES);
-        if !options.networks.is_empty() {
-            builder = builder.with_only_networks(options.networks.iter().copied());
+        let middleware = match (options.middleware, std::env::var("RMW_IMPLEMENTATION")) {
+            (Some(middleware), _) => middleware,
+            (None, Ok(text)) if !text.is_empty() => {
+                text.parse().map_err(|error: Error| error.context("RMW_IMPLEMENTATION"))?
+            }
+            _ => Middleware::Dds,
+        };
+        match middleware {
+            Middleware::Dds => Ok(Self(Joined::Dds(dds::Participant::new(domain_id, &options.networks)?))),
+            #[cfg(feature = "zenoh")]
+            Middleware::Zenoh => Ok(Self(Joined::Zenoh(zenoh::Session::new(domain_id)?))),
+            #[cfg(not(feature = "zenoh"))]
+            Middleware::Zenoh => Err(Error::unsupported(
+                "this build speaks DDS alone: build it with --features zenoh, or let RMW_IMPLEMENTATION name a DDS",
+            )),
         }
-        let participant = builder.build().map_err(|error| network_error("joining DDS", &error))?;
-        let context = Context::from_domain_participant(participant);
-        let context = context.map_err(|error| network_error("joining DDS", &error))?;
-        Ok(Self { context })
     }
 
     /// A node in the domain.
     ///
     /// # Errors
     /// `InvalidInput` for names that are none; `Io` when the network cannot be used.
-    pub fn node(&self, names: Names) -> Result<Ros2Node> {
-        let name = NodeName::new(names.namespace(), names.node())
-            .map_err(|error| Error::invalid_input(format!("the node's name {}: {error}", names.full())))?;
-        // Parameters and /rosout are our own: ranges, descriptions and read-only ones are not known to ros2-client.
-        let options = NodeOptions::new().start_parameter_services(false).enable_rosout(false);
-        let node =
-            self.context.new_node(name, options).map_err(|error| network_error("making a node", &error))?;
-        let mut node = Ros2Node {
-            full_name: names.full(),
-            names,
-            node,
-            participant: self.context.domain_participant(),
-            tasks: Vec::new(),
-            threads: Vec::new(),
-            sim_time: Arc::new(AtomicI64::new(NO_SIM_TIME)),
-            over: Arc::default(),
-            log: Arc::new(|_, _| {}),
-        };
-        node.log = log::start(&mut node)?;
-        Ok(node)
-    }
-}
-
-type Task = Pin<Box<dyn Future<Output = ()> + Send>>;
-
-/// A node of ROS 2.
-pub struct Ros2Node {
-    full_name: String,
-    names: Names,
-    node: Node,
-    participant: DomainParticipant,
-    /// What runs on one thread together: services, discovery.
-    tasks: Vec<Task>,
-    threads: Vec<(oneshot::Sender<()>, JoinHandle<()>)>,
-    sim_time: Arc<AtomicI64>,
-    /// Whether a manager has shut it down.
-    over: Arc<AtomicBool>,
-    log: Log,
-}
-
-impl Ros2Node {
-    /// Has others say when the node works, by the services of a managed node: `active` is false until then. Call it before
-    /// [`Ros2Node::start`].
-    ///
-    /// # Errors
-    /// `Io` when the network cannot be used.
-    pub fn manage(&mut self, active: Arc<AtomicBool>) -> Result<()> {
-        let over = self.over.clone();
-        lifecycle::start(self, active, over)
-    }
-
-    /// Starts to answer: call it once everything is declared.
-    ///
-    /// # Errors
-    /// `Io` when the network cannot be used.
-    pub fn start(&mut self) -> Result<()> {
-        let spinner = self.node.spinner().map_err(|error| network_error("spinning", &error))?;
-        self.tasks.push(Box::pin(async move {
-            // It ends with the node.
-            let _ = spinner.spin().await;
-        }));
-        let tasks = std::mem::take(&mut self.tasks);
-        self.spawn("ros2-services", async move {
-            futures::future::join_all(tasks).await;
-        })
-    }
-
-    fn spawn(&mut self, name: &str, task: impl Future<Output = ()> + Send + 'static) -> Result<()> {
-        let (stop, stopped) = oneshot::channel();
-        let run = move || {
-            let task = std::pin::pin!(task);
-            if let Either::Left(((), stopped)) = futures::executor::block_on(select(task, stopped)) {
-                drop(stopped);
-            }
-        };
-        let thread = std::thread::Builder::new().name(name.to_owned()).spawn(run)?;
-        self.threads.push((stop, thread));
-        Ok(())
-    }
-
-    fn topic(
-        &self,
-        topic: &str,
-        message_type: MessageType,
-        qos: Qos,
-    ) -> Result<ros2_client::dds::rustdds::Topic> {
-        let absolute = self.names.resolve(topic)?;
-        let name = Name::parse(&absolute)
-            .map_err(|error| Error::invalid_input(format!("the topic {absolute}: {error}")))?;
-        let (package, short) = message_type.package_and_name();
-        self.node
-            .create_topic(&name, MessageTypeName::new(package, short), &qos::profile(qos))
-            .map_err(|error| network_error(&absolute, &error))
-    }
-}
-
-impl Graph for Ros2Node {
-    fn name(&self) -> &str {
-        &self.full_name
-    }
-
-    fn resolve(&self, name: &str) -> Result<String> {
-        self.names.resolve(name)
-    }
-
-    fn advertise(&mut self, topic: &str, message_type: MessageType, qos: Qos) -> Result<Arc<dyn Publisher>> {
-        let dds_topic = format!("rt{}", self.names.resolve(topic)?);
-        let topic = self.topic(topic, message_type, qos)?;
-        let publisher = self
-            .node
-            .create_publisher::<Message>(&topic, None)
-            .map_err(|error| network_error("publishing", &error))?;
-        let participant = self.participant.clone();
-        Ok(Arc::new(Ros2Publisher { publisher, participant, dds_topic, counted: Mutex::new(None) }))
-    }
-
-    fn subscribe(
-        &mut self,
-        topic: &str,
-        message_type: MessageType,
-        qos: Qos,
-        mut deliver: Deliver,
-    ) -> Result<()> {
-        let name = self.names.resolve(topic)?;
-        let topic = self.topic(topic, message_type, qos)?;
-        let subscription = self
-            .node
-            .create_subscription::<Message>(&topic, None)
-            .map_err(|error| network_error("subscribing", &error))?;
-        self.spawn(&format!("sub {name}"), async move {
-            let messages = subscription.async_stream_seed(message_type);
-            let mut messages = std::pin::pin!(messages);
-            while let Some(message) = messages.next().await {
-                deliver(message.map(|(message, _)| message).map_err(|error| {
-                    Error::format(format!(
-                        "{name}: a message that is no {}: {error}",
-                        message_type.ros2_name()
-                    ))
-                }));
-            }
-        })
-    }
-
-    fn serve(&mut self, service: &str, mut trigger: Trigger) -> Result<()> {
-        service::serve::<opendr_messages::StdSrvsTrigger>(self, service, move |_| answer_to(&mut trigger))
-    }
-
-    fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()> {
-        if matches!(parameters.get("use_sim_time"), Some((_, ParamValue::Bool(true)))) {
-            let sim_time = self.sim_time.clone();
-            clock::follow(self, &sim_time)?;
-        }
-        parameter_services::start(self, parameters)
-    }
-
-    fn is_over(&self) -> bool {
-        self.over.load(Ordering::Relaxed)
-    }
-
-    fn clock(&self) -> Clock {
-        clock::clock(self.sim_time.clone())
-    }
-
-    fn log(&self) -> Log {
-        self.log.clone()
-    }
-}
-
-impl Drop for Ros2Node {
-    fn drop(&mut self) {
-        self.node.stop_spinner();
-        let threads = std::mem::take(&mut self.threads);
-        let handles: Vec<_> = threads
-            .into_iter()
-            .map(|(stop, thread)| {
-                // The thread may be over already.
-                let _ = stop.send(());
-                thread
-            })
-            .collect();
-        for thread in handles {
-            let _ = thread.join();
-        }
-    }
-}
-
-struct Ros2Publisher {
-    publisher: ros2_client::Publisher<Message>,
-    participant: DomainParticipant,
-    dds_topic: String,
-    /// When the listeners were counted, and how many there were.
-    counted: Mutex<Option<(Instant, usize)>>,
-}
-
-/// Counting walks through all that was discovered.
-const COUNTING_PERIOD: Duration = Duration::from_millis(200);
-
-impl Publisher for Ros2Publisher {
-    fn publish(&self, message: Message) -> Result<()> {
-        self.publisher.publish(message).map_err(|error| network_error("sending", &error))
-    }
-
-    fn subscribers(&self) -> usize {
-        let mut counted = self.counted.lock().unwrap_or_else(PoisonError::into_inner);
-        match *counted {
-            Some((at, count)) if at.elapsed() < COUNTING_PERIOD => count,
-            _ => {
-                let readers = self.participant.discovered_readers();
-                let listens = |reader: &&DiscoveredReaderData| {
-                    *reader.subscription_topic_data.topic_name() == self.dds_topic
-                };
-                let count = readers.iter().filter(listens).count();
-                *counted = Some((Instant::now(), count));
-                count
-            }
+    pub fn node(&self, names: Names) -> Result<Box<dyn Ros2Node>> {
+        match &self.0 {
+            Joined::Dds(participant) => Ok(Box::new(participant.node(names)?)),
+            #[cfg(feature = "zenoh")]
+            Joined::Zenoh(session) => Ok(Box::new(session.node(names)?)),
         }
     }
 }
 
 #[cold]
-fn network_error(what: &str, error: &dyn std::fmt::Debug) -> Error {
-    Error::new(
-        opendr_engine::ErrorKind::Io,
-        format!("{what}: {error:?}; see whether the network can be used"),
-    )
+fn network_error(what: &str, error: &dyn Debug) -> Error {
+    Error::new(ErrorKind::Io, format!("{what}: {error:?}; see whether the network can be used"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn middlewares_go_by_the_names_of_ros() {
+        assert_eq!("rmw_zenoh_cpp".parse::<Middleware>().unwrap(), Middleware::Zenoh);
+        assert_eq!("rmw_cyclonedds_cpp".parse::<Middleware>().unwrap(), Middleware::Dds);
+        assert!("rmw_other".parse::<Middleware>().unwrap_err().to_string().contains("rmw_other"));
+    }
+
+    #[test]
+    fn a_domain_that_has_no_ports_is_refused() {
+        let options = Ros2Options { domain_id: Some(233), ..Ros2Options::default() };
+        assert_eq!(Ros2::new(&options).err().map(|error| error.kind()), Some(ErrorKind::InvalidParam));
+    }
+
+    #[cfg(not(feature = "zenoh"))]
+    #[test]
+    fn a_build_without_zenoh_says_so() {
+        let options = Ros2Options { middleware: Some(Middleware::Zenoh), ..Ros2Options::default() };
+        assert_eq!(Ros2::new(&options).err().map(|error| error.kind()), Some(ErrorKind::Unsupported));
+    }
 }

@@ -1,6 +1,7 @@
 //! The services by which `ros2 param`, rqt and other nodes see and set parameters: with ranges, descriptions, and read-only
 //! ones.
 
+use std::sync::atomic::AtomicI64;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::Result;
@@ -17,45 +18,56 @@ use opendr_messages::{
 };
 use opendr_ros_bridge::time;
 
-use super::Ros2Node;
-use super::service::serve;
-use crate::clock::system_time_ns;
-use crate::{Graph as _, ParameterTable, Publisher, Qos};
+use super::typed_services::TypedServices;
+use crate::clock::{self, system_time_ns};
+use crate::{ParameterTable, Publisher, Qos};
 
 /// As rclcpp offers `/parameter_events`.
 const EVENTS: Qos = Qos { reliable: true, latched: false, depth: 1000 };
 
-pub(super) fn start(node: &mut Ros2Node, table: Arc<ParameterTable>) -> Result<()> {
+/// Serves `table`; `sim_time` follows the simulation's clock from now on where the table says so.
+pub(super) fn start(
+    node: &mut impl TypedServices,
+    table: Arc<ParameterTable>,
+    sim_time: &Arc<AtomicI64>,
+) -> Result<()> {
+    if matches!(table.get("use_sim_time"), Some((_, ParamValue::Bool(true)))) {
+        clock::follow(node, sim_time)?;
+    }
     let events = node.advertise("/parameter_events", MessageType::RclInterfacesParameterEvent, EVENTS)?;
     let setter = Arc::new(Setter {
         table: table.clone(),
         events,
-        node: node.full_name.clone(),
+        node: node.name().to_owned(),
         one_at_a_time: Mutex::new(()),
     });
     let read = table.clone();
-    serve::<RclInterfacesGetParameters>(node, "~/get_parameters", move |request| GetParametersResponse {
-        values: request.names.iter().map(|name| value_of(&read, name)).collect(),
+    node.serve_typed::<RclInterfacesGetParameters>("~/get_parameters", move |request| {
+        GetParametersResponse { values: request.names.iter().map(|name| value_of(&read, name)).collect() }
     })?;
     let read = table.clone();
-    serve::<RclInterfacesGetParameterTypes>(node, "~/get_parameter_types", move |request| {
+    node.serve_typed::<RclInterfacesGetParameterTypes>("~/get_parameter_types", move |request| {
         let types = request.names.iter().map(|name| value_of(&read, name).r#type).collect();
         GetParameterTypesResponse { types }
     })?;
     let read = table.clone();
-    serve::<RclInterfacesDescribeParameters>(node, "~/describe_parameters", move |request| {
+    node.serve_typed::<RclInterfacesDescribeParameters>("~/describe_parameters", move |request| {
         let descriptor = |name: &String| match read.get(name) {
             Some((field, value)) => descriptor(field, &value),
             None => ParameterDescriptor { name: name.clone(), ..Default::default() },
         };
         DescribeParametersResponse { descriptors: request.names.iter().map(descriptor).collect() }
     })?;
-    serve::<RclInterfacesListParameters>(node, "~/list_parameters", move |request| list(&table, &request))?;
-    let set = setter.clone();
-    serve::<RclInterfacesSetParameters>(node, "~/set_parameters", move |request| SetParametersResponse {
-        results: request.parameters.into_iter().map(|parameter| set.set(vec![parameter])).collect(),
+    node.serve_typed::<RclInterfacesListParameters>("~/list_parameters", move |request| {
+        list(&table, &request)
     })?;
-    serve::<RclInterfacesSetParametersAtomically>(node, "~/set_parameters_atomically", move |request| {
+    let set = setter.clone();
+    node.serve_typed::<RclInterfacesSetParameters>("~/set_parameters", move |request| {
+        SetParametersResponse {
+            results: request.parameters.into_iter().map(|parameter| set.set(vec![parameter])).collect(),
+        }
+    })?;
+    node.serve_typed::<RclInterfacesSetParametersAtomically>("~/set_parameters_atomically", move |request| {
         SetParametersAtomicallyResponse { result: setter.set(request.parameters) }
     })
 }

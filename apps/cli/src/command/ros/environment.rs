@@ -96,9 +96,9 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
         Ros::Two => {
             let ros2 = start_ros2(matches)?;
             let mut graph = ros2.node(names)?;
-            let node = EnvironmentNode::new(&mut graph, environment, observe, options)?;
+            let node = EnvironmentNode::new(&mut *graph, environment, observe, options)?;
             graph.start()?;
-            started(&graph);
+            started(&*graph);
             node.run(&interrupted)?;
         }
     }

@@ -1,19 +1,26 @@
-//! The flags of DDS.
+//! The flags of ROS 2's network.
 
 use std::net::IpAddr;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::Result;
-use opendr::ros::{Ros2, Ros2Options};
+use opendr::ros::{Middleware, Ros2, Ros2Options};
 
 pub fn add_flags(command: Command) -> Command {
     command
+        .arg(
+            Arg::new("rmw")
+                .long("rmw")
+                .value_parser(str::parse::<Middleware>)
+                .value_name("dds|zenoh")
+                .help("What carries the messages of ROS 2 [env: RMW_IMPLEMENTATION] [default: dds]"),
+        )
         .arg(
             Arg::new("domain-id")
                 .long("domain-id")
                 .value_parser(value_parser!(u16))
                 .value_name("N")
-                .help("The DDS domain, of ROS 2 [env: ROS_DOMAIN_ID]"),
+                .help("The domain of ROS 2 [env: ROS_DOMAIN_ID]"),
         )
         .arg(
             Arg::new("network")
@@ -21,16 +28,17 @@ pub fn add_flags(command: Command) -> Command {
                 .action(ArgAction::Append)
                 .value_parser(value_parser!(IpAddr))
                 .value_name("ADDRESS")
-                .help("An address of this machine whose network is used by ROS 2; all of them otherwise"),
+                .help("An address of this machine whose network is used by DDS; all of them otherwise"),
         )
 }
 
-/// Joins DDS as the flags have it.
+/// Joins ROS 2 as the flags have it.
 ///
 /// # Errors
 /// As [`Ros2::new`].
 pub fn start_ros2(matches: &ArgMatches) -> Result<Ros2> {
     Ros2::new(&Ros2Options {
+        middleware: matches.get_one("rmw").copied(),
         domain_id: matches.get_one("domain-id").copied(),
         networks: matches.get_many("network").into_iter().flatten().copied().collect(),
     })

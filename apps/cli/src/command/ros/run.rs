@@ -144,12 +144,12 @@ fn parse(ros: Ros, words: &[OsString]) -> Result<Result<ArgMatches, Outcome>> {
 fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = ros2.node(names)?;
-    let node = learner_node(&mut graph, matches, &args.parameters, feeds)?;
+    let node = learner_node(&mut *graph, matches, &args.parameters, feeds)?;
     if matches.get_flag("lifecycle") {
         graph.manage(node.active())?;
     }
     graph.start()?;
-    Ok((Box::new(graph), node))
+    Ok((graph, node))
 }
 
 fn start_ros1(matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
