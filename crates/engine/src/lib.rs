@@ -3,6 +3,7 @@
 // Derived code names this crate as `opendr_engine`, here too.
 extern crate self as opendr_engine;
 
+mod assembly_line;
 mod cache;
 mod device;
 mod error;
@@ -27,6 +28,7 @@ pub mod model;
 pub mod params;
 pub mod target;
 
+pub use assembly_line::assembly_line;
 pub use cache::cache_dir;
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};

@@ -35,6 +35,7 @@ mod by_name;
 mod eval_in;
 mod export;
 mod fit;
+mod pipeline;
 mod registry;
 mod smaller;
 mod tune;
@@ -50,6 +51,7 @@ pub use opendr_perception::{
     face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
     pose_estimation, speech_recognition, suppression,
 };
+pub use pipeline::Pipeline;
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, TuneData, TuneOptions, Tuned, search_space, tune};

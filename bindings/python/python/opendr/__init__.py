@@ -29,6 +29,7 @@ if TYPE_CHECKING:
         Unsupported,
     )
     from opendr._opendr import __version__
+    from opendr._pipeline import Pipeline
     from opendr._registered import check_learner, learner, learners, register
     from opendr._source import Source
 
@@ -43,6 +44,7 @@ __all__ = [
     "NetworkError",
     "NotFound",
     "OpenDRError",
+    "Pipeline",
     "Source",
     "Unsupported",
     "__version__",
@@ -54,6 +56,7 @@ __all__ = [
 
 #: Where the names come from, imported when they are first asked for: `import opendr` alone costs nothing.
 _HOMES = {
+    "Pipeline": "opendr._pipeline",
     "Source": "opendr._source",
     "__version__": "opendr._opendr",
     **dict.fromkeys(("check_learner", "learner", "learners", "register"), "opendr._registered"),

@@ -75,6 +75,15 @@ impl fmt::Display for Outputs {
     }
 }
 
+impl IntoIterator for Outputs {
+    type Item = (&'static str, Value);
+    type IntoIter = std::vec::IntoIter<Self::Item>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.values.into_iter()
+    }
+}
+
 impl FromIterator<(&'static str, Value)> for Outputs {
     fn from_iter<I: IntoIterator<Item = (&'static str, Value)>>(values: I) -> Self {
         Self { values: values.into_iter().collect() }

@@ -1,12 +1,14 @@
 //! `opendr infer`: a learner over pictures, folders, videos, cameras, files of what else learners take, and recordings.
 
+mod chain;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::target::Classes;
-use opendr::{Error, ErrorKind, Progress, Result, Unit, ValueType, map_in_order};
+use opendr::{Error, ErrorKind, Pipeline, Progress, Result, Unit, ValueType, map_in_order};
 
 use crate::exit::Outcome;
 use crate::inputs::{Datum, Inputs, Item, Next};
@@ -28,6 +30,7 @@ Examples:
   opendr infer LEARNER camera:0 --limit 100
   opendr infer matchboxnet yes.wav no.wav                sounds, series (.csv), point clouds
   opendr infer LEARNER drive.bag --topic /camera/image_raw --out answers.mcap
+  opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out seen.mp4   one behind the other, in parallel
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
@@ -55,6 +58,11 @@ pub fn grammar() -> Command {
             ),
             switch("show-timings").help("Tell how long each stage took"),
             switch("sequence").help("The pictures follow each other in time, as frames of one video do"),
+            Arg::new("then")
+                .long("then")
+                .action(ArgAction::Append)
+                .value_name("LEARNER[/VARIANT] [NAME=VALUE]...")
+                .help("A learner behind it, which takes what those before it answer; again for one more"),
             Arg::new("limit")
                 .long("limit")
                 .value_parser(value_parser!(u64).range(1..))
@@ -80,6 +88,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let port = entry.ports.first().ok_or_else(|| Error::internal("the learner takes nothing"))?;
     let out = matches.get_one::<PathBuf>("out");
     let sink = RecordingSink::new(entry, matches, &inputs)?;
+    if matches.contains_id("then") {
+        chain::check(matches, sink.is_some())?;
+    }
     if out.is_some() && sink.is_none() && port.value_type != ValueType::Image {
         let (class, given) = (entry.spec.class, port.value_type.name());
         return Err(Error::invalid_param(format!(
@@ -96,23 +107,32 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let params = learner_flags::params(entry, matches)?;
     let load = || loading::load(spec, &params, matches, &bar);
+    let chained = matches.contains_id("then");
     let job = Job {
         entry,
         port: port.name,
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
     };
-    let alone = job.sequence || !items.are_separate();
+    let alone = chained || job.sequence || !items.are_separate();
     let count = if alone { 1 } else { loading::how_many(matches, frames)? };
-    let learners = loading::side_by_side(count, load)?;
-    let mut workers: Vec<_> = learners.into_iter().map(|learner| Worker { learner, stream: None }).collect();
+    let mut learners = loading::side_by_side(count, load)?;
+    let mut team = match learners.pop() {
+        Some(first) if chained => {
+            Team::Chain(chain::pipeline(entry, first, matches, &bar)?, Stream::default())
+        }
+        first => {
+            let learners = learners.into_iter().chain(first);
+            Team::SideBySide(learners.map(|learner| Worker { learner, stream: Stream::default() }).collect())
+        }
+    };
     if let Out::Recorded(sink) = &mut out {
         sink.begin()?;
     }
     if frames != Some(1) {
         bar.begin("frames", frames, Unit::Items);
     }
-    let told = job.run(&mut workers, items, limit, &mut report, &mut out, &bar);
+    let told = job.run(&mut team, items, limit, &mut report, &mut out, &bar);
     bar.end();
     // Even when the report cannot go on, what was handed over is finished.
     for (input, error) in out.finish() {
@@ -130,11 +150,21 @@ struct Job {
     sequence: bool,
 }
 
+/// The video whose frames a learner has seen; for pictures in a sequence, their folder.
+type Stream = Option<Arc<Path>>;
+
 /// A learner at work.
 struct Worker {
     learner: Box<dyn AnyLearner>,
-    /// The video whose frames the learner's stream has seen; for pictures in a sequence, their folder.
-    stream: Option<Arc<Path>>,
+    stream: Stream,
+}
+
+/// Who answers.
+enum Team {
+    /// The same learner several times, each with items of its own.
+    SideBySide(Vec<Worker>),
+    /// Learners that each see all items, one behind the other.
+    Chain(Pipeline, Stream),
 }
 
 /// Where answers go besides the report.
@@ -171,24 +201,40 @@ impl Out {
 /// An item with what was found in it, several times where it is a piece of a stream; or what failed and for which input.
 type Answer = std::result::Result<(Item, Vec<Outputs>, Timings), (Option<PathBuf>, Error)>;
 
+/// An error with the file that it belongs to.
+fn of_item(item: &Item, error: Error) -> (Option<PathBuf>, Error) {
+    let path = item.path();
+    (Some(path.to_path_buf()), error.context(path.display().to_string()))
+}
+
+impl Team {
+    fn classes(&self) -> Classes {
+        match self {
+            Self::SideBySide(workers) => {
+                workers.first().map(|worker| worker.learner.classes()).unwrap_or_default()
+            }
+            Self::Chain(..) => Classes::default(),
+        }
+    }
+}
+
 impl Job {
     fn run(
         &self,
-        workers: &mut [Worker],
+        team: &mut Team,
         mut inputs: Inputs,
         limit: u64,
         report: &mut Report<'_>,
         out: &mut Out,
         bar: &Bar,
     ) -> Result<()> {
-        let classes = workers.first().map(|worker| worker.learner.classes()).unwrap_or_default();
+        let classes = team.classes();
         let mut left = limit;
         let items = std::iter::from_fn(|| {
             left = left.checked_sub(1).filter(|_| !interrupted())?;
             inputs.next()
         });
-        let answer = |worker: &mut Worker, item: Next| self.answer(worker, item?);
-        map_in_order(workers, items, answer, |answer| {
+        let tell = |answer: Answer| {
             match answer {
                 Ok((item, outputs, timings)) => {
                     for outputs in &outputs {
@@ -207,21 +253,28 @@ impl Job {
             }
             bar.advance(1);
             Ok(())
-        })
-    }
-
-    fn answer(&self, worker: &mut Worker, item: Item) -> Answer {
-        let begins = self.follow(worker, &item);
-        match self.infer(worker, &item, begins) {
-            Ok((outputs, timings)) => Ok((item, outputs, timings)),
-            Err(error) => {
-                let path = item.path();
-                Err((Some(path.to_path_buf()), error.context(path.display().to_string())))
+        };
+        match team {
+            Team::SideBySide(workers) => {
+                map_in_order(workers, items, |worker, item: Next| self.answer(worker, item?), tell)
             }
+            Team::Chain(pipeline, stream) => chain::run(self, pipeline, stream, items, tell),
         }
     }
 
-    fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Vec<Outputs>, Timings)> {
+    fn answer(&self, worker: &mut Worker, item: Item) -> Answer {
+        let begins = self.follow(&mut worker.stream, &item);
+        if begins {
+            worker.learner.reset();
+        }
+        match self.infer(worker, &item, begins) {
+            Ok((outputs, timings)) => Ok((item, outputs, timings)),
+            Err(error) => Err(of_item(&item, error)),
+        }
+    }
+
+    /// What goes into the ports.
+    fn ports<'a>(&'a self, item: &'a Item, begins: bool) -> Result<Ports<'a>> {
         let mut ports = Ports::default().with(self.port, item.value());
         for file in &self.further {
             if begins || !self.is_init(file.name()) {
@@ -231,6 +284,11 @@ impl Job {
         for (name, value) in item.further() {
             ports = ports.with(name, value);
         }
+        Ok(ports)
+    }
+
+    fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Vec<Outputs>, Timings)> {
+        let ports = self.ports(item, begins)?;
         let is_piece = self.entry.capabilities.streaming && item.recorded.is_some();
         Timings::of(|| {
             if !is_piece {
@@ -247,18 +305,15 @@ impl Job {
 
     /// Every video and recording is a stream of its own, and so is every other file unless they are a sequence; what
     /// begins one may also come in the middle of a recording. Whether one begins.
-    fn follow(&self, worker: &mut Worker, item: &Item) -> bool {
+    fn follow(&self, last: &mut Stream, item: &Item) -> bool {
         let stream = match (item.is_of_stream(), self.sequence) {
             (true, _) => Some(item.path().clone()),
             (false, true) => item.path().parent().map(Arc::from),
             (false, false) => None,
         };
         let is_begun = item.further().iter().any(|(name, _)| self.is_init(name));
-        let begins = is_begun || stream.is_none() || stream != worker.stream;
-        if begins {
-            worker.learner.reset();
-            worker.stream = stream;
-        }
+        let begins = is_begun || stream.is_none() || stream != *last;
+        *last = stream;
         begins
     }
 

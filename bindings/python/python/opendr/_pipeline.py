@@ -1,0 +1,199 @@
+"""Learners one behind the other: a detector, a tracker, what looks at the tracks."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Iterable, Iterator
+from typing import Any, Union
+
+from opendr._registered import learner as learner_by_name
+from opendr.engine._ports import outputs_of, ports_of
+from opendr.engine.learners import BaseLearner
+
+#: Items that wait before a learner; more would only hold memory and age.
+_WAITING = 2
+_END = object()
+
+
+class Pipeline:
+    """Learners that each take what those before them answer::
+
+        pipeline = opendr.Pipeline("nanodet", "posenet")
+        for frame, found in pipeline.run(opendr.Source("walk.mp4")):
+            print(found["boxes"], found["poses"])
+
+    An input takes the newest answer of its type; what no learner before answers is an input of the pipeline, shared by all
+    that take it. Answers are a ``dict`` by the names of the outputs; where two are of one type, it has the later one.
+
+    Args:
+        learners: Loaded learners, or names of pretrained ones (``"nanodet"``, ``"yunet/320"``).
+
+    Raises:
+        ValueError: A learner takes nothing of what those before it take or answer.
+    """
+
+    def __init__(self, *learners: Union[BaseLearner, str]) -> None:
+        if not learners:
+            raise ValueError("a pipeline of no learners; give at least one")
+        self._stages: list[_Stage] = []
+        self.inputs: list[str] = []
+        for one in learners:
+            stage = _Stage(learner_by_name(one) if isinstance(one, str) else one)
+            stage.connect(self._stages)
+            self.inputs += [name for name in stage.given if name not in self.inputs]
+            self._stages.append(stage)
+
+    def infer(self, *inputs: Any, **named: Any) -> dict[str, Any]:
+        """Answers one set of inputs, in the order of ``inputs`` or by name.
+
+        Raises:
+            TypeError: An input is missing or unknown.
+        """
+        return _merged(self._infer(self._named(inputs, named)))
+
+    def run(self, items: Iterable[Any]) -> Iterator[tuple[Any, dict[str, Any]]]:
+        """Answers a stream of inputs, each learner on a thread of its own: the slowest sets the pace, not their sum. Items
+        are what the first input takes, or ``dict`` of inputs by name; each is given out again with its answers, in order.
+
+        Raises:
+            Exception: What reading or answering an item raised, in that item's place; the run is over then.
+        """
+        self.reset()
+        queues: list[queue.Queue[Any]] = [queue.Queue(_WAITING) for _ in range(len(self._stages) + 1)]
+        stop = threading.Event()
+        work = [lambda: self._feed(items, queues[0], stop)]
+        for at, stage in enumerate(self._stages):
+            work.append(lambda at=at, stage=stage: _serve(stage, queues[at], queues[at + 1], stop))  # type: ignore[misc]
+        threads = [threading.Thread(target=target, daemon=True) for target in work]
+        for thread in threads:
+            thread.start()
+        try:
+            while (job := queues[-1].get()) is not _END:
+                if isinstance(job, BaseException):
+                    raise job
+                item, _, answers = job
+                yield item, _merged(answers)
+        finally:
+            stop.set()
+            for thread in threads:
+                thread.join()
+
+    def reset(self) -> None:
+        """Forgets what all learners have seen."""
+        for stage in self._stages:
+            stage.learner.reset()
+
+    def _infer(self, given: dict[str, Any]) -> list[dict[str, Any]]:
+        answers: list[dict[str, Any]] = []
+        for stage in self._stages:
+            answers.append(stage.infer(given, answers))
+        return answers
+
+    def _named(self, inputs: tuple[Any, ...], named: dict[str, Any]) -> dict[str, Any]:
+        if len(inputs) > len(self.inputs):
+            raise TypeError(f"the pipeline takes {len(self.inputs)} inputs ({', '.join(self.inputs)}), not {len(inputs)}")
+        given = {**dict(zip(self.inputs, inputs)), **named}
+        unknown = [name for name in given if name not in self.inputs]
+        if unknown:
+            raise TypeError(f"the pipeline has no input {unknown[0]!r}; there are {', '.join(self.inputs)}")
+        return given
+
+    def _feed(self, items: Iterable[Any], to: queue.Queue[Any], stop: threading.Event) -> None:
+        try:
+            for item in items:
+                given = self._named((), item) if isinstance(item, dict) else self._named((item,), {})
+                if not _put(to, (item, given, []), stop):
+                    return
+        except BaseException as error:  # It belongs to who takes the answers.
+            _put(to, error, stop)
+        _put(to, _END, stop)
+
+
+class _Stage:
+    """A learner and where its inputs come from."""
+
+    def __init__(self, learner: BaseLearner) -> None:
+        self.learner = learner
+        entry = getattr(learner, "_entry", None)
+        problems: list[str] = []
+        kind = type(learner)
+        self.ports = entry["ports"] if entry else ports_of(kind.infer, problems)
+        self.outputs = entry["outputs"] if entry else outputs_of(kind.infer, problems)
+        if problems:
+            raise TypeError(f"{kind.__name__}: {problems[0]}")
+        #: By input: the stage and the output that it takes.
+        self.wires: dict[str, tuple[int, str]] = {}
+
+    @property
+    def given(self) -> list[str]:
+        """The inputs that the pipeline is given."""
+        return [port["name"] for port in self.ports if port["name"] not in self.wires]
+
+    def connect(self, before: list[_Stage]) -> None:
+        """Finds the newest answer for each input."""
+        for port in self.ports:
+            for at, stage in enumerate(before):
+                fitting = [output["name"] for output in stage.outputs if output["type"] == port["type"]]
+                if fitting and not port["init"]:
+                    self.wires[port["name"]] = (at, fitting[0])
+        shared = {port["type"] for stage in before for port in stage.ports}
+        if before and not self.wires and not all(port["type"] in shared for port in self.ports):
+            wanted = ", ".join(port["type"] for port in self.ports)
+            there = ", ".join(output["type"] for stage in before for output in stage.outputs)
+            raise ValueError(
+                f"{type(self.learner).__name__} takes {wanted}, and those before it answer {there}; "
+                "put one before it that answers what it takes"
+            )
+
+    def infer(self, given: dict[str, Any], before: list[dict[str, Any]]) -> dict[str, Any]:
+        inputs = {name: given[name] for name in self.given if name in given}
+        inputs.update({name: before[at][output] for name, (at, output) in self.wires.items()})
+        answer = self.learner.infer(**inputs)
+        answers = answer if isinstance(answer, tuple) else (answer,)
+        return {output["name"]: one for output, one in zip(self.outputs, answers)}
+
+
+def _serve(stage: _Stage, source: queue.Queue[Any], to: queue.Queue[Any], stop: threading.Event) -> None:
+    while (job := _get(source, stop)) is not _END:
+        if isinstance(job, BaseException):
+            _put(to, job, stop)
+            return
+        _, given, answers = job
+        try:
+            answers.append(stage.infer(given, answers))
+        except BaseException as error:  # It belongs to who takes the answers.
+            _put(to, error, stop)
+            return
+        if not _put(to, job, stop):
+            return
+    _put(to, _END, stop)
+
+
+def _put(to: queue.Queue[Any], job: Any, stop: threading.Event) -> bool:
+    """Whether there was room before the run was given up."""
+    while not stop.is_set():
+        try:
+            to.put(job, timeout=0.1)
+            return True
+        except queue.Full:
+            continue
+    return False
+
+
+def _get(source: queue.Queue[Any], stop: threading.Event) -> Any:
+    while not stop.is_set():
+        try:
+            return source.get(timeout=0.1)
+        except queue.Empty:
+            continue
+    return _END
+
+
+def _merged(answers: list[dict[str, Any]]) -> dict[str, Any]:
+    merged: dict[str, Any] = {}
+    for answer in answers:
+        for name, value in answer.items():
+            merged = {known: earlier for known, earlier in merged.items() if type(earlier) is not type(value)}
+            merged[name] = value
+    return merged

@@ -1,0 +1,121 @@
+"""Learners one behind the other."""
+
+import threading
+from typing import Optional
+
+import numpy as np
+import opendr
+import pytest
+from opendr.engine.data import Image
+from opendr.engine.learners import Learner
+from opendr.engine.target import BoundingBox, BoundingBoxList, Category, PoseList
+
+
+class Detector(Learner):
+    """As many boxes as the first pixel says."""
+
+    name, task = "detector", "object_detection_2d"
+
+    def infer(self, image: Image) -> BoundingBoxList:
+        if int(image.numpy().flat[0]) == 99:
+            raise ValueError("a picture that cannot be read")
+        count = int(image.numpy().flat[0])
+        return BoundingBoxList([BoundingBox(left=n, top=0, width=1, height=1, name=0, score=0.5) for n in range(count)])
+
+
+class Doubler(Learner):
+    """Each box twice; counts what it has seen."""
+
+    name, task = "doubler", "object_detection_2d"
+    seen = 0
+
+    def infer(self, image: Image, boxes: BoundingBoxList, first: Optional[PoseList] = None) -> BoundingBoxList:
+        self.seen += 1
+        return BoundingBoxList([box for box in boxes for _ in range(2)])
+
+    def reset(self) -> None:
+        self.seen = 0
+
+
+class Judge(Learner):
+    """How many boxes there are."""
+
+    name, task = "judge", "image_classification"
+
+    def infer(self, boxes: BoundingBoxList) -> Category:
+        return Category(prediction=len(boxes.data), confidence=1.0)
+
+
+def picture(value):
+    return Image(np.full((3, 2, 2), value, np.uint8))
+
+
+def test_each_takes_the_newest_answer_of_its_type():
+    pipeline = opendr.Pipeline(Detector(), Doubler(), Judge())
+    assert pipeline.inputs == ["image", "first"]
+    found = pipeline.infer(picture(3))
+    assert set(found) == {"boxes", "category"}
+    assert (len(found["boxes"].data), found["category"].data) == (6, 6)
+
+
+def test_a_stream_keeps_its_order_and_ends_with_its_error():
+    doubler = Doubler()
+    pipeline = opendr.Pipeline(Detector(), doubler, Judge())
+    items = [picture(n) for n in range(40)]
+    answers = list(pipeline.run(items))
+    assert [item is wanted for (item, _), wanted in zip(answers, items)] == [True] * 40
+    assert [found["category"].data for _, found in answers] == [2 * n for n in range(40)]
+    assert doubler.seen == 40
+    told = []
+    with pytest.raises(ValueError, match="cannot be read"):
+        told.extend(found["category"].data for _, found in pipeline.run([picture(1), picture(99), picture(2)]))
+    before = threading.active_count()
+    for _, found in pipeline.run(picture(1) for _ in iter(int, 1)):
+        assert found["category"].data == 2
+        break
+    assert threading.active_count() == before
+
+
+def test_learners_work_at_the_same_time():
+    meeting = threading.Barrier(2, timeout=30)
+
+    class Meets(Detector):
+        def infer(self, image: Image) -> BoundingBoxList:
+            if image.numpy().flat[0] == 1:
+                meeting.wait()
+            return super().infer(image)
+
+    class MeetsToo(Judge):
+        def infer(self, boxes: BoundingBoxList) -> Category:
+            if not boxes.data:
+                meeting.wait()
+            return super().infer(boxes)
+
+    answers = list(opendr.Pipeline(Meets(), MeetsToo()).run([picture(0), picture(1)]))
+    assert [found["category"].data for _, found in answers] == [0, 1]
+
+
+def test_wrong_use_is_told():
+    with pytest.raises(ValueError, match="at least one"):
+        opendr.Pipeline()
+    with pytest.raises(ValueError, match="Judge takes BoundingBoxList"):
+
+        class Poses(Learner):
+            """No boxes."""
+
+            name, task = "poses", "pose_estimation"
+
+            def infer(self, image: Image) -> PoseList:
+                return PoseList([])
+
+        opendr.Pipeline(Poses(), Judge())
+    with pytest.raises(TypeError, match="no input 'picture'"):
+        opendr.Pipeline(Detector()).infer(picture=picture(1))
+
+
+def test_compiled_learners_beside_each_other(faces, nanodet, photo):
+    image = Image.open(str(photo))
+    pipeline = opendr.Pipeline(nanodet, "posenet")
+    (frame, found), = pipeline.run([image])
+    assert frame is image and set(found) == {"boxes", "poses"}
+    assert found["boxes"] == nanodet.infer(image)
