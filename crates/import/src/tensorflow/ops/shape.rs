@@ -2,9 +2,9 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::tfjs::call::Call;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Array, Data, Dim, Kind, Operator, Wire};
 
 /// TensorFlow's dimensions as integers; those that are known stay known through later arithmetic.

@@ -4,9 +4,9 @@ use opendr_engine::{Error, Result};
 
 use super::elementwise::apply;
 use super::reshape::as_list;
-use crate::tfjs::call::{Call, axis_in};
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::{Call, axis_in};
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Array, Dim, Kind, Operator, Wire};
 
 /// The largest values of the last axis, and their positions.

@@ -3,9 +3,9 @@
 use opendr_engine::{Error, Result};
 
 use super::elementwise::{apply, apply_unary};
-use crate::tfjs::call::Call;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Kind, Operator, Wire};
 
 pub fn activation(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -30,8 +30,10 @@ fn activate(
         "Tanh" => Operator::new("Tanh"),
         "Softplus" => Operator::new("Softplus"),
         "LeakyRelu" => Operator::new("LeakyRelu").float("alpha", alpha),
-        "Relu6" => {
-            let (low, high) = (Wire::scalar(0.0), Wire::scalar(6.0));
+        "HardSwish" => Operator::new("HardSwish"),
+        "Relu6" | "ReluN1To1" | "Relu0To1" => {
+            let (low, high) = clipped_to(name);
+            let (low, high) = (Wire::scalar(low), Wire::scalar(high));
             let clip = Operator::new("Clip");
             return ctx.emit(call, clip, &[&x.wire, &low, &high], Kind::Float, &x.dims(), x.order.clone());
         }
@@ -50,6 +52,15 @@ fn activate(
         other => return Err(Error::unsupported(format!("fused operator {other:?}"))),
     };
     apply_unary(ctx, call, operator, x)
+}
+
+/// The limits between which a clipping activation stays.
+fn clipped_to(name: &str) -> (f32, f32) {
+    match name {
+        "ReluN1To1" => (-1.0, 1.0),
+        "Relu0To1" => (0.0, 1.0),
+        _ => (0.0, 6.0),
+    }
 }
 
 /// What a fused operator does after its product.
@@ -74,7 +85,7 @@ impl Epilogue {
             } else if epilogue.activation.is_none() && name != "BiasAdd" {
                 let slope =
                     if name == "Prelu" { Some(inputs.next().ok_or_else(missing)?.clone()) } else { None };
-                epilogue.activation = Some((name, slope));
+                epilogue.activation = Some((name.clone(), slope));
             } else {
                 return Err(Error::unsupported(format!("fused operator {name:?} after another")));
             }

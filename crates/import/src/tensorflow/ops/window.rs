@@ -2,8 +2,8 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::tfjs::call::Call;
-use crate::tfjs::layout::Order;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::layout::Order;
 use opendr_onnx::{Dim, Operator};
 
 /// Larger strides, dilations and kernels do not occur; the bound keeps the arithmetic from overflowing.
@@ -23,7 +23,7 @@ pub struct Axes {
 impl Axes {
     /// From `data_format`, channels-last unless it says otherwise.
     pub fn of(call: &Call) -> Self {
-        match call.attr().text("data_format").as_deref() {
+        match call.attr().text("data_format") {
             Some("NCHW") => Self { height: 2, width: 3, channels: 1 },
             _ => Self { height: 1, width: 2, channels: 3 },
         }
@@ -90,7 +90,7 @@ impl Window {
         if kernel.iter().any(|&extent| extent == 0 || extent as i64 > MAX_EXTENT) {
             return Err(Error::format(format!("kernel of {} by {}", kernel[0], kernel[1])));
         }
-        let padding = match call.attr().text("padding").as_deref() {
+        let padding = match call.attr().text("padding") {
             Some("SAME") => Padding::Same,
             Some("VALID") => Padding::Fixed([[0; 2]; 2]),
             Some("EXPLICIT") => {
@@ -105,8 +105,8 @@ impl Window {
             }
             other => return Err(Error::unsupported(format!("padding {other:?}"))),
         };
-        let strides = axes.pair(&call.attr().ints("strides"))?;
-        let dilations = axes.pair(&call.attr().ints("dilations"))?;
+        let strides = axes.pair(call.attr().ints("strides"))?;
+        let dilations = axes.pair(call.attr().ints("dilations"))?;
         Ok(Self { kernel, strides, dilations, padding })
     }
 
@@ -115,7 +115,7 @@ impl Window {
     /// # Errors
     /// As [`Window::of`].
     pub fn of_pool(call: &Call, axes: Axes) -> Result<Self> {
-        let kernel = axes.pair(&call.attr().ints("ksize"))?;
+        let kernel = axes.pair(call.attr().ints("ksize"))?;
         let window = Self::of(call, axes, kernel)?;
         Ok(Self { dilations: [1, 1], ..window })
     }

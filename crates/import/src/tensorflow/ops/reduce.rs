@@ -3,10 +3,10 @@
 use opendr_engine::Result;
 
 use super::reshape::squeezed;
-use crate::tfjs::call::Call;
-use crate::tfjs::layout::Order;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::layout::Order;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Kind, Operator, Wire};
 
 pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

@@ -3,10 +3,10 @@
 use opendr_engine::{Error, Result};
 
 use super::activation::Epilogue;
-use crate::tfjs::call::Call;
-use crate::tfjs::layout::Order;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::layout::Order;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 /// `MatMul` of two matrices, and `_FusedMatMul` with bias and activation.

@@ -3,9 +3,9 @@
 use opendr_engine::{Error, Result};
 
 use super::window::Axes;
-use crate::tfjs::call::Call;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Kind, Operator, Wire};
 
 pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

@@ -2,10 +2,10 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::tfjs::call::Call;
-use crate::tfjs::layout::Order;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::layout::Order;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 /// Operands brought to one element type and one order, ready to broadcast.
@@ -154,7 +154,7 @@ pub fn add_n(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 pub fn bias_add(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
-    if call.attr().text("data_format").as_deref() == Some("NCHW") {
+    if call.attr().text("data_format") == Some("NCHW") {
         return Err(Error::unsupported("bias on channels-first data"));
     }
     Ok(vec![apply(ctx, call, "Add", call.input(0)?, call.input(1)?)?])

@@ -51,8 +51,8 @@ pub fn lowering(op: &str) -> Option<Lower> {
         "ClipByValue" => elementwise::clip,
         "Select" | "SelectV2" => elementwise::select,
 
-        "Relu" | "Relu6" | "Elu" | "Selu" | "Sigmoid" | "Tanh" | "LeakyRelu" | "Prelu" | "Softplus"
-        | "Softmax" | "LogSoftmax" => activation::activation,
+        "Relu" | "Relu6" | "ReluN1To1" | "Relu0To1" | "HardSwish" | "Elu" | "Selu" | "Sigmoid" | "Tanh"
+        | "LeakyRelu" | "Prelu" | "Softplus" | "Softmax" | "LogSoftmax" => activation::activation,
 
         "Conv2D" | "_FusedConv2D" => conv::conv,
         "DepthwiseConv2dNative" | "FusedDepthwiseConv2dNative" => conv::depthwise,

@@ -2,9 +2,9 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::tfjs::call::{Call, axis_in};
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::{Call, axis_in};
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 pub fn reshape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

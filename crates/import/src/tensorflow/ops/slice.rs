@@ -3,9 +3,9 @@
 use opendr_engine::{Error, Result};
 
 use super::reshape::expanded;
-use crate::tfjs::call::{Call, axis_in};
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::{Call, axis_in};
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Array, Dim, Kind, Operator, Wire, slice_range};
 
 /// More parts than this are no real model.

@@ -2,9 +2,9 @@
 
 use opendr_engine::{Error, Result};
 
-use crate::tfjs::call::Call;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -23,9 +23,7 @@ pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let mut inputs = vec![x.wire.clone(), Wire::ints(before.chain(after))];
     let operator = Operator::new("Pad");
     let operator = match call.op() {
-        "MirrorPad" if call.attr().text("mode").as_deref() == Some("REFLECT") => {
-            operator.text("mode", "reflect")
-        }
+        "MirrorPad" if call.attr().text("mode") == Some("REFLECT") => operator.text("mode", "reflect"),
         "MirrorPad" => return Err(Error::unsupported("padding that repeats the border pixel")),
         "PadV2" => {
             let value = ctx.cast(&call.input(2)?.wire, x.kind())?;

@@ -4,9 +4,10 @@ use opendr_engine::{Error, Result};
 
 use super::activation::Epilogue;
 use super::window::{Axes, Padding, Pair, Window};
-use crate::tfjs::call::Call;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::layout::Order;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 /// The filter's dimensions, which have to be known.
@@ -15,12 +16,9 @@ fn filter_dims(call: &Call) -> Result<[usize; 4]> {
     dims.try_into().map_err(|dims: Vec<usize>| Error::format(format!("filter of rank {}, not 4", dims.len())))
 }
 
-/// The filter with its axes in the order given.
-fn filter(ctx: &mut Lowering, call: &Call, perm: [i64; 4], dims: [usize; 4]) -> Result<Wire> {
-    let value = call.input(1)?;
-    let plain = ctx.plain(value)?;
-    let dims = perm.map(|axis| Some(dims[axis as usize])).to_vec();
-    ctx.graph.add(&plain.hint(), Operator::new("Transpose").ints("perm", perm), &[&plain], Kind::Float, dims)
+/// The filter stored in the order given.
+fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<Wire> {
+    ctx.ordered(call.input(1)?, &Order::new(order.to_vec()))
 }
 
 /// The number of channels that the image must have.
@@ -42,7 +40,7 @@ pub fn conv(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
         Some(own) if channels > 0 && own % channels == 0 && own > 0 => own / channels,
         own => check_channels(own, channels).map(|()| 1)?,
     };
-    let weights = filter(ctx, call, [3, 2, 0, 1], [height, width, channels, filters])?;
+    let weights = filter(ctx, call, [3, 2, 0, 1])?;
     convolve(ctx, call, axes, [height, width], weights, groups, filters)
 }
 
@@ -53,7 +51,7 @@ pub fn depthwise(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     axes.spatial(&image)?;
     check_channels(image[axes.channels], channels)?;
     let filters = channels.checked_mul(multiplier).ok_or_else(|| Error::format("too many filters"))?;
-    let weights = filter(ctx, call, [2, 3, 0, 1], [height, width, channels, multiplier])?;
+    let weights = filter(ctx, call, [2, 3, 0, 1])?;
     let shape = [filters, 1, height, width];
     let dims = shape.map(Some).to_vec();
     let target = Wire::ints(shape.map(|dim| dim as i64));
@@ -133,7 +131,7 @@ pub fn transposed(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
             list([height.before, width.before]).into_iter().chain(list([height.after, width.after])),
         )
         .ints("output_padding", list([height.extra, width.extra]));
-    let weights = filter(ctx, call, [3, 2, 0, 1], [window.kernel[0], window.kernel[1], filters, channels])?;
+    let weights = filter(ctx, call, [3, 2, 0, 1])?;
     let dims = axes.dims(image.dims()[0], Some(filters), [height.output, width.output]);
     let image = ctx.ordered(image, &axes.order())?;
     Ok(vec![ctx.emit(call, operator, &[&image, &weights], Kind::Float, &dims, axes.order())?])

@@ -3,9 +3,9 @@
 use opendr_engine::Result;
 
 use super::window::{Axes, Window};
-use crate::tfjs::call::Call;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::Call;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Kind, Operator};
 
 /// ONNX leaves the padding out of averages by default, as TensorFlow does.

@@ -3,10 +3,10 @@
 use opendr_engine::{Error, Result};
 
 use super::reshape::expanded;
-use crate::tfjs::call::{Call, axis_in};
-use crate::tfjs::layout::Order;
-use crate::tfjs::lowering::Lowering;
-use crate::tfjs::value::Value;
+use crate::tensorflow::call::{Call, axis_in};
+use crate::tensorflow::layout::Order;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 pub fn concat(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

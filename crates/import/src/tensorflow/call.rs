@@ -3,35 +3,36 @@
 use opendr_engine::{Error, Result};
 
 use super::attributes::Attributes;
-use super::model_json::Node;
 use super::value::Value;
 use opendr_onnx::Array;
 
 /// One node with the values of its inputs, and the checks that every lowering needs.
 pub struct Call<'a> {
-    node: &'a Node,
+    name: &'a str,
+    op: &'a str,
+    attr: &'a Attributes,
     inputs: Vec<Value>,
 }
 
 impl<'a> Call<'a> {
-    /// Inputs in the node's order, control inputs left out.
-    pub fn new(node: &'a Node, inputs: Vec<Value>) -> Self {
-        Self { node, inputs }
+    /// The node `name`, which is TensorFlow's operator `op`; inputs in its order, control inputs left out.
+    pub fn new(name: &'a str, op: &'a str, attr: &'a Attributes, inputs: Vec<Value>) -> Self {
+        Self { name, op, attr, inputs }
     }
 
     /// Name of the node; the tensors written for it are called after it.
     pub fn name(&self) -> &'a str {
-        &self.node.name
+        self.name
     }
 
     /// TensorFlow's name of the operator.
     pub fn op(&self) -> &'a str {
-        &self.node.op
+        self.op
     }
 
     /// Parameters.
     pub fn attr(&self) -> &'a Attributes {
-        &self.node.attr
+        self.attr
     }
 
     /// All inputs.
