@@ -49,7 +49,8 @@ fn what_is_not_there_is_named() {
     cycle.operators[1] = vec![(0, Field::Int(1)), (1, Field::Ints(vec![4])), (2, Field::Ints(vec![3]))];
     refused(&cycle, ErrorKind::Format, "is needed but nothing before makes it");
     let mut twice = model();
-    twice.operators[2] = twice.operators[1].clone();
+    let again = twice.operators[1].clone();
+    twice.operators.insert(2, again);
     refused(&twice, ErrorKind::Format, "made twice");
     let mut short = model();
     short.buffers[1].pop();
@@ -110,7 +111,7 @@ fn damage_never_panics() {
     let bytes = model().bytes();
     let import = |bytes: &[u8]| onnx_from_tflite(bytes, &ImportOptions::default()).is_ok();
     assert!(import(&bytes));
-    (0..bytes.len()).for_each(|end| drop(import(&bytes[..end])));
+    assert!((0..bytes.len() - 8).all(|end| !import(&bytes[..end])));
     for position in 0..bytes.len() {
         for value in [0, 1, 2, 4, 127, 255, bytes[position].wrapping_add(1), bytes[position] ^ 0x80] {
             let mut damaged = bytes.clone();

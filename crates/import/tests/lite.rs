@@ -51,17 +51,17 @@ fn a_convolution_with_bias_and_activation() {
 
 #[test]
 fn one_filter_per_channel_in_halves() {
-    // 0.5, 1, -1, 2 for two channels with two filters each.
-    let halves = [0x3800u16, 0x3c00, 0xbc00, 0x4000];
+    // 0.5, 1, -1, 2, 0, 0.25 for three channels with two filters each.
+    let halves = [0x3800u16, 0x3c00, 0xbc00, 0x4000, 0, 0x3400];
     let mut model = TinyLite::default();
-    let image = model.input(&[1, 1, 2, 2], FLOAT32);
-    let half = model.constant("half", &[1, 1, 1, 4], FLOAT16, raw(&halves, u16::to_le_bytes));
-    let filter = model.tensor("w", &[1, 1, 1, 4], FLOAT32);
-    let y = model.tensor("y", &[1, 1, 2, 4], FLOAT32);
+    let image = model.input(&[1, 1, 2, 3], FLOAT32);
+    let half = model.constant("half", &[1, 1, 1, 6], FLOAT16, raw(&halves, u16::to_le_bytes));
+    let filter = model.tensor("w", &[1, 1, 1, 6], FLOAT32);
+    let y = model.tensor("y", &[1, 1, 2, 6], FLOAT32);
     model.operator(6, &[half], &[filter], Vec::new());
     model.operator(4, &[image, filter, -1], &[y], window(1, (4, 0))).outputs.push(y);
-    let y = run(import(&model), &[1, 1, 2, 2], &[1.0, 2.0, 3.0, 4.0]);
-    y[0].assert_near(&[1, 4, 1, 2], &[0.5, 1.5, 1.0, 3.0, -2.0, -4.0, 4.0, 8.0]);
+    let y = run(import(&model), &[1, 1, 2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    y[0].assert_near(&[1, 6, 1, 2], &[0.5, 2.0, 1.0, 4.0, -2.0, -5.0, 4.0, 10.0, 0.0, 0.0, 0.75, 1.5]);
     assert_eq!(operators(&model), ["Conv"]);
 }
 
@@ -81,13 +81,13 @@ fn a_product_flattens_channels_last() {
 /// An image of bytes, weights with a scale per filter, a result of bytes that stops at zero.
 fn quantised() -> TinyLite {
     let mut model = TinyLite::default();
-    let image = model.input(&[1, 1, 3, 2], UINT8);
+    let image = model.input(&[1, 1, 2, 3], UINT8);
     model.quantise(image, &[0.5], &[128], 0);
-    let filter = model.constant("w", &[2, 1, 1, 2], INT8, vec![3, 0xfe, 1, 127]);
+    let filter = model.constant("w", &[2, 1, 1, 3], INT8, vec![3, 0xfe, 4, 1, 127, 0xff]);
     model.quantise(filter, &[0.25, 0.125], &[0, 0], 0);
     let bias = model.ints("b", &[2], &[8, -16]);
     model.quantise(bias, &[0.125, 0.0625], &[0, 0], 0);
-    let y = model.tensor("y", &[1, 1, 3, 2], INT8);
+    let y = model.tensor("y", &[1, 1, 2, 2], INT8);
     model.quantise(y, &[0.5], &[-128], 0);
     model.operator(3, &[image, filter, bias], &[y], window(1, (3, 1))).outputs.push(y);
     model
@@ -109,21 +109,22 @@ fn quantised_numbers_are_rounded_where_the_original_rounds() {
         ]
     );
     let graph = graph(&model);
-    let filter = graph.initializer.iter().find(|tensor| tensor.raw_data == [3, 0xfe, 1, 127]).unwrap();
-    assert_eq!((filter.data_type, filter.dims.as_slice()), (DataType::Int8 as i32, &[2, 2, 1, 1][..]));
+    let filter =
+        graph.initializer.iter().find(|tensor| tensor.raw_data == [3, 0xfe, 4, 1, 127, 0xff]).unwrap();
+    assert_eq!((filter.data_type, filter.dims.as_slice()), (DataType::Int8 as i32, &[2, 3, 1, 1][..]));
     let x: [f32; 6] = [1.0, 2.2, -3.0, 7.3, 1000.0, -0.4];
     let steps = x.map(|value| (value / 0.5).round_ties_even().clamp(-128.0, 127.0) * 0.5);
-    let filters = [([0.75, -0.5], 1.0), ([0.125, 15.875], -1.0)];
+    let filters = [([0.75, -0.5, 1.0], 1.0), ([0.125, 15.875, -0.125], -1.0)];
     let wanted: Vec<f32> = filters
         .iter()
-        .flat_map(|([first, second], bias)| {
-            steps.chunks(2).map(move |pixel| {
-                let sum: f32 = pixel[0] * first + pixel[1] * second + bias;
+        .flat_map(|(weights, bias)| {
+            steps.chunks(3).map(move |pixel| {
+                let sum: f32 = pixel.iter().zip(weights).map(|(x, w)| x * w).sum::<f32>() + bias;
                 (sum / 0.5).round_ties_even().clamp(0.0, 255.0) * 0.5
             })
         })
         .collect();
-    run(import(&model), &[1, 1, 3, 2], &x)[0].assert_near(&[1, 2, 1, 3], &wanted);
+    run(import(&model), &[1, 1, 2, 3], &x)[0].assert_near(&[1, 2, 1, 2], &wanted);
 }
 
 #[test]
