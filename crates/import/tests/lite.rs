@@ -4,21 +4,12 @@ mod tiny;
 mod tiny_lite;
 
 use opendr_import::{ImportOptions, onnx_from_tflite};
-use opendr_onnx::model_from_bytes;
-use opendr_onnx::proto::{DataType, GraphProto};
+use opendr_onnx::proto::DataType;
 use tiny::{convolved_same, noise, run};
 use tiny_lite::{FLOAT16, FLOAT32, Field, INT8, INT32, TinyLite, UINT8, raw};
 
-fn import(model: &TinyLite) -> Vec<u8> {
-    onnx_from_tflite(&model.bytes(), &ImportOptions::default()).unwrap()
-}
-
-fn graph(model: &TinyLite) -> GraphProto {
-    model_from_bytes(&import(model)).unwrap().graph.unwrap()
-}
-
 fn operators(model: &TinyLite) -> Vec<String> {
-    graph(model).node.into_iter().map(|node| node.op_type).collect()
+    model.graph().node.into_iter().map(|node| node.op_type).collect()
 }
 
 /// `SAME` padding, that stride, an activation in field `activation`.
@@ -44,9 +35,9 @@ fn a_convolution_with_bias_and_activation() {
     let half = wanted.len() / 2;
     wanted[..half].iter_mut().for_each(|value| *value = (*value + 0.5).max(0.0));
     wanted[half..].iter_mut().for_each(|value| *value = (*value - 0.25).max(0.0));
-    run(import(&model), &[1, 5, 4, 3], &x)[0].assert_near(&dims, &wanted);
+    run(model.import(), &[1, 5, 4, 3], &x)[0].assert_near(&dims, &wanted);
     assert_eq!(operators(&model), ["Conv", "Relu"]);
-    assert_eq!(graph(&model).output[0].name, "y");
+    assert_eq!(model.graph().output[0].name, "y");
 }
 
 #[test]
@@ -60,7 +51,7 @@ fn one_filter_per_channel_in_halves() {
     let y = model.tensor("y", &[1, 1, 2, 6], FLOAT32);
     model.operator(6, &[half], &[filter], Vec::new());
     model.operator(4, &[image, filter, -1], &[y], window(1, (4, 0))).outputs.push(y);
-    let y = run(import(&model), &[1, 1, 2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+    let y = run(model.import(), &[1, 1, 2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
     y[0].assert_near(&[1, 6, 1, 2], &[0.5, 2.0, 1.0, 4.0, -2.0, -5.0, 4.0, 10.0, 0.0, 0.0, 0.75, 1.5]);
     assert_eq!(operators(&model), ["Conv"]);
 }
@@ -75,7 +66,7 @@ fn a_product_flattens_channels_last() {
     model.operator(9, &[image, weights, -1], &[y], Vec::new()).outputs.push(y);
     let wanted: Vec<f32> =
         w.chunks(8).map(|row| row.iter().zip(&x).map(|(w, x)| w * x).sum::<f32>()).collect();
-    run(import(&model), &[1, 2, 4, 1], &x)[0].assert_near(&[1, 3], &wanted);
+    run(model.import(), &[1, 2, 4, 1], &x)[0].assert_near(&[1, 3], &wanted);
 }
 
 /// An image of bytes, weights with a scale per filter, a result of bytes that stops at zero.
@@ -108,7 +99,7 @@ fn quantised_numbers_are_rounded_where_the_original_rounds() {
             "DequantizeLinear"
         ]
     );
-    let graph = graph(&model);
+    let graph = model.graph();
     let filter =
         graph.initializer.iter().find(|tensor| tensor.raw_data == [3, 0xfe, 4, 1, 127, 0xff]).unwrap();
     assert_eq!((filter.data_type, filter.dims.as_slice()), (DataType::Int8 as i32, &[2, 3, 1, 1][..]));
@@ -124,7 +115,7 @@ fn quantised_numbers_are_rounded_where_the_original_rounds() {
             })
         })
         .collect();
-    run(import(&model), &[1, 1, 2, 3], &x)[0].assert_near(&[1, 2, 1, 2], &wanted);
+    run(model.import(), &[1, 1, 2, 3], &x)[0].assert_near(&[1, 2, 1, 2], &wanted);
 }
 
 #[test]
@@ -134,7 +125,7 @@ fn integers_that_stand_for_themselves_stay() {
     let axis = model.ints("axis", &[1], &[0]);
     let y = model.tensor("y", &[], INT32);
     model.operator(56, &[x, axis], &[y], Vec::new()).outputs.push(y);
-    run(import(&model), &[4], &[0.0, 3.0, 9.0, 1.0])[0].assert_near(&[], &[2.0]);
+    run(model.import(), &[4], &[0.0, 3.0, 9.0, 1.0])[0].assert_near(&[], &[2.0]);
 }
 
 #[test]
@@ -147,7 +138,7 @@ fn a_transposed_convolution_with_bias() {
     let y = model.tensor("y", &[1, 2, 4, 1], FLOAT32);
     model.operator(67, &[size, filter, image, bias], &[y], window(2, (3, 0))).outputs.push(y);
     let wanted = [11.0, 12.0, 12.0, 14.0, 13.0, 14.0, 16.0, 18.0];
-    run(import(&model), &[1, 1, 2, 1], &[1.0, 2.0])[0].assert_near(&[1, 1, 2, 4], &wanted);
+    run(model.import(), &[1, 1, 2, 1], &[1.0, 2.0])[0].assert_near(&[1, 1, 2, 4], &wanted);
 }
 
 #[test]

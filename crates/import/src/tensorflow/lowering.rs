@@ -9,6 +9,9 @@ use super::layout::Order;
 use super::value::Value;
 use opendr_onnx::{Builder, Dim, Kind, Operator, Wire};
 
+/// No real tensor has as many axes; a hostile file could double them with every operator.
+pub const MAX_RANK: usize = 32;
+
 /// The graph under construction and what is remembered about its tensors.
 #[derive(Default)]
 pub struct Lowering {
@@ -22,7 +25,7 @@ impl Lowering {
     /// Adds an operator with one output and returns it, stored in `order`. `dims` are TensorFlow's.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph has grown too large, or the output has more than [`MAX_RANK`] axes.
     pub fn emit(
         &mut self,
         call: &Call,
@@ -32,6 +35,9 @@ impl Lowering {
         dims: &[Dim],
         order: Order,
     ) -> Result<Value> {
+        if dims.len() > MAX_RANK {
+            return Err(Error::format(format!("{} axes, more than the {MAX_RANK} allowed", dims.len())));
+        }
         let wire = self.graph.add(call.name(), operator, inputs, kind, order.stored_dims(dims))?;
         Ok(Value::new(wire, order))
     }

@@ -18,7 +18,7 @@ pub use attributes::{Attribute, Attributes};
 pub use call::Call;
 pub use input::input;
 pub use layout::Order;
-pub use lowering::Lowering;
+pub use lowering::{Lowering, MAX_RANK};
 pub use options::ImportOptions;
 pub use output::{finish, wanted};
 pub use value::Value;

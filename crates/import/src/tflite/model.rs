@@ -6,12 +6,10 @@ use opendr_onnx::{Array, element_count};
 use super::element::Element;
 use super::flatbuffer::{Flatbuffer, Table};
 use super::quantisation::Quantisation;
+use crate::tensorflow::MAX_RANK;
 
 /// The number of the operator that stands for one of the model's own.
 const CUSTOM: i32 = 32;
-
-/// Operators that carry out a list of their own, and operators and tensors that remember: numbers of `BuiltinOperator`.
-const PLACEHOLDER: i32 = 127;
 
 /// The graph of a file: what is computed from the inputs, operator after operator.
 pub struct Model<'a, 'f> {
@@ -91,10 +89,11 @@ impl<'a, 'f> Model<'a, 'f> {
     }
 }
 
-/// The number of an operator and its name if it is none of TensorFlow Lite's. Old files have the number in a byte.
+/// The number of an operator and its name if it is none of TensorFlow Lite's. Old files have the number in a byte,
+/// new ones there at most what fits.
 fn operator_code<'a>(table: &Table<'a, '_>) -> Result<(i32, &'a str)> {
     let (old, new) = (i32::from(table.byte(0)?.cast_signed()), table.int(3, 0)?);
-    let code = if new == PLACEHOLDER { old } else { old.max(new) };
+    let code = old.max(new);
     Ok((code, if code == CUSTOM { table.text(1)? } else { "" }))
 }
 
@@ -103,6 +102,9 @@ impl<'a> Tensor<'a> {
         let shape = table.ints(0)?;
         let signature = table.ints(7)?;
         let dims = if signature.len() == shape.len() { signature } else { shape };
+        if dims.len() > MAX_RANK {
+            return Err(Error::format(format!("{} axes, more than the {MAX_RANK} allowed", dims.len())));
+        }
         let dims: Vec<i64> = dims.into_iter().map(i64::from).collect();
         let element = Element::from(table.byte(1)?);
         let quantisation = match table.table(4)? {

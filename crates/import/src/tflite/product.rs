@@ -77,7 +77,7 @@ pub fn custom_transposed<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 
     let [Some(height), Some(width), Some(filters), _] = filter.dims()[..] else {
         return Err(Error::unsupported("filter of open size"));
     };
-    let number = u8::try_from(same_or_valid - 1).unwrap_or(u8::MAX);
+    let number = u8::try_from(same_or_valid.saturating_sub(1)).unwrap_or(u8::MAX);
     let grown = |dim: Option<usize>, stride: i32, kernel: usize| {
         let stride = usize::try_from(stride).ok().filter(|stride| (1..=1 << 16).contains(stride))?;
         let dim = dim.filter(|dim| (1..=1 << 24).contains(dim))?;

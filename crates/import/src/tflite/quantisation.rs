@@ -1,7 +1,7 @@
 //! Integers that stand for real numbers: `real = (integer - zero_point) * scale`.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Data, Operator, Wire};
+use opendr_onnx::{Array, Data, Kind, Operator, Wire};
 
 use super::element::Element;
 use super::flatbuffer::Table;
@@ -86,7 +86,7 @@ impl Quantisation {
         let parameters = self.parameters()?;
         let inputs: Vec<&Wire> = std::iter::once(stored).chain(&parameters).collect();
         let operator = self.operator("DequantizeLinear", axis);
-        ctx.graph.add(name, operator, &inputs, opendr_onnx::Kind::Float, stored.dims().to_vec())
+        ctx.graph.add(name, operator, &inputs, Kind::Float, stored.dims().to_vec())
     }
 
     /// The real numbers nearest to `value` for which there are integers.
@@ -97,11 +97,14 @@ impl Quantisation {
         if self.element == Element::Int32 {
             return Ok(value.clone());
         }
+        if self.scales.len() > 1 && self.axis >= value.rank() {
+            return Err(Error::format(format!("scales on axis {} of rank {}", self.axis, value.rank())));
+        }
         let parameters = self.parameters()?;
         let inputs: Vec<&Wire> = std::iter::once(&value.wire).chain(&parameters).collect();
         let operator = self.operator("QuantizeLinear", value.order.stored(self.axis));
         let dims = value.wire.dims().to_vec();
-        let stored = ctx.graph.add(name, operator, &inputs, opendr_onnx::Kind::Int, dims)?;
+        let stored = ctx.graph.add(name, operator, &inputs, Kind::Int, dims)?;
         let wire = self.dequantised(ctx, name, &stored, value.order.axes())?;
         Ok(Value::new(wire, value.order.clone()))
     }

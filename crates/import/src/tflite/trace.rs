@@ -1,7 +1,7 @@
 //! Goes through the operators in their order and writes those that the outputs need.
 
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{Operator, Wire};
+use opendr_onnx::{Kind, Operator, Wire};
 
 use super::model::{Model, Node};
 use super::names::name;
@@ -41,7 +41,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         for &index in &model.inputs {
             let tensor = &model.tensors[index];
             let kind = match &tensor.quantisation {
-                Some(_) => opendr_onnx::Kind::Float,
+                Some(_) => Kind::Float,
                 None => tensor.element.kind().context(|| format!("reading input {:?}", tensor.name))?,
             };
             let value = input(&mut trace.lowering, options, tensor.name, kind, &tensor.dims);
@@ -107,7 +107,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
             return Err(Error::format(format!("tensor {:?} is made twice", tensor.name)));
         }
         let value = match &tensor.quantisation {
-            Some(quantisation) if value.kind() == opendr_onnx::Kind::Float => {
+            Some(quantisation) if value.kind() == Kind::Float => {
                 quantisation.rounded(&mut self.lowering, tensor.name, &value)?
             }
             _ => value,

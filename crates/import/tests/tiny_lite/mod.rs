@@ -2,6 +2,10 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 #![allow(clippy::unwrap_used, reason = "test support")]
 
+use opendr_import::{ImportOptions, onnx_from_tflite};
+use opendr_onnx::model_from_bytes;
+use opendr_onnx::proto::GraphProto;
+
 /// A field of a flatbuffer's table.
 #[derive(Clone)]
 pub enum Field {
@@ -181,5 +185,15 @@ impl TinyLite {
             (2, Field::Tables(vec![graph])),
             (4, Field::Tables(buffers.collect())),
         ])
+    }
+
+    /// Imports it.
+    pub fn import(&self) -> Vec<u8> {
+        onnx_from_tflite(&self.bytes(), &ImportOptions::default()).unwrap()
+    }
+
+    /// The imported graph.
+    pub fn graph(&self) -> GraphProto {
+        model_from_bytes(&self.import()).unwrap().graph.unwrap()
     }
 }
