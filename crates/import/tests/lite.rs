@@ -69,6 +69,26 @@ fn a_product_flattens_channels_last() {
     run(model.import(), &[1, 2, 4, 1], &x)[0].assert_near(&[1, 3], &wanted);
 }
 
+#[test]
+fn a_product_may_keep_the_axes_in_front() {
+    let mut model = TinyLite::default();
+    let x = model.input(&[1, 2, 3], FLOAT32);
+    let weights = model.floats("w", &[1, 3], &[1.0, 10.0, 100.0]);
+    let y = model.tensor("y", &[1, 2, 1], FLOAT32);
+    model.operator(9, &[x, weights, -1], &[y], vec![(2, Field::Byte(1))]).outputs.push(y);
+    run(model.import(), &[1, 2, 3], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0])[0]
+        .assert_near(&[1, 2, 1], &[321.0, 654.0]);
+}
+
+#[test]
+fn rows_are_brought_to_length_one() {
+    let mut model = TinyLite::default();
+    let x = model.input(&[2, 2], FLOAT32);
+    let y = model.tensor("y", &[2, 2], FLOAT32);
+    model.operator(11, &[x], &[y], Vec::new()).outputs.push(y);
+    run(model.import(), &[2, 2], &[3.0, -4.0, 0.0, 0.0])[0].assert_near(&[2, 2], &[0.6, -0.8, 0.0, 0.0]);
+}
+
 /// An image of bytes, weights with a scale per filter, a result of bytes that stops at zero.
 fn quantised() -> TinyLite {
     let mut model = TinyLite::default();
