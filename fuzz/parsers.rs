@@ -11,9 +11,10 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 23] = [
+pub const PARSERS: [(&str, Parser); 24] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
+    ("tflite", tflite),
     ("card_toml", card_toml),
     ("picture", picture),
     ("target_json", target_json),
@@ -51,6 +52,12 @@ fn tfjs_json(bytes: &[u8]) {
     let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
     let weights = bytes.get(end + 1..).unwrap_or_default();
     if let Ok(onnx) = opendr_import::onnx_from_tfjs(&bytes[..end], &[weights], &Default::default()) {
+        assert!(!onnx.is_empty());
+    }
+}
+
+fn tflite(bytes: &[u8]) {
+    if let Ok(onnx) = opendr_import::onnx_from_tflite(bytes, &Default::default()) {
         assert!(!onnx.is_empty());
     }
 }

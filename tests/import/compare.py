@@ -13,6 +13,7 @@ OPENDR_TEST_DATA: folder with models/ and data/ (default: ../shared beside the p
 OPENDR_TEST_CACHE: folder that keeps the downloaded packages (default: a temporary one).
 """
 import argparse
+import importlib.util
 import json
 import os
 import pathlib
@@ -52,17 +53,16 @@ STEEP = {"activation_segmentation": 5e-3}
 RANDOM_SIDE = 256  # for image inputs of open size
 
 
-def with_packages(cache):
+def with_packages(cache, packages=PYTHON):
     """Restarts in an environment of its own when a Python package is missing."""
-    try:
-        import cv2, numpy, onnxruntime  # noqa: F401
-    except ImportError:
+    modules = {"opencv-python-headless": "cv2", "ai-edge-litert": "ai_edge_litert"}
+    if any(importlib.util.find_spec(modules.get(package, package)) is None for package in packages):
         python = cache / "python/bin/python"
         if pathlib.Path(sys.prefix) == cache / "python":
-            sys.exit("the packages " + ", ".join(PYTHON) + " cannot be imported")
+            sys.exit("the packages " + ", ".join(packages) + " cannot be imported")
         if not python.exists():
             subprocess.run([sys.executable, "-m", "venv", cache / "python"], check=True)
-            subprocess.run([python, "-m", "pip", "install", "-q", *PYTHON], check=True)
+        subprocess.run([python, "-m", "pip", "install", "-q", *packages], check=True)
         os.environ["OPENDR_TEST_CACHE"] = str(cache)
         os.execv(python, [str(python), *sys.argv])
 

@@ -1,10 +1,16 @@
-//! Turns TensorFlow.js graph models into ONNX.
+//! Turns TensorFlow.js graph models and TensorFlow Lite models into ONNX.
 //!
-//! [`onnx_from_tfjs`] takes the files of a TensorFlow.js graph model as packages carry them and gives an ONNX model
-//! that runs in ONNX Runtime and in the built-in runtime: channels-first, with the transpositions, identities and shape
-//! arithmetic of the original evaluated or folded away. How images are laid out at its inputs and outputs is one rule,
-//! written there.
+//! [`onnx_from_tfjs`] takes the files of a TensorFlow.js graph model as packages carry them, [`onnx_from_tflite`] a
+//! `.tflite` file. Both give an ONNX model that runs in ONNX Runtime and in the built-in runtime: channels-first, with
+//! the transpositions, identities and shape arithmetic of the original evaluated or folded away. How images are laid
+//! out at its inputs and outputs is one rule, written there.
 
+mod bounded;
+mod half;
+mod tensorflow;
 mod tfjs;
+mod tflite;
 
-pub use tfjs::{ImportOptions, onnx_from_tfjs, onnx_from_tfjs_file, tfjs_weight_files};
+pub use tensorflow::ImportOptions;
+pub use tfjs::{onnx_from_tfjs, onnx_from_tfjs_file, tfjs_weight_files};
+pub use tflite::{onnx_from_tflite, onnx_from_tflite_file};

@@ -41,6 +41,12 @@ pub enum Data {
     Int(Vec<i64>),
     /// Truth values.
     Bool(Vec<bool>),
+    /// Quantised numbers that a `DequantizeLinear` reads, below zero too.
+    Int8(Vec<i8>),
+    /// Quantised numbers that a `DequantizeLinear` reads, none below zero.
+    UInt8(Vec<u8>),
+    /// Quantised sums that a `DequantizeLinear` reads.
+    Int32(Vec<i32>),
     /// Integers of which only some are known: the shape of a tensor with open dimensions.
     Partial(Vec<Option<i64>>),
 }
@@ -52,6 +58,9 @@ macro_rules! map_data {
             Data::Float($values) => Data::Float($result),
             Data::Int($values) => Data::Int($result),
             Data::Bool($values) => Data::Bool($result),
+            Data::Int8($values) => Data::Int8($result),
+            Data::UInt8($values) => Data::UInt8($result),
+            Data::Int32($values) => Data::Int32($result),
             Data::Partial($values) => Data::Partial($result),
         }
     };
@@ -65,6 +74,9 @@ impl Data {
             Self::Float(values) => values.len(),
             Self::Int(values) => values.len(),
             Self::Bool(values) => values.len(),
+            Self::Int8(values) => values.len(),
+            Self::UInt8(values) => values.len(),
+            Self::Int32(values) => values.len(),
             Self::Partial(values) => values.len(),
         }
     }
@@ -74,12 +86,22 @@ impl Data {
         self.len() == 0
     }
 
-    /// Element type.
+    /// Element type; the narrow integers count as integers.
     pub fn kind(&self) -> Kind {
         match self {
             Self::Float(_) => Kind::Float,
-            Self::Int(_) | Self::Partial(_) => Kind::Int,
+            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => Kind::Int,
             Self::Bool(_) => Kind::Bool,
+        }
+    }
+
+    /// ONNX's number of the type in which the elements are written.
+    pub(super) fn data_type(&self) -> DataType {
+        match self {
+            Self::Int8(_) => DataType::Int8,
+            Self::UInt8(_) => DataType::Uint8,
+            Self::Int32(_) => DataType::Int32,
+            _ => self.kind().data_type(),
         }
     }
 }
@@ -183,12 +205,15 @@ impl Array {
             Data::Float(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
             Data::Int(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
             Data::Bool(values) => values.iter().map(|&value| u8::from(value)).collect(),
+            Data::Int8(values) => values.iter().map(|value| value.cast_unsigned()).collect(),
+            Data::UInt8(values) => values.clone(),
+            Data::Int32(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
             Data::Partial(_) => return Err(Error::internal(format!("shape {name:?} has unknown elements"))),
         };
         Ok(TensorProto {
             name: name.to_owned(),
             dims: self.dims.iter().map(|&dim| dim as i64).collect(),
-            data_type: self.kind().data_type() as i32,
+            data_type: self.data.data_type() as i32,
             raw_data,
             ..TensorProto::default()
         })

@@ -129,6 +129,18 @@ pub enum Import {
         #[serde(default)]
         outputs: Vec<String>,
     },
+    /// A TensorFlow Lite model, the one file.
+    Tflite {
+        /// Name of the file that is made.
+        #[serde(default = "model_onnx")]
+        output: String,
+        /// Height and width of an image input whose size the model leaves open.
+        #[serde(default)]
+        image_size: Option<(usize, usize)>,
+        /// Outputs to keep; all when empty.
+        #[serde(default)]
+        outputs: Vec<String>,
+    },
 }
 
 fn model_onnx() -> String {

@@ -41,6 +41,10 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
             member_path(output)?;
             ensure(variant.files.len() >= 2, || "a TensorFlow.js model has a JSON and weights".into())?;
         }
+        Some(Import::Tflite { output, .. }) => {
+            member_path(output)?;
+            ensure(variant.files.len() == 1, || "a TensorFlow Lite model is one file".into())?;
+        }
         None if kind == ItemKind::Sample => {
             ensure(variant.files.len() == 1, || "a sample is one file".into())?;
         }

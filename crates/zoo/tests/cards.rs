@@ -70,6 +70,7 @@ fn hostile_and_faulty_cards_are_refused() {
         ("licence = {}", "licence = {}\nclasses = \"../../etc/passwd\""),
         ("licence = {}", "licence = {}\nimport = { format = \"pickle\" }"),
         ("licence = {}", "licence = {}\nimport = { format = \"tfjs\" }"),
+        ("licence = {}", "licence = {}\nimport = { format = \"tflite\", weights = \"x\" }"),
         ("\"@a/b\"", "\"--registry=http://evil\""),
         ("\"@a/b\"", "\"-x\""),
         ("\"@a/b\"", "\"@a/../b\""),

@@ -44,6 +44,21 @@ fn named_file_of_a_folder_is_checked_and_taken() {
 }
 
 #[test]
+fn a_tflite_file_becomes_onnx() {
+    let place = Place::new();
+    let corpus = std::env::var("CARGO_MANIFEST_DIR").unwrap() + "/../../fuzz/corpus/tflite/graph";
+    let bytes = fs::read(corpus).unwrap();
+    fs::write(place.0.join("a.tflite"), &bytes).unwrap();
+    let source = "[[variants.sources]]\nkind = \"repository\"\nfiles = { \"a.tflite\" = \"a.tflite\" }\n";
+    let card = card(&bytes, source).replace("\"model.onnx\", size", "\"a.tflite\", size");
+    let card =
+        card.replace("licence = {}", "licence = {}\nimport = { format = \"tflite\", output = \"b.onnx\" }");
+    let path = zoo(&place, place.0.to_str().unwrap(), &card).get("test", &Silent).unwrap();
+    let wanted = opendr_import::onnx_from_tflite(&bytes, &Default::default()).unwrap();
+    assert_eq!(Model::open(path).unwrap().file("b.onnx").unwrap(), wanted);
+}
+
+#[test]
 fn container_of_a_folder_comes_before_everything() {
     let (place, bytes) = (Place::new(), noise(1000));
     let folder = place.0.join("repository");

@@ -1,21 +1,14 @@
 //! The entry points.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use opendr_engine::{Error, Result, ResultExt};
 
-use super::layout::Order;
 use super::model_json::ModelJson;
-use super::options::ImportOptions;
 use super::trace::Trace;
-use super::value::Value;
 use super::weights::read_weights;
-use opendr_onnx::{Wire, bytes_from_model, model_from_graph, passes};
-
-/// Weights beyond this do not fit into one ONNX file after widening.
-const MAX_WEIGHT_BYTES: u64 = 1 << 29;
+use crate::bounded::{MAX_BYTES, read_bounded};
+use crate::tensorflow::{ImportOptions, finish, wanted};
 
 /// Turns a TensorFlow.js graph model into an ONNX model (opset 17). The same input gives the same bytes.
 ///
@@ -34,10 +27,8 @@ const MAX_WEIGHT_BYTES: u64 = 1 << 29;
 /// cannot be expressed, `NotFound` for an output that the model does not have.
 pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOptions) -> Result<Vec<u8>> {
     let total: usize = weights.iter().fold(0, |sum, file| sum.saturating_add(file.len()));
-    if total as u64 > MAX_WEIGHT_BYTES {
-        return Err(Error::format(format!(
-            "{total} bytes of weights, more than the {MAX_WEIGHT_BYTES} allowed"
-        )));
+    if total as u64 > MAX_BYTES {
+        return Err(Error::format(format!("{total} bytes of weights, more than the {MAX_BYTES} allowed")));
     }
     let model = ModelJson::parse(model_json)?;
     let weights = read_weights(&model, weights)?;
@@ -50,43 +41,7 @@ pub fn onnx_from_tfjs(model_json: &[u8], weights: &[&[u8]], options: &ImportOpti
     for (name, tensor) in &outputs {
         values.push(trace.tensor(tensor).context(|| format!("output {name:?}"))?);
     }
-    for ((name, _), value) in outputs.iter().zip(values) {
-        let (wire, doc) = output_wire(&mut trace, &value)?;
-        trace.lowering.graph.output(name, &wire, doc, &[])?;
-    }
-    let mut graph = trace.lowering.graph.finish("tfjs");
-    passes::simplify(&mut graph);
-    Ok(bytes_from_model(&model_from_graph(graph)))
-}
-
-/// Outputs of the model that the options ask for.
-fn wanted(mut outputs: Vec<(String, String)>, options: &ImportOptions) -> Result<Vec<(String, String)>> {
-    for name in &options.outputs {
-        if !outputs.iter().any(|(own, _)| own == name) {
-            let own: Vec<&str> = outputs.iter().map(|(own, _)| own.as_str()).collect();
-            return Err(Error::not_found(format!(
-                "the model has no output {name:?}; it has {}",
-                own.join(", ")
-            )));
-        }
-    }
-    if !options.outputs.is_empty() {
-        outputs.retain(|(name, _)| options.outputs.contains(name));
-    }
-    outputs.dedup_by(|a, b| a.0 == b.0);
-    match outputs.is_empty() {
-        true => Err(Error::format("the model has no outputs")),
-        false => Ok(outputs),
-    }
-}
-
-/// Images go out as they are stored, everything else as the original has it.
-fn output_wire(trace: &mut Trace, value: &Value) -> Result<(Wire, &'static str)> {
-    let image = value.order == Order::channels_first() && value.wire.dims()[2..] != [Some(1), Some(1)];
-    match image {
-        true => Ok((value.wire.clone(), "NCHW")),
-        false => Ok((trace.lowering.plain(value)?, "")),
-    }
+    finish(trace.lowering, outputs.iter().map(|(name, _)| name.as_str()).zip(values), "tfjs")
 }
 
 /// Paths of the weight files of a model, relative to its `model.json`, none of which leaves its folder.
@@ -108,16 +63,4 @@ pub fn onnx_from_tfjs_file(model_json: &Path, options: &ImportOptions) -> Result
     let files = paths.iter().map(|path| read_bounded(&folder.join(path))).collect::<Result<Vec<_>>>()?;
     let files: Vec<&[u8]> = files.iter().map(Vec::as_slice).collect();
     onnx_from_tfjs(&json, &files, options).context(|| format!("importing {}", model_json.display()))
-}
-
-fn read_bounded(path: &Path) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let file = File::open(path).context(|| format!("opening {}", path.display()))?;
-    file.take(MAX_WEIGHT_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .context(|| format!("reading {}", path.display()))?;
-    match bytes.len() as u64 > MAX_WEIGHT_BYTES {
-        true => Err(Error::format(format!("{} has more than {MAX_WEIGHT_BYTES} bytes", path.display()))),
-        false => Ok(bytes),
-    }
 }

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use opendr_engine::{Error, Result, ResultExt};
 use serde::Deserialize;
 
-use super::attributes::Attributes;
+use super::attributes;
+use crate::tensorflow::Attributes;
 
 /// No real `model.json` comes near; the weights are in files of their own.
 const MAX_JSON_BYTES: usize = 64 << 20;
@@ -63,7 +64,7 @@ pub struct Node {
     #[serde(default)]
     pub input: Vec<String>,
     /// Named parameters.
-    #[serde(default)]
+    #[serde(default, deserialize_with = "attributes::deserialize")]
     pub attr: Attributes,
 }
 

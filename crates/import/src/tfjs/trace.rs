@@ -4,14 +4,9 @@ use std::collections::{BTreeMap, HashMap};
 
 use opendr_engine::{Error, Result, ResultExt};
 
-use super::call::Call;
-use super::layout::Order;
-use super::lowering::Lowering;
 use super::model_json::{Node, producer};
-use super::ops;
-use super::options::ImportOptions;
-use super::value::Value;
-use opendr_onnx::{Array, Dim, Kind, Wire};
+use crate::tensorflow::{Call, ImportOptions, Lowering, Value, input, ops};
+use opendr_onnx::{Array, Kind, Wire};
 
 /// Walks TensorFlow's graph from its outputs.
 pub struct Trace<'a> {
@@ -130,33 +125,15 @@ impl<'a> Trace<'a> {
                 let inputs = data_inputs(node)
                     .map(|input| self.resolve(input).and_then(|(source, index)| self.value(source, index)))
                     .collect::<Result<Vec<Value>>>()?;
-                lower(&mut self.lowering, &Call::new(node, inputs))
+                lower(&mut self.lowering, &Call::new(&node.name, &node.op, &node.attr, inputs))
             }
         }
     }
 
-    /// Images become `1x3xHxW` floats, whatever element type TensorFlow wants; other inputs stay as they are.
     fn input(&mut self, node: &Node) -> Result<Value> {
         let dims = node.attr.shape("shape").ok_or_else(|| Error::unsupported("input of unknown rank"))?;
         let kind = node.attr.kind("dtype").unwrap_or(Kind::Float);
-        let mut dims: Vec<Dim> =
-            dims.iter().map(|&dim| usize::try_from(dim).ok().filter(|&dim| dim > 0)).collect();
-        if let Some(batch) = dims.first_mut() {
-            *batch = batch.or(Some(1));
-        }
-        let channels = |axis: usize| matches!(dims.get(axis), Some(Some(1 | 3 | 4)));
-        let image = dims.len() == 4 && (channels(3) || channels(1));
-        if !image {
-            return Ok(Value::plain(self.lowering.graph.input(&node.name, kind, dims, &[])));
-        }
-        let order = if channels(3) { Order::channels_first() } else { Order::plain(4) };
-        let mut stored = order.stored_dims(&dims);
-        if let Some((height, width)) = self.options.image_size {
-            stored[2] = stored[2].or(Some(height));
-            stored[3] = stored[3].or(Some(width));
-        }
-        let open = ["batch", "channels", "height", "width"];
-        Ok(Value::new(self.lowering.graph.input(&node.name, Kind::Float, stored, &open), order))
+        Ok(input(&mut self.lowering, self.options, &node.name, kind, dims))
     }
 }
 

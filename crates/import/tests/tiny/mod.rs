@@ -88,13 +88,17 @@ impl Tiny {
 
     /// Imports and runs it on an image given channels-last (other inputs as they are); outputs in order of their names.
     pub fn run(&self, dims: &[usize], values: &[f32]) -> Vec<Array> {
-        let model = Model::load(self.import().unwrap()).unwrap();
-        let x = Tensor::from_data(dims, values.to_vec());
-        let x = if dims.len() == 4 { x.permuted(&[0, 3, 1, 2]).to_tensor() } else { x };
-        let outputs =
-            model.run(vec![(model.input_ids()[0], x.view().into())], model.output_ids(), None).unwrap();
-        outputs.into_iter().map(Array::from_value).collect()
+        run(self.import().unwrap(), dims, values)
     }
+}
+
+/// Runs an imported model on an image given channels-last (other inputs as they are).
+pub fn run(onnx: Vec<u8>, dims: &[usize], values: &[f32]) -> Vec<Array> {
+    let model = Model::load(onnx).unwrap();
+    let x = Tensor::from_data(dims, values.to_vec());
+    let x = if dims.len() == 4 { x.permuted(&[0, 3, 1, 2]).to_tensor() } else { x };
+    let outputs = model.run(vec![(model.input_ids()[0], x.view().into())], model.output_ids(), None).unwrap();
+    outputs.into_iter().map(Array::from_value).collect()
 }
 
 /// A result: shape and elements.

@@ -140,7 +140,7 @@ pub(super) fn cast(x: &Array, to: i64) -> Option<Array> {
             Data::Float(values.iter().map(|&v| f32::from(u8::from(v))).collect())
         }
         (Data::Bool(values), DataType::Int64) => Data::Int(values.iter().map(|&v| i64::from(v)).collect()),
-        (data, to) if data.kind().data_type() == to => data.clone(),
+        (data, to) if data.data_type() == to => data.clone(),
         _ => return None,
     };
     Array::new(x.dims().to_vec(), data)

@@ -1,0 +1,99 @@
+//! Parameters of TensorFlow operators.
+
+use std::collections::BTreeMap;
+
+use opendr_onnx::Kind;
+
+/// One parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Attribute {
+    Int(i64),
+    Float(f32),
+    Flag(bool),
+    Text(String),
+    Ints(Vec<i64>),
+    Texts(Vec<String>),
+    Kind(Kind),
+    /// Dimensions, -1 where open.
+    Shape(Vec<i64>),
+}
+
+/// Parameters by name. Missing ones have TensorFlow's defaults, so every reader takes one.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Attributes(BTreeMap<String, Attribute>);
+
+impl Attributes {
+    /// Sets a parameter.
+    #[must_use]
+    pub fn with(mut self, key: &str, value: Attribute) -> Self {
+        self.0.insert(key.to_owned(), value);
+        self
+    }
+
+    /// An integer.
+    pub fn int(&self, key: &str) -> Option<i64> {
+        match self.0.get(key)? {
+            Attribute::Int(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// A float.
+    pub fn float(&self, key: &str) -> Option<f32> {
+        match self.0.get(key)? {
+            Attribute::Float(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// A switch; false when missing.
+    pub fn flag(&self, key: &str) -> bool {
+        matches!(self.0.get(key), Some(Attribute::Flag(true)))
+    }
+
+    /// A string.
+    pub fn text(&self, key: &str) -> Option<&str> {
+        match self.0.get(key)? {
+            Attribute::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// A list of integers; empty when missing.
+    pub fn ints(&self, key: &str) -> &[i64] {
+        match self.0.get(key) {
+            Some(Attribute::Ints(values)) => values,
+            _ => &[],
+        }
+    }
+
+    /// A list of strings; empty when missing.
+    pub fn texts(&self, key: &str) -> &[String] {
+        match self.0.get(key) {
+            Some(Attribute::Texts(values)) => values,
+            _ => &[],
+        }
+    }
+
+    /// An element type; `None` for one that ONNX graphs of ours do not hold (strings, complex numbers).
+    pub fn kind(&self, key: &str) -> Option<Kind> {
+        match self.0.get(key)? {
+            Attribute::Kind(kind) => Some(*kind),
+            _ => None,
+        }
+    }
+
+    /// Dimensions, -1 where open; `None` when even their number is.
+    pub fn shape(&self, key: &str) -> Option<&[i64]> {
+        match self.0.get(key)? {
+            Attribute::Shape(dims) => Some(dims),
+            _ => None,
+        }
+    }
+}
+
+impl FromIterator<(String, Attribute)> for Attributes {
+    fn from_iter<I: IntoIterator<Item = (String, Attribute)>>(attributes: I) -> Self {
+        Self(attributes.into_iter().collect())
+    }
+}

@@ -1,0 +1,31 @@
+//! Inputs of models.
+
+use opendr_onnx::{Dim, Kind};
+
+use super::layout::Order;
+use super::lowering::Lowering;
+use super::options::ImportOptions;
+use super::value::Value;
+
+/// An input of TensorFlow's dimensions `dims` (not above zero where open). Images become `1x3xHxW` floats, whatever
+/// element type TensorFlow wants; other inputs stay as they are.
+pub fn input(ctx: &mut Lowering, options: &ImportOptions, name: &str, kind: Kind, dims: &[i64]) -> Value {
+    let mut dims: Vec<Dim> =
+        dims.iter().map(|&dim| usize::try_from(dim).ok().filter(|&dim| dim > 0)).collect();
+    if let Some(batch) = dims.first_mut() {
+        *batch = batch.or(Some(1));
+    }
+    let channels = |axis: usize| matches!(dims.get(axis), Some(Some(1 | 3 | 4)));
+    let image = dims.len() == 4 && (channels(3) || channels(1));
+    if !image {
+        return Value::plain(ctx.graph.input(name, kind, dims, &[]));
+    }
+    let order = if channels(3) { Order::channels_first() } else { Order::plain(4) };
+    let mut stored = order.stored_dims(&dims);
+    if let Some((height, width)) = options.image_size {
+        stored[2] = stored[2].or(Some(height));
+        stored[3] = stored[3].or(Some(width));
+    }
+    let open = ["batch", "channels", "height", "width"];
+    Value::new(ctx.graph.input(name, Kind::Float, stored, &open), order)
+}

@@ -1,0 +1,92 @@
+//! Shapes as data, and tensors made from shapes.
+
+use opendr_engine::{Error, Result};
+
+use crate::tensorflow::call::Call;
+use crate::tensorflow::lowering::Lowering;
+use crate::tensorflow::value::Value;
+use opendr_onnx::{Array, Data, Dim, Kind, Operator, Wire};
+
+/// TensorFlow's dimensions as integers; those that are known stay known through later arithmetic.
+pub fn shape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    let x = call.input(0)?;
+    let rank = [Some(x.rank())];
+    let stored = ctx.emit_plain(call, Operator::new("Shape"), &[&x.wire], Kind::Int, &rank)?;
+    if x.order.is_plain() {
+        return Ok(vec![stored]);
+    }
+    let positions = Wire::ints((0..x.rank()).map(|axis| x.order.stored(axis) as i64));
+    let gather = Operator::new("Gather").int("axis", 0);
+    Ok(vec![ctx.emit_plain(call, gather, &[&stored.wire, &positions], Kind::Int, &rank)?])
+}
+
+pub fn size(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    let x = call.input(0)?;
+    Ok(vec![ctx.emit_plain(call, Operator::new("Size"), &[&x.wire], Kind::Int, &[])?])
+}
+
+pub fn rank(_: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    Ok(vec![Value::plain(Wire::constant(Array::int(call.input(0)?.rank() as i64)))])
+}
+
+pub fn fill(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    let value = call.input(1)?;
+    Ok(vec![fill_shape(ctx, call, &value.wire, call.input(0)?)?])
+}
+
+/// A scalar repeated over a shape.
+pub fn fill_shape(ctx: &mut Lowering, call: &Call, scalar: &Wire, shape: &Value) -> Result<Value> {
+    let dims = shape_dims(shape)?;
+    ctx.emit_plain(call, Operator::new("Expand"), &[scalar, &shape.wire], scalar.kind(), &dims)
+}
+
+/// Dimensions of a tensor of the shape that `shape` holds.
+fn shape_dims(shape: &Value) -> Result<Vec<Dim>> {
+    match (shape.wire.elements(), shape.dims().as_slice()) {
+        (Some(elements), _) => {
+            Ok(elements.iter().map(|dim| dim.and_then(|dim| usize::try_from(dim).ok())).collect())
+        }
+        (None, [Some(rank @ 0..=8)]) => Ok(vec![None; *rank]),
+        (None, dims) => Err(Error::unsupported(format!("shape of shape {dims:?}"))),
+    }
+}
+
+pub fn range(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    let float = call.inputs().iter().any(|input| input.kind() == Kind::Float);
+    let kind = if float { Kind::Float } else { Kind::Int };
+    let mut limits = Vec::with_capacity(3);
+    for index in 0..3 {
+        limits.push(ctx.cast(&call.input(index)?.wire, kind)?);
+    }
+    let inputs: Vec<&Wire> = limits.iter().collect();
+    let value = ctx.emit_plain(call, Operator::new("Range"), &inputs, kind, &[None])?;
+    // When evaluated, the length is known after all.
+    Ok(vec![Value::plain(value.wire)])
+}
+
+/// Zeros or ones in the shape of another tensor.
+pub fn filled_like(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    let x = call.input(0)?;
+    let value = i64::from(call.op() == "OnesLike");
+    let scalar = match x.kind() {
+        Kind::Float => Array::scalar(value as f32),
+        Kind::Int => Array::int(value),
+        Kind::Bool => {
+            Array::new(Vec::new(), Data::Bool(vec![value == 1])).unwrap_or_else(|| Array::int(value))
+        }
+    };
+    let shape = shape(ctx, call)?.remove(0);
+    Ok(vec![fill_shape(ctx, call, &Wire::constant(scalar), &shape)?])
+}
+
+pub fn broadcast_to(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
+    let (x, shape) = (call.input(0)?, call.input(1)?);
+    let mut dims = shape_dims(shape)?;
+    let missing =
+        dims.len().checked_sub(x.rank()).ok_or_else(|| Error::format("broadcast to a lower rank"))?;
+    for (own, dim) in dims[missing..].iter_mut().zip(x.dims()) {
+        *own = own.or(dim.filter(|&dim| dim != 1));
+    }
+    let plain = ctx.plain(x)?;
+    Ok(vec![ctx.emit_plain(call, Operator::new("Expand"), &[&plain, &shape.wire], x.kind(), &dims)?])
+}

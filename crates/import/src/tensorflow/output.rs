@@ -1,0 +1,60 @@
+//! Outputs of models, and the file around the graph.
+
+use opendr_engine::{Error, Result};
+use opendr_onnx::{Wire, bytes_from_model, model_from_graph, passes};
+
+use super::layout::Order;
+use super::lowering::Lowering;
+use super::options::ImportOptions;
+use super::value::Value;
+
+/// Outputs of the model that the options ask for; each is a name and whatever finds the tensor.
+///
+/// # Errors
+/// `NotFound` for an output that the model does not have, `Format` when it has none.
+pub fn wanted<T>(mut outputs: Vec<(String, T)>, options: &ImportOptions) -> Result<Vec<(String, T)>> {
+    for name in &options.outputs {
+        if !outputs.iter().any(|(own, _)| own == name) {
+            let own: Vec<&str> = outputs.iter().map(|(own, _)| own.as_str()).collect();
+            return Err(Error::not_found(format!(
+                "the model has no output {name:?}; it has {}",
+                own.join(", ")
+            )));
+        }
+    }
+    if !options.outputs.is_empty() {
+        outputs.retain(|(name, _)| options.outputs.contains(name));
+    }
+    outputs.dedup_by(|a, b| a.0 == b.0);
+    match outputs.is_empty() {
+        true => Err(Error::format("the model has no outputs")),
+        false => Ok(outputs),
+    }
+}
+
+/// The ONNX file of a graph that gives out these values. `graph` is what the graph is called.
+///
+/// # Errors
+/// `Format` when the graph has grown too large.
+pub fn finish<'a>(
+    mut ctx: Lowering,
+    outputs: impl IntoIterator<Item = (&'a str, Value)>,
+    graph: &str,
+) -> Result<Vec<u8>> {
+    for (name, value) in outputs {
+        let (wire, doc) = output_wire(&mut ctx, &value)?;
+        ctx.graph.output(name, &wire, doc, &[])?;
+    }
+    let mut graph = ctx.graph.finish(graph);
+    passes::simplify(&mut graph);
+    Ok(bytes_from_model(&model_from_graph(graph)))
+}
+
+/// Images go out as they are stored, everything else as the original has it.
+fn output_wire(ctx: &mut Lowering, value: &Value) -> Result<(Wire, &'static str)> {
+    let image = value.order == Order::channels_first() && value.wire.dims()[2..] != [Some(1), Some(1)];
+    match image {
+        true => Ok((value.wire.clone(), "NCHW")),
+        false => Ok((ctx.plain(value)?, "")),
+    }
+}

@@ -1,0 +1,220 @@
+//! Goes through the operators in their order and writes those that the outputs need.
+
+use opendr_engine::{Error, Result, ResultExt};
+use opendr_onnx::{Kind, Operator, Wire};
+
+use super::model::{Model, Node};
+use super::names::name;
+use super::operator::{Step, step};
+use crate::tensorflow::{Attributes, Call, ImportOptions, Lowering, Order, Value, input, ops};
+
+/// More inputs or outputs than this are no real operator.
+const MAX_PORTS: usize = 4096;
+
+/// The graph written so far and what it says of the model's tensors.
+pub struct Trace<'m, 'a, 'f> {
+    model: &'m Model<'a, 'f>,
+    /// The graph written so far.
+    pub lowering: Lowering,
+    /// Tensors that are known by now.
+    values: Vec<Option<Value>>,
+    /// Elements of constants as they are stored.
+    constants: Vec<Option<Wire>>,
+    /// Tensors that are constants under another name.
+    same: Vec<Option<usize>>,
+}
+
+impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
+    /// A trace that knows the inputs.
+    ///
+    /// # Errors
+    /// `Unsupported` for an input of strings.
+    pub fn new(model: &'m Model<'a, 'f>, options: &ImportOptions) -> Result<Self> {
+        let count = model.tensors.len();
+        let mut trace = Self {
+            model,
+            lowering: Lowering::default(),
+            values: vec![None; count],
+            constants: vec![None; count],
+            same: vec![None; count],
+        };
+        for &index in &model.inputs {
+            let tensor = &model.tensors[index];
+            let kind = match &tensor.quantisation {
+                Some(_) => Kind::Float,
+                None => tensor.element.kind().context(|| format!("reading input {:?}", tensor.name))?,
+            };
+            let value = input(&mut trace.lowering, options, tensor.name, kind, &tensor.dims);
+            trace.define(index, value)?;
+        }
+        Ok(trace)
+    }
+
+    /// Writes what these tensors need.
+    ///
+    /// # Errors
+    /// `Format` where operators are not in order, and whatever writing an operator gives.
+    pub fn write(&mut self, outputs: &[usize]) -> Result<Vec<Value>> {
+        let needed = needed(self.model, outputs)?;
+        for (number, node) in self.model.operators.iter().enumerate().filter(|(number, _)| needed[*number]) {
+            let name = node.outputs.first().map_or("", |&output| self.model.tensors[output].name);
+            let at = || format!("importing operator {number} ({}), which makes {name:?}", described(node));
+            self.lower(node, name).context(at)?;
+        }
+        outputs.iter().map(|&output| self.value(output)).collect()
+    }
+
+    fn lower(&mut self, node: &Node<'a, 'f>, name: &str) -> Result<()> {
+        let Step { op, attr, inputs, activation } = step(self, node)?;
+        let made = if op.is_empty() { inputs } else { self.call(name, op, &attr, inputs)? };
+        if made.len() < node.outputs.len() {
+            return Err(Error::format(format!(
+                "it makes {} tensors, not {}",
+                made.len(),
+                node.outputs.len()
+            )));
+        }
+        for (&output, mut value) in node.outputs.iter().zip(made) {
+            let quantisation = self.model.tensors[output].quantisation.as_ref();
+            if let Some(activation) = activation
+                && !quantisation.is_some_and(|quantisation| quantisation.includes(activation))
+            {
+                let active = self.call(name, activation, &Attributes::default(), vec![value])?;
+                value =
+                    active.into_iter().next().ok_or_else(|| Error::internal("activation without output"))?;
+            }
+            self.define(output, value)?;
+        }
+        Ok(())
+    }
+
+    /// Writes TensorFlow's operator `op`.
+    pub fn call(
+        &mut self,
+        name: &str,
+        op: &str,
+        attr: &Attributes,
+        inputs: Vec<Value>,
+    ) -> Result<Vec<Value>> {
+        let lower = ops::lowering(op).ok_or_else(|| Error::internal(format!("no operator {op:?}")))?;
+        lower(&mut self.lowering, &Call::new(name, op, attr, inputs))
+    }
+
+    /// Sets a tensor that has been computed; quantised ones take the values that their integers have.
+    fn define(&mut self, index: usize, value: Value) -> Result<()> {
+        let tensor = &self.model.tensors[index];
+        if self.values[index].is_some() || tensor.is_constant() {
+            return Err(Error::format(format!("tensor {:?} is made twice", tensor.name)));
+        }
+        let value = match &tensor.quantisation {
+            Some(quantisation) if value.kind() == Kind::Float => {
+                quantisation.rounded(&mut self.lowering, tensor.name, &value)?
+            }
+            _ => value,
+        };
+        self.values[index] = Some(value);
+        Ok(())
+    }
+
+    /// Tensor `copy` has the elements of the constant `original`, real numbers for quantised ones.
+    pub fn note_same(&mut self, copy: usize, original: usize) {
+        if self.model.tensors[original].is_constant() {
+            self.same[copy] = Some(original);
+        }
+    }
+
+    /// The tensor; constants are read when first asked for.
+    ///
+    /// # Errors
+    /// `Format` when nothing has made it.
+    pub fn value(&mut self, index: usize) -> Result<Value> {
+        if let Some(value) = &self.values[index] {
+            return Ok(value.clone());
+        }
+        let rank = self.model.tensors[index].dims.len();
+        let value = Value::plain(self.constant(index, (0..rank).collect())?);
+        self.values[index] = Some(value.clone());
+        Ok(value)
+    }
+
+    /// A weight of which TensorFlow's axis `i` is axis `axes[i]` here. TensorFlow's axes of a constant are stored in the
+    /// order given, even of a quantised one.
+    ///
+    /// # Errors
+    /// As [`Trace::value`]; `Format` when it has another rank.
+    pub fn weight(&mut self, index: usize, axes: &[usize], stored: &Order) -> Result<Value> {
+        let index = self.same[index].unwrap_or(index);
+        let rank = self.model.tensors[index].dims.len();
+        if rank != axes.len() {
+            return Err(Error::format(format!("weights of rank {rank}, not {}", axes.len())));
+        }
+        if !self.model.tensors[index].is_constant() {
+            let value = self.value(index)?;
+            return Ok(Value::new(value.wire.clone(), value.order.transposed(axes)));
+        }
+        let own = stored.axes().iter().map(|&axis| axes[axis]).collect();
+        Ok(Value::new(self.constant(index, own)?, stored.clone()))
+    }
+
+    /// The elements of a constant, its axes in the order given.
+    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<Wire> {
+        let tensor = &self.model.tensors[index];
+        if !tensor.is_constant() {
+            return Err(Error::format(format!(
+                "tensor {:?} is needed but nothing before makes it; get the file anew",
+                tensor.name
+            )));
+        }
+        let wire = match &self.constants[index] {
+            Some(wire) => wire.clone(),
+            None => Wire::named_constant(tensor.name, tensor.array()?),
+        };
+        self.constants[index] = Some(wire.clone());
+        let stored = match axes.is_sorted() {
+            true => wire,
+            false => {
+                let transpose = Operator::new("Transpose").ints("perm", axes.iter().map(|&axis| axis as i64));
+                let dims = axes.iter().map(|&axis| wire.dims()[axis]).collect();
+                let moved = self.lowering.graph.add(tensor.name, transpose, &[&wire], wire.kind(), dims)?;
+                moved.array().cloned().map_or(moved, |array| Wire::named_constant(tensor.name, array))
+            }
+        };
+        match &tensor.quantisation {
+            Some(quantisation) => quantisation.dequantised(&mut self.lowering, tensor.name, &stored, &axes),
+            None => Ok(stored),
+        }
+    }
+
+    /// The model that is being written.
+    pub fn model(&self) -> &'m Model<'a, 'f> {
+        self.model
+    }
+}
+
+/// Which operators these tensors need, found from the last to the first: operators stand in the order in which they run.
+fn needed(model: &Model, outputs: &[usize]) -> Result<Vec<bool>> {
+    let mut wanted = vec![false; model.tensors.len()];
+    outputs.iter().for_each(|&output| wanted[output] = true);
+    let mut needed = vec![false; model.operators.len()];
+    for (number, node) in model.operators.iter().enumerate().rev() {
+        if node.inputs.len().max(node.outputs.len()) > MAX_PORTS {
+            return Err(Error::format(format!(
+                "an operator of {} inputs and {} outputs; the file is damaged or hostile",
+                node.inputs.len(),
+                node.outputs.len()
+            )));
+        }
+        if node.outputs.iter().any(|&output| wanted[output]) {
+            needed[number] = true;
+            node.inputs.iter().flatten().for_each(|&input| wanted[input] = true);
+        }
+    }
+    Ok(needed)
+}
+
+fn described(node: &Node) -> String {
+    match node.custom {
+        "" => name(node.code).map_or_else(|| format!("number {}", node.code), str::to_owned),
+        custom => format!("custom operator {custom}"),
+    }
+}
