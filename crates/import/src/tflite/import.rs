@@ -15,10 +15,10 @@ use crate::tensorflow::{ImportOptions, finish, wanted};
 ///
 /// # Inputs and outputs
 /// * Image inputs (rank 4 with 1, 3 or 4 channels) are `float32` of shape `1x3xHxW`, in the value range that the
-///   original wants, also where the original takes integers. Their names are those of the original.
+///   original wants, also where the original takes integers.
 /// * Rank 4 outputs that hold an image (a feature map, heat map or mask: more than one pixel high or wide, as computed
-///   by a convolution) are `1xCxHxW`. Every other output has the original's shape. Output names are those of the
-///   tensors without TensorFlow's `:0`; integers are `int64`.
+///   by a convolution) are `1xCxHxW`. Every other output has the original's shape; integers are `int64`.
+/// * Inputs and outputs are called as in the original, without TensorFlow's `:0`.
 /// * An open batch size becomes 1. An open image size stays open unless [`ImportOptions::image_size`] fixes it.
 ///
 /// # Quantised models
@@ -36,11 +36,10 @@ pub fn onnx_from_tflite(bytes: &[u8], options: &ImportOptions) -> Result<Vec<u8>
     }
     let file = Flatbuffer::new(bytes, b"TFL3")?;
     let model = Model::read(&file)?;
-    let mut names = HashSet::new();
+    let mut names: HashSet<&str> = model.inputs.iter().map(|&input| model.tensors[input].port()).collect();
     let mut outputs = Vec::with_capacity(model.outputs.len());
     for &output in &model.outputs {
-        let name = model.tensors[output].name;
-        let name = name.strip_suffix(":0").unwrap_or(name);
+        let name = model.tensors[output].port();
         if name.is_empty() || !names.insert(name) {
             return Err(Error::format(format!("output {name:?} without a name of its own")));
         }

@@ -123,6 +123,11 @@ impl<'a> Tensor<'a> {
         Ok(Self { name: table.text(3)?, dims, element, quantisation, bytes, sparse, external })
     }
 
+    /// Its name as an input or output of the model.
+    pub fn port(&self) -> &'a str {
+        self.name.strip_suffix(":0").unwrap_or(self.name)
+    }
+
     /// Whether its elements are in the file.
     pub fn is_constant(&self) -> bool {
         !self.bytes.is_empty() || self.external || self.dims.contains(&0)

@@ -44,7 +44,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
                 Some(_) => Kind::Float,
                 None => tensor.element.kind().context(|| format!("reading input {:?}", tensor.name))?,
             };
-            let value = input(&mut trace.lowering, options, tensor.name, kind, &tensor.dims);
+            let value = input(&mut trace.lowering, options, tensor.port(), kind, &tensor.dims);
             trace.define(index, value)?;
         }
         Ok(trace)
