@@ -2,6 +2,7 @@
 
 pub mod face_detection;
 pub mod fall_detection;
+pub mod gesture_recognition;
 pub mod hand_pose_estimation;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
