@@ -5,10 +5,15 @@ use std::sync::OnceLock;
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
+use opendr_perception::fall_detection::FallDetector;
+use opendr_perception::gesture_recognition::KeypointGesture;
+use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
-use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
+use opendr_perception::pose_estimation::{
+    BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
+};
 use opendr_perception::speech_recognition::MatchboxNet;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
@@ -27,6 +32,11 @@ pub fn registry() -> &'static Registry {
             Movenet,
             Posenet,
             LightweightOpenPose,
+            HighResolutionPoseEstimation,
+            BlazePose,
+            HandPose,
+            KeypointGesture,
+            FallDetector,
             ImageClassifier,
             GatedRecurrentUnit,
             MatchboxNet,

@@ -21,6 +21,7 @@ fn every_learner_keeps_its_promises() {
         let Some(model) = models.get(entry.spec.name) else { continue };
         let calls = match entry.ports[0].value_type {
             ValueType::Observation => observations(&model),
+            ValueType::Vector => vectors(&model),
             kind => calls(kind, &models),
         };
         let options = CheckOptions { model: &model, scratch: &scratch, calls: &calls };
@@ -44,6 +45,17 @@ fn observations(model: &Path) -> Vec<Vec<(&'static str, Value)>> {
         opendr::rl::observation_from_numbers(&space, &numbers).unwrap().into()
     });
     stamped(ValueType::Observation, values)
+}
+
+/// Three vectors of the length that a model takes.
+fn vectors(model: &Path) -> Vec<Vec<(&'static str, Value)>> {
+    let model = Model::open(model).unwrap();
+    let size = model.manifest().inputs["vector"]["size"][0].as_u64().unwrap();
+    let vector = |scale: f32| {
+        let numbers: Vec<f32> = (0..size).map(|at| (scale * at as f32).sin()).collect();
+        opendr::data::Vector::from_data(numbers).unwrap().into()
+    };
+    stamped(ValueType::Vector, [0.3, 1.0, 2.5].map(vector))
 }
 
 /// Three different data of a type, each with a stamp.

@@ -1,15 +1,20 @@
 //! Perception learners: one folder per task, one file per learner.
 
 pub mod face_detection;
+pub mod fall_detection;
+pub mod gesture_recognition;
+pub mod hand_pose_estimation;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
 pub mod mfcc;
 pub mod object_detection_2d;
 pub mod pose_estimation;
+pub mod regions;
 pub mod speech_recognition;
 pub mod suppression;
 
 mod category_scores;
+mod frame_clock;
 #[cfg(feature = "training")]
 mod frozen_layers;
 #[cfg(feature = "training")]
@@ -20,3 +25,4 @@ mod overfit;
 mod picture_network;
 #[cfg(feature = "training")]
 mod trainable_weights;
+mod turned_square;

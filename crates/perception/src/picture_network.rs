@@ -1,10 +1,10 @@
 //! A network that takes one picture: fused pre-processing in front of a session.
 
-use opendr_engine::data::Image;
+use opendr_engine::data::{Image, ImageView, Layout};
 use opendr_engine::model::Model;
 use opendr_engine::{Device, Error, Pool, Result};
 use opendr_inference::{Session, TensorInfo, TensorView};
-use opendr_vision::{InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, Preprocess, Similarity};
 
 /// The file of the network in every container.
 const FILE: &str = "model.onnx";
@@ -23,14 +23,24 @@ impl PictureNetwork {
         device: Device,
         preprocess: impl FnOnce(&TensorInfo) -> Preprocess,
     ) -> Result<Self> {
-        let session = Session::open(&model.file(FILE)?, device)?;
+        Self::open_file(model, FILE, device, |input| Ok(preprocess(input)))
+    }
+
+    /// The same for the container's network called `file`, of which there are several.
+    pub fn open_file(
+        model: &Model,
+        file: &str,
+        device: Device,
+        preprocess: impl FnOnce(&TensorInfo) -> Result<Preprocess>,
+    ) -> Result<Self> {
+        let session = Session::open(&model.file(file)?, device)?;
         let [input] = session.inputs() else {
             return Err(Error::format(format!(
-                "{FILE} has {} inputs instead of one",
+                "{file} has {} inputs instead of one",
                 session.inputs().len()
             )));
         };
-        let preprocess = preprocess(input);
+        let preprocess = preprocess(input)?;
         Ok(Self { session, preprocess, inputs: Pool::default() })
     }
 
@@ -50,30 +60,56 @@ impl PictureNetwork {
         image: &Image,
         sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
     ) -> Result<()> {
-        self.run_through(&self.preprocess, image, sink)
+        self.run_through(&self.preprocess, image.view(), sink)
     }
 
     /// The same with an input of `width` x `height` pixels, for networks that take several sizes.
     pub fn run_sized(
         &self,
-        image: &Image,
+        image: ImageView<'_>,
         [width, height]: [usize; 2],
         sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
     ) -> Result<()> {
         self.run_through(&self.preprocess.with_size(width, height), image, sink)
     }
 
+    /// Runs on the part of a picture that `crop` shows.
+    pub fn run_crop(
+        &self,
+        image: &Image,
+        crop: &Similarity,
+        sink: impl FnMut(&[TensorView<'_>]) -> Result<()>,
+    ) -> Result<()> {
+        let (shape, count) = (self.preprocess.shape(), self.preprocess.len());
+        let mut input = self.inputs.take();
+        input.resize(count, 0.0);
+        self.preprocess.warp_into(image.view(), crop, &mut input)?;
+        self.session.run(&[TensorView::new(&shape, &input[..])?], sink)
+    }
+
     fn run_through(
         &self,
         preprocess: &Preprocess,
-        image: &Image,
+        image: ImageView<'_>,
         mut sink: impl FnMut(&[TensorView<'_>], &InputGeometry) -> Result<()>,
     ) -> Result<()> {
         let (shape, count) = (preprocess.shape(), preprocess.len());
         let mut input = self.inputs.take();
         input.resize(count, 0.0);
-        let geometry = preprocess.run_into(image.view(), &mut input)?;
+        let geometry = preprocess.run_into(image, &mut input)?;
         let input = TensorView::new(&shape, &input[..])?;
         self.session.run(&[input], |outputs| sink(outputs, &geometry))
+    }
+}
+
+/// Size and layout of an input of pictures: `[1, 3, height, width]` or `[1, height, width, 3]`.
+///
+/// # Errors
+/// `Format` when it is none, or leaves its size open.
+pub(crate) fn input_of(input: &TensorInfo) -> Result<Preprocess> {
+    match input.dims[..] {
+        [_, Some(3), Some(height), Some(width)] => Ok(Preprocess::new(width, height)),
+        [_, Some(height), Some(width), Some(3)] => Ok(Preprocess::new(width, height).layout(Layout::Hwc)),
+        _ => Err(Error::format(format!("{input} is no picture of a fixed size"))),
     }
 }

@@ -1,5 +1,7 @@
 //! Key points of persons in a picture.
 
+mod blazepose;
+mod high_resolution_pose_estimation;
 #[cfg(feature = "training")]
 mod joints;
 mod lightweight_open_pose;
@@ -10,6 +12,11 @@ mod part_tree;
 mod pose_tracks;
 mod posenet;
 
+pub use blazepose::{BlazePose, BlazePoseParams, BlazePoseState};
+pub use high_resolution_pose_estimation::{
+    HighResolutionPoseEstimation, HighResolutionPoseEstimationParams, HighResolutionPoseEstimationState,
+    RegionMethod,
+};
 #[cfg(feature = "training")]
 pub use lightweight_open_pose::LightweightOpenPoseFitParams;
 pub use lightweight_open_pose::{LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState};

@@ -7,6 +7,7 @@ use opendr_engine::Header;
 use opendr_engine::target::{Keypoint, Pose};
 
 use super::one_euro::{OneEuro, Smoothed};
+use crate::frame_clock::FrameClock;
 
 const JOINTS: usize = 18;
 
@@ -20,10 +21,6 @@ const FALLOFFS: [f32; JOINTS] = [
 const MIN_SIMILARITY: f32 = 0.2;
 /// Frames after which a person that is away is forgotten.
 const PATIENCE: u32 = 10;
-/// Seconds from frame to frame where they have no time stamps.
-const FRAME: f32 = 1.0 / 30.0;
-/// Frames are taken to be at least this far apart: stamps may be wrong.
-const SHORTEST_FRAME: f32 = 1e-3;
 
 const FILTER: OneEuro = OneEuro { min_cutoff: 2.0, beta: 6.0, speed_cutoff: 1.0 };
 
@@ -32,7 +29,7 @@ const FILTER: OneEuro = OneEuro { min_cutoff: 2.0, beta: 6.0, speed_cutoff: 1.0 
 pub(crate) struct PoseTracks {
     tracks: Vec<Track>,
     next_id: i64,
-    stamp_ns: Option<i64>,
+    clock: FrameClock,
     /// Track, pose and their similarity; work memory.
     pairs: Vec<(usize, usize, f32)>,
 }
@@ -51,7 +48,7 @@ struct Track {
 impl PoseTracks {
     /// Gives every pose of a frame its identity and, if `smooth`, calms its joints.
     pub(crate) fn update(&mut self, header: &Header, poses: &mut [Pose], smooth: bool) {
-        let seconds = self.seconds_to(header.stamp_ns);
+        let seconds = self.clock.seconds_to(header);
         self.tracks.iter_mut().for_each(|track| (track.is_taken, track.away) = (false, track.away + 1));
         poses.iter_mut().for_each(|pose| pose.id = None);
         self.pair(poses);
@@ -69,12 +66,6 @@ impl PoseTracks {
             track.follow(pose, seconds, smooth);
             self.tracks.push(track);
         }
-    }
-
-    fn seconds_to(&mut self, stamp_ns: Option<i64>) -> f32 {
-        let before = std::mem::replace(&mut self.stamp_ns, stamp_ns);
-        let passed = before.zip(stamp_ns).map(|(before, now)| now.saturating_sub(before) as f32 * 1e-9);
-        passed.map_or(FRAME, |passed| passed.max(SHORTEST_FRAME))
     }
 
     /// All pairs that may be the same person, the most similar first.

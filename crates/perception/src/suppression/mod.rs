@@ -4,6 +4,9 @@ mod cluster;
 mod fast;
 mod hard;
 mod soft;
+mod weighted;
+
+pub use weighted::merge_overlapping;
 
 /// A box before suppression.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -21,7 +21,7 @@ mod tests;
 #[cfg(feature = "training")]
 pub use fit::LightweightOpenPoseFitParams;
 use input::InputSize;
-use opendr_engine::data::Image;
+use opendr_engine::data::{Image, ImageView};
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
@@ -136,27 +136,54 @@ impl Learner for LightweightOpenPose {
         image: &Image,
         poses: &mut PoseList,
     ) -> Result<()> {
-        let Scratch { memory, persons } = &mut *self.scratch.take();
-        let LightweightOpenPoseParams { keypoint_threshold, upsample_ratio, track, smooth, .. } = self.params;
-        let how =
-            PartAffinity { peak_threshold: keypoint_threshold, upsample_ratio, ..PartAffinity::default() };
-        let size = self.size.of_picture([image.width(), image.height()], self.params.base_height);
+        self.follow_with(&self.params, state, image, poses)
+    }
+}
+
+impl LightweightOpenPose {
+    /// As [`Learner::infer_into`], by parameters that are not this learner's own.
+    pub(crate) fn follow_with(
+        &self,
+        params: &LightweightOpenPoseParams,
+        state: &mut LightweightOpenPoseState,
+        image: &Image,
+        poses: &mut PoseList,
+    ) -> Result<()> {
+        let LightweightOpenPoseParams { base_height, track, smooth, .. } = *params;
         poses.poses.clear();
-        self.network.run_sized(image, size, |outputs, geometry| {
-            how.decode(&self.maps(outputs)?, memory, persons);
-            let sure = persons.iter().filter(|person| person.score >= self.params.threshold);
-            poses.poses.extend(sure.map(|person| pose_in_picture(person, geometry)));
-            Ok(())
-        })?;
+        self.find_with(params, image.view(), base_height, &mut poses.poses, |_| {})?;
         match track {
             true => state.tracks.update(&image.header, &mut poses.poses, smooth),
             false => state.tracks = PoseTracks::default(),
         }
         Ok(())
     }
-}
 
-impl LightweightOpenPose {
+    /// Adds the persons in a view to `poses`, in its pixels, by the thresholds of `params`; the network sees it
+    /// `base_height` pixels high. `see` sees the maps that they were found in.
+    pub(super) fn find_with(
+        &self,
+        params: &LightweightOpenPoseParams,
+        view: ImageView<'_>,
+        base_height: usize,
+        poses: &mut Vec<Pose>,
+        mut see: impl FnMut(&PartMaps<'_>),
+    ) -> Result<()> {
+        let Scratch { memory, persons } = &mut *self.scratch.take();
+        let LightweightOpenPoseParams { keypoint_threshold, upsample_ratio, threshold, .. } = *params;
+        let how =
+            PartAffinity { peak_threshold: keypoint_threshold, upsample_ratio, ..PartAffinity::default() };
+        let size = self.size.of_picture([view.width(), view.height()], base_height);
+        self.network.run_sized(view, size, |outputs, geometry| {
+            let maps = self.maps(outputs)?;
+            see(&maps);
+            how.decode(&maps, memory, persons);
+            let sure = persons.iter().filter(|person| person.score >= threshold);
+            poses.extend(sure.map(|person| pose_in_picture(person, geometry)));
+            Ok(())
+        })
+    }
+
     fn maps<'a>(&self, outputs: &[TensorView<'a>]) -> Result<PartMaps<'a>> {
         let [1, _, rows, columns] = *outputs[self.heat].shape() else {
             let shape = outputs[self.heat].shape();

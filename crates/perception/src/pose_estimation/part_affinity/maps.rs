@@ -70,6 +70,13 @@ impl<'a> PartMaps<'a> {
         self.grid
     }
 
+    /// The highest of a cell's heat maps, the background left out.
+    pub fn highest(&self, column: usize, row: usize) -> f32 {
+        let cell = row * self.grid.columns + column;
+        let joints = self.heat.chunks_exact(self.grid.cells()).take(JOINTS);
+        joints.filter_map(|map| map.get(cell)).copied().fold(f32::NEG_INFINITY, f32::max)
+    }
+
     pub(super) fn heat(&self, joint: usize) -> Plane<'a> {
         self.plane(self.heat, joint)
     }

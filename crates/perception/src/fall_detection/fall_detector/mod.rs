@@ -1,0 +1,128 @@
+//! Falls by a rule on poses, over time.
+//!
+//! After OpenDR's learner of this name: a person has fallen when the body lies ([`Posture`]). A pose estimator finds and
+//! follows the persons; the first verdict on a person stands at once, and another takes its place when it has held for
+//! `hold` seconds, so that one wrong pose raises no alarm and ends none.
+
+mod verdicts;
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec, Targets};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, PoseList};
+use opendr_engine::{Device, Result, Task};
+
+use self::verdicts::Verdicts;
+use super::Posture;
+use crate::pose_estimation::{LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct FallDetectorParams {
+    /// A posture takes the place of another when it was seen for so long.
+    #[param(default = 0.5, range = 0.0..=60.0, unit = "s", live)]
+    pub hold: f32,
+    /// Persons below this score are dropped.
+    #[param(default = 0.1, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Joints below this score are missing.
+    #[param(default = 0.1, range = 0.01..=1.0, live)]
+    pub keypoint_threshold: f32,
+    /// Height of the pose network's input. Larger finds smaller persons.
+    #[param(default = 368, range = 64..=2048, unit = "px", live)]
+    pub base_height: usize,
+}
+
+/// What is told of a picture.
+#[derive(Default, Targets)]
+pub struct FallDetectorTargets {
+    /// A box around each person: class 0 where nothing can be told, 1 for a fall, 2 for none.
+    pub falls: BoundingBoxList,
+    /// The persons, in the order of the boxes.
+    pub poses: PoseList,
+}
+
+/// A loaded fall detector.
+pub struct FallDetector {
+    params: FallDetectorParams,
+    poses: LightweightOpenPose,
+    classes: Classes,
+}
+
+/// What a stream remembers: its persons and the verdicts on them.
+#[derive(Default)]
+pub struct FallDetectorState {
+    poses: LightweightOpenPoseState,
+    verdicts: Verdicts,
+}
+
+impl Learner for FallDetector {
+    const SPEC: Spec = Spec::new("fall_detector", Task::FallDetection)
+        .class("FallDetectorLearner")
+        .about("Tells which persons have fallen, by a rule on their poses over time.")
+        .without_effect(&[("pose_estimator", "the model carries its own")]);
+    type Params = FallDetectorParams;
+    type Input<'a> = &'a Image;
+    type Target = FallDetectorTargets;
+    type State = FallDetectorState;
+
+    fn load(model: &Model, params: FallDetectorParams, device: Device) -> Result<Self> {
+        let poses = LightweightOpenPose::load(model, network_params(&params), device)?;
+        let postures = [Posture::Unknown, Posture::Fallen, Posture::Upright];
+        let classes = postures.iter().map(|posture| posture.name()).collect();
+        Ok(Self { params, poses, classes })
+    }
+
+    fn params(&self) -> &FallDetectorParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut FallDetectorParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(
+        &self,
+        state: &mut FallDetectorState,
+        image: &Image,
+        target: &mut FallDetectorTargets,
+    ) -> Result<()> {
+        let FallDetectorTargets { falls, poses } = target;
+        self.poses.follow_with(&network_params(&self.params), &mut state.poses, image, poses)?;
+        state.verdicts.begin_frame(&image.header);
+        falls.boxes.clear();
+        falls.classes.clone_from(&self.classes);
+        for pose in &poses.poses {
+            let seen = Posture::of(pose);
+            let posture = pose.id.map_or(seen, |id| state.verdicts.judge(id, seen, self.params.hold));
+            let [left, top, width, height] = pose.bounding_box().unwrap_or_default();
+            let person = BoundingBox::new(class_of(posture), left, top, width, height, pose.confidence);
+            falls.boxes.push(person);
+        }
+        state.verdicts.end_frame();
+        Ok(())
+    }
+}
+
+fn class_of(posture: Posture) -> i64 {
+    match posture {
+        Posture::Unknown => 0,
+        Posture::Fallen => 1,
+        Posture::Upright => 2,
+    }
+}
+
+/// What the pose network is told.
+fn network_params(params: &FallDetectorParams) -> LightweightOpenPoseParams {
+    LightweightOpenPoseParams {
+        threshold: params.threshold,
+        keypoint_threshold: params.keypoint_threshold,
+        base_height: params.base_height,
+        ..LightweightOpenPoseParams::default()
+    }
+}

@@ -1,0 +1,7 @@
+//! Whether persons have fallen.
+
+mod fall_detector;
+mod posture;
+
+pub use fall_detector::{FallDetector, FallDetectorParams, FallDetectorState, FallDetectorTargets};
+pub use posture::Posture;

@@ -1,0 +1,160 @@
+//! Lying or not: a rule on one pose.
+
+use opendr_engine::target::{Keypoint, Pose};
+
+/// How a person is held, as far as the joints tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub enum Posture {
+    /// No two joints that lie above each other in a person who stands are there.
+    #[default]
+    Unknown,
+    /// On the ground.
+    Fallen,
+    /// Standing, sitting, bending.
+    Upright,
+}
+
+/// Degrees from the vertical beyond which a part of the body lies; those of OpenDR's rule.
+const TORSO: f32 = 45.0;
+const THIGHS: f32 = 60.0;
+const CALVES: f32 = 70.0;
+
+impl Posture {
+    /// The posture of a person, by the names of the joints: any skeleton that has shoulders, hips, knees and ankles.
+    ///
+    /// A person has fallen when the torso lies, where it is seen, and more than half of torso, thighs and calves do.
+    /// Who bends over has a torso that lies on legs that stand; who sits has a torso that stands.
+    pub fn of(pose: &Pose) -> Self {
+        let middle = |names: &[&str]| middle_of(pose, names);
+        let neck = middle(&["neck"]).or_else(|| middle(&["r_sho", "l_sho"]));
+        let hips = middle(&["r_hip", "l_hip"]);
+        let knees = middle(&["r_knee", "l_knee"]);
+        let ankles = middle(&["r_ank", "l_ank"]);
+        let lies = |upper: Option<[f32; 2]>, lower: Option<[f32; 2]>, limit: f32| {
+            let angle = degrees_from_vertical(upper?, lower?)?;
+            Some(angle > limit)
+        };
+        let torso = lies(neck, hips, TORSO);
+        let parts = [torso, lies(hips, knees, THIGHS), lies(knees, ankles, CALVES)];
+        let seen = parts.iter().flatten().count();
+        let lying = parts.iter().flatten().filter(|lies| **lies).count();
+        match (seen, torso) {
+            (0, _) => Self::Unknown,
+            (_, Some(false)) => Self::Upright,
+            _ if 2 * lying > seen => Self::Fallen,
+            _ => Self::Upright,
+        }
+    }
+
+    /// OpenDR's words: nothing can be told, a fall, or none.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Unknown => "unknown",
+            Self::Fallen => "fallen",
+            Self::Upright => "standing",
+        }
+    }
+}
+
+/// The mean of the joints that were found.
+fn middle_of(pose: &Pose, names: &[&str]) -> Option<[f32; 2]> {
+    let found = names.iter().filter_map(|name| pose.keypoint(name)).filter(|joint| is_usable(joint));
+    let (sum, count) =
+        found.fold(([0.0; 2], 0), |([x, y], count), joint| ([x + joint.x, y + joint.y], count + 1));
+    (count > 0).then(|| sum.map(|sum| sum / count as f32))
+}
+
+fn is_usable(joint: &Keypoint) -> bool {
+    joint.is_found() && joint.x.is_finite() && joint.y.is_finite()
+}
+
+/// 0 where `lower` is right below `upper`, 180 where it is above; `None` where both are one point.
+fn degrees_from_vertical(upper: [f32; 2], lower: [f32; 2]) -> Option<f32> {
+    let (across, down) = (lower[0] - upper[0], lower[1] - upper[1]);
+    (across != 0.0 || down != 0.0).then(|| across.abs().atan2(down).to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::target::Skeleton;
+
+    use super::*;
+
+    /// A person with the joints at the places given.
+    fn person(joints: &[(&str, [f32; 2])]) -> Pose {
+        let mut pose = Pose { skeleton: Skeleton::Opendr18, ..Pose::default() };
+        pose.keypoints = [Keypoint::MISSING; 18].into();
+        for (name, [x, y]) in joints {
+            let joint = pose.skeleton.joint(name).unwrap();
+            pose.keypoints[joint] = Keypoint { x: *x, y: *y, confidence: 0.9 };
+        }
+        pose
+    }
+
+    #[test]
+    fn postures() {
+        let standing = [
+            ("neck", [50.0, 10.0]),
+            ("r_hip", [48.0, 50.0]),
+            ("r_knee", [49.0, 80.0]),
+            ("r_ank", [50.0, 99.0]),
+        ];
+        let lying = [
+            ("neck", [10.0, 90.0]),
+            ("r_hip", [50.0, 92.0]),
+            ("l_knee", [80.0, 91.0]),
+            ("r_ank", [99.0, 95.0]),
+        ];
+        let sitting = [
+            ("neck", [50.0, 10.0]),
+            ("r_hip", [50.0, 50.0]),
+            ("r_knee", [90.0, 52.0]),
+            ("r_ank", [90.0, 90.0]),
+        ];
+        let bending = [
+            ("neck", [10.0, 50.0]),
+            ("r_hip", [50.0, 50.0]),
+            ("r_knee", [50.0, 75.0]),
+            ("r_ank", [50.0, 99.0]),
+        ];
+        let on_the_floor = [
+            ("neck", [50.0, 50.0]),
+            ("r_hip", [50.0, 90.0]),
+            ("r_knee", [75.0, 91.0]),
+            ("r_ank", [99.0, 92.0]),
+        ];
+        assert_eq!(Posture::of(&person(&standing)), Posture::Upright);
+        assert_eq!(Posture::of(&person(&lying)), Posture::Fallen);
+        assert_eq!(Posture::of(&person(&sitting)), Posture::Upright);
+        assert_eq!(Posture::of(&person(&bending)), Posture::Upright);
+        assert_eq!(Posture::of(&person(&on_the_floor)), Posture::Upright);
+        // What is not seen does not count.
+        assert_eq!(Posture::of(&person(&lying[..2])), Posture::Fallen);
+        assert_eq!(Posture::of(&person(&lying[2..])), Posture::Fallen);
+        assert_eq!(Posture::of(&person(&standing[1..3])), Posture::Upright);
+        assert_eq!(Posture::of(&person(&standing[..1])), Posture::Unknown);
+        assert_eq!(Posture::of(&person(&[])), Posture::Unknown);
+        assert_eq!(Posture::of(&Pose::default()), Posture::Unknown);
+        // On one's head: nothing hangs as it should.
+        let turned = standing.map(|(name, [x, y])| (name, [x, 100.0 - y]));
+        assert_eq!(Posture::of(&person(&turned)), Posture::Fallen);
+        let broken = [("neck", [f32::NAN, 1.0]), ("r_hip", [2.0, f32::INFINITY]), ("r_knee", [1.0, 1.0])];
+        assert_eq!(Posture::of(&person(&broken)), Posture::Unknown);
+        let same = [("neck", [5.0, 5.0]), ("r_hip", [5.0, 5.0])];
+        assert_eq!(Posture::of(&person(&same)), Posture::Unknown);
+    }
+
+    #[test]
+    fn shoulders_stand_for_a_neck() {
+        let mut pose = Pose { skeleton: Skeleton::Coco17, ..Pose::default() };
+        pose.keypoints = vec![Keypoint::MISSING; 17].into();
+        let mut put = |name: &str, x: f32, y: f32| {
+            let joint = pose.skeleton.joint(name).unwrap();
+            pose.keypoints[joint] = Keypoint { x, y, confidence: 0.9 };
+        };
+        put("l_sho", 10.0, 50.0);
+        put("r_sho", 10.0, 60.0);
+        put("l_hip", 60.0, 57.0);
+        assert_eq!(Posture::of(&pose), Posture::Fallen);
+    }
+}

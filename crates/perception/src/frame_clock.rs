@@ -1,0 +1,24 @@
+//! Seconds from frame to frame of a stream.
+
+use opendr_engine::Header;
+
+/// Seconds from frame to frame where they have no time stamps.
+const FRAME: f32 = 1.0 / 30.0;
+/// Frames are taken to be at least this far apart: stamps may be wrong.
+const SHORTEST_FRAME: f32 = 1e-3;
+
+/// Remembers the stamp of the frame before.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct FrameClock {
+    stamp_ns: Option<i64>,
+}
+
+impl FrameClock {
+    /// Seconds since the frame before.
+    pub fn seconds_to(&mut self, header: &Header) -> f32 {
+        let before = std::mem::replace(&mut self.stamp_ns, header.stamp_ns);
+        let passed =
+            before.zip(header.stamp_ns).map(|(before, now)| now.saturating_sub(before) as f32 * 1e-9);
+        passed.map_or(FRAME, |passed| passed.max(SHORTEST_FRAME))
+    }
+}

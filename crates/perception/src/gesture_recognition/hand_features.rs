@@ -1,0 +1,86 @@
+//! Hands and paths of finger tips as the numbers that gesture networks take.
+//!
+//! The recipe of the rows of Kazuhito Takahashi's hand-gesture-recognition-using-mediapipe (Apache-2.0).
+
+use opendr_engine::target::Pose;
+
+/// Joints of a hand.
+const JOINTS: usize = 21;
+
+/// x and y of each of 21 joints, counted from the wrist, in shares of the longest of these ways: -1..=1, 42 numbers.
+/// `None` where the pose has other joints, one is not finite, or all are one point.
+pub fn features_of_hand(hand: &Pose) -> Option<[f32; 2 * JOINTS]> {
+    let points = &hand.keypoints[..];
+    if points.len() != JOINTS {
+        return None;
+    }
+    let wrist = points.first()?;
+    let mut features = [0.0; 2 * JOINTS];
+    for (pair, point) in features.as_chunks_mut::<2>().0.iter_mut().zip(points) {
+        *pair = [point.x - wrist.x, point.y - wrist.y];
+    }
+    let longest = features.iter().fold(0.0f32, |most, part| most.max(part.abs()));
+    if !features.iter().all(|part| part.is_finite()) || longest == 0.0 {
+        return None;
+    }
+    features.iter_mut().for_each(|part| *part /= longest);
+    Some(features)
+}
+
+/// x and y of each point of a path, counted from its first, in shares of the picture's width and height; `out` has two
+/// numbers a point. `false` where there are not as many points, or one is not finite.
+pub fn features_of_path(
+    points: impl ExactSizeIterator<Item = [f32; 2]>,
+    [width, height]: [usize; 2],
+    out: &mut [f32],
+) -> bool {
+    if 2 * points.len() != out.len() || width == 0 || height == 0 {
+        return false;
+    }
+    let mut first = None;
+    for (pair, [x, y]) in out.as_chunks_mut::<2>().0.iter_mut().zip(points) {
+        let [x0, y0] = *first.get_or_insert([x, y]);
+        *pair = [(x - x0) / width as f32, (y - y0) / height as f32];
+    }
+    out.iter().all(|part| part.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::target::{Keypoint, Skeleton};
+
+    use super::*;
+
+    #[test]
+    fn place_and_size_do_not_matter() {
+        let hand = |scale: f32, left: f32| Pose {
+            keypoints: (0..JOINTS)
+                .map(|at| Keypoint {
+                    x: left + scale * (at * 7 % 5) as f32,
+                    y: 9.0 - scale * (at % 4) as f32,
+                    confidence: 1.0,
+                })
+                .collect(),
+            skeleton: Skeleton::LeftHand21,
+            ..Pose::default()
+        };
+        let features = features_of_hand(&hand(1.0, 5.0)).unwrap();
+        assert_eq!(&features[..4], &[0.0, 0.0, 0.5, -0.25]);
+        let larger = features_of_hand(&hand(8.0, 300.0)).unwrap();
+        assert!(features.iter().zip(larger).all(|(a, b)| (a - b).abs() < 1e-5));
+        assert!(features_of_hand(&hand(0.0, 5.0)).is_none());
+        assert!(features_of_hand(&hand(f32::NAN, 5.0)).is_none());
+        assert!(features_of_hand(&Pose::default()).is_none());
+    }
+
+    #[test]
+    fn paths_begin_at_nothing() {
+        let path = [[10.0, 10.0], [20.0, 5.0]];
+        let mut out = [1.0; 4];
+        assert!(features_of_path(path.into_iter(), [100, 50], &mut out));
+        assert_eq!(out, [0.0, 0.0, 0.1, -0.1]);
+        assert!(!features_of_path(path.into_iter(), [100, 50], &mut [0.0; 6]));
+        assert!(!features_of_path(path.into_iter(), [0, 50], &mut out));
+        assert!(!features_of_path([[f32::NAN, 0.0], [1.0, 1.0]].into_iter(), [100, 50], &mut out));
+    }
+}

@@ -1,0 +1,48 @@
+//! The network as it is trained.
+
+use burn::module::Module;
+use burn::nn::{Dropout, DropoutConfig, Linear, LinearConfig};
+use burn::tensor::activation::relu;
+use burn::tensor::{Device, Tensor};
+
+/// Sizes of the network.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct NetworkSizes {
+    /// Numbers in a row.
+    pub numbers: usize,
+    /// Classes.
+    pub classes: usize,
+    /// Features of the first layer.
+    pub hidden: usize,
+    /// Share of features that are left out in training.
+    pub dropout: f64,
+}
+
+/// `[batch, numbers]` to logits `[batch, classes]`.
+#[derive(Module, Debug)]
+pub struct KeypointGestureNetwork {
+    first: Linear,
+    second: Linear,
+    dropout: Dropout,
+    classifier: Linear,
+}
+
+impl KeypointGestureNetwork {
+    /// A network with weights as training begins with.
+    pub(super) fn new(sizes: &NetworkSizes, device: &Device) -> Self {
+        let NetworkSizes { numbers, classes, hidden, dropout } = *sizes;
+        let half = hidden.div_ceil(2);
+        Self {
+            first: LinearConfig::new(numbers, hidden).init(device),
+            second: LinearConfig::new(hidden, half).init(device),
+            dropout: DropoutConfig::new(dropout).init(),
+            classifier: LinearConfig::new(half, classes).init(device),
+        }
+    }
+
+    /// Logits `[batch, classes]` of rows `[batch, numbers]`.
+    pub fn forward(&self, points: Tensor<2>) -> Tensor<2> {
+        let first = self.dropout.forward(relu(self.first.forward(points)));
+        self.classifier.forward(relu(self.second.forward(first)))
+    }
+}
