@@ -1,9 +1,11 @@
 //! Model cards: what a learner's models are, under which terms, and where they come from.
 
+use std::collections::BTreeMap;
+
 use opendr_engine::model::{Licence, Sha256};
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result, Task};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
 use crate::check::check_card;
@@ -79,9 +81,12 @@ pub struct Variant {
     pub speed: Option<Speed>,
     /// The files to get.
     pub files: Vec<CardFile>,
-    /// How the model's one file is made from them; absent when they are the model.
+    /// Models of the zoo that it carries as parts (`Model::part`): the name of the part, and the item.
     #[serde(default)]
-    pub import: Option<Import>,
+    pub parts: BTreeMap<String, String>,
+    /// How the model's files are made from them, one network each; empty when they are the model.
+    #[serde(default, deserialize_with = "one_or_several")]
+    pub import: Vec<Import>,
     /// Where the files are, in the order in which to try.
     pub sources: Vec<Source>,
 }
@@ -112,13 +117,16 @@ pub struct CardFile {
     pub sha256: Sha256,
 }
 
-/// How files of another format become one ONNX file.
+/// How files of another format become one ONNX file; a table in the card, or a list of tables.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "format", rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Import {
     /// A TensorFlow.js graph model: the first of the files is its JSON, the others are its weights in the JSON's order.
     Tfjs {
+        /// Which of the card's files it is made of; all when empty.
+        #[serde(default)]
+        files: Vec<String>,
         /// Name of the file that is made.
         #[serde(default = "model_onnx")]
         output: String,
@@ -129,6 +137,36 @@ pub enum Import {
         #[serde(default)]
         outputs: Vec<String>,
     },
+}
+
+impl Import {
+    /// Name of the file that is made.
+    pub fn output(&self) -> &str {
+        let Self::Tfjs { output, .. } = self;
+        output
+    }
+
+    /// Which of `files` it is made of, in the order in which it names them.
+    pub(crate) fn files_of<'a>(&self, files: &'a [CardFile]) -> Vec<&'a CardFile> {
+        let Self::Tfjs { files: names, .. } = self;
+        match names.is_empty() {
+            true => files.iter().collect(),
+            false => names.iter().filter_map(|name| files.iter().find(|file| file.name == *name)).collect(),
+        }
+    }
+}
+
+fn one_or_several<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Import>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum OneOrSeveral {
+        One(Import),
+        Several(Vec<Import>),
+    }
+    Ok(match OneOrSeveral::deserialize(deserializer)? {
+        OneOrSeveral::One(import) => vec![import],
+        OneOrSeveral::Several(imports) => imports,
+    })
 }
 
 fn model_onnx() -> String {

@@ -8,17 +8,16 @@ use crate::card::Import;
 /// Changes whenever the importer's sources do, so that no stale conversion is ever used.
 pub(crate) const IMPORTER: &str = env!("OPENDR_IMPORTER");
 
-/// The name of the file that is made and its bytes; `files` are those of the card, in its order.
-pub(crate) fn imported(import: &Import, files: &[Vec<u8>]) -> Result<(String, Vec<u8>)> {
-    let Import::Tfjs { output, image_size, outputs } = import;
+/// The bytes of the file that is made; `files` are those that it is made of, in its order.
+pub(crate) fn imported(import: &Import, files: &[&[u8]]) -> Result<Vec<u8>> {
+    let Import::Tfjs { image_size, outputs, .. } = import;
     let Some((json, weights)) = files.split_first() else {
         return Err(Error::format("a TensorFlow.js model without files"));
     };
-    let weights: Vec<&[u8]> = weights.iter().map(Vec::as_slice).collect();
     let named = tfjs_weight_files(json)?.len();
     if named != weights.len() {
         return Err(Error::format(format!("the model has {named} weight files, the card {}", weights.len())));
     }
     let options = ImportOptions { image_size: *image_size, outputs: outputs.clone() };
-    Ok((output.clone(), onnx_from_tfjs(json, &weights, &options)?))
+    onnx_from_tfjs(json, weights, &options)
 }
