@@ -111,6 +111,12 @@ typedef enum opendr_skeleton {
     OPENDR_OPENDR18 = 0,
     // COCO's 17 joints of a person.
     OPENDR_COCO17 = 1,
+    // BlazePose's 33 points of a person.
+    OPENDR_BLAZEPOSE33 = 2,
+    // MediaPipe's 21 joints of a left hand.
+    OPENDR_LEFT_HAND21 = 3,
+    // MediaPipe's 21 joints of a right hand.
+    OPENDR_RIGHT_HAND21 = 4,
 } opendr_skeleton;
 
 // A world to act in; threads take turns.

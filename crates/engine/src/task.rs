@@ -49,6 +49,12 @@ tasks! {
     ImageClassification = "image_classification";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
+    /// Key points of hands in a picture.
+    HandPoseEstimation = "hand_pose_estimation";
+    /// What hands say.
+    GestureRecognition = "gesture_recognition";
+    /// Whether persons have fallen.
+    FallDetection = "fall_detection";
     /// Whether a heart signal is normal.
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.

@@ -9,6 +9,7 @@ use opendr_engine::{Header, Value, ValueType};
 use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
+use proptest::sample;
 
 const DOCUMENT: &str = include_str!("../../../docs/json.md");
 
@@ -112,7 +113,7 @@ fn bounding_box_3d() -> impl Strategy<Value = BoundingBox3D> {
 fn pose() -> impl Strategy<Value = Pose> {
     let keypoint =
         [number(), number(), number()].prop_map(|[x, y, confidence]| Keypoint { x, y, confidence });
-    let skeleton = prop_oneof![Just(Skeleton::Opendr18), Just(Skeleton::Coco17)];
+    let skeleton = sample::select(Skeleton::ALL);
     let region = option::of(bounding_box().prop_map(Box::new));
     (vec(keypoint, 0..19), number(), option::of(any::<i64>()), skeleton, region).prop_map(
         |(keypoints, confidence, id, skeleton, region)| Pose {

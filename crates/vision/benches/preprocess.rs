@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use opendr_engine::data::{Image, Layout, PixelFormat};
-use opendr_vision::{Anchor, ChannelOrder, InputSample, Preprocess};
+use opendr_vision::{Anchor, ChannelOrder, InputSample, Preprocess, Similarity};
 
 fn frame(width: usize, height: usize, layout: Layout) -> Image {
     let samples: Vec<u8> =
@@ -51,5 +51,17 @@ fn preprocess(criterion: &mut Criterion) {
     case::<f32>(criterion, "centernet_1080p_one_thread", &centernet.threads(1), &camera);
 }
 
-criterion_group!(benches, preprocess);
+fn warp(criterion: &mut Criterion) {
+    let camera = frame(1920, 1080, Layout::Hwc);
+    let hand = Preprocess::new(224, 224).normalise([0.0; 3], [255.0; 3]).threads(1);
+    let mut out = vec![0f32; hand.len()];
+    for (name, angle) in [("warp_224_upright", 0.0), ("warp_224_turned", 0.7)] {
+        let crop = Similarity::rotated_square([900.0, 500.0], 400.0, angle, 224);
+        criterion.bench_function(name, |bencher| {
+            bencher.iter(|| hand.warp_into(black_box(camera.view()), black_box(&crop), black_box(&mut out)));
+        });
+    }
+}
+
+criterion_group!(benches, preprocess, warp);
 criterion_main!(benches);

@@ -19,6 +19,12 @@ pub enum opendr_skeleton {
     OPENDR_OPENDR18 = 0,
     /// COCO's 17 joints of a person.
     OPENDR_COCO17 = 1,
+    /// BlazePose's 33 points of a person.
+    OPENDR_BLAZEPOSE33 = 2,
+    /// MediaPipe's 21 joints of a left hand.
+    OPENDR_LEFT_HAND21 = 3,
+    /// MediaPipe's 21 joints of a right hand.
+    OPENDR_RIGHT_HAND21 = 4,
 }
 
 /// A point found in a picture, pixels; (-1, -1) means not found.
@@ -96,6 +102,9 @@ impl List for PoseList {
             confidence: item.confidence,
             skeleton: match item.skeleton {
                 Skeleton::Coco17 => opendr_skeleton::OPENDR_COCO17 as i32,
+                Skeleton::Blazepose33 => opendr_skeleton::OPENDR_BLAZEPOSE33 as i32,
+                Skeleton::LeftHand21 => opendr_skeleton::OPENDR_LEFT_HAND21 as i32,
+                Skeleton::RightHand21 => opendr_skeleton::OPENDR_RIGHT_HAND21 as i32,
                 _ => opendr_skeleton::OPENDR_OPENDR18 as i32,
             },
             id: item.id.unwrap_or(-1),
@@ -106,6 +115,9 @@ impl List for PoseList {
         let skeleton = match plain.skeleton {
             0 => Skeleton::Opendr18,
             1 => Skeleton::Coco17,
+            2 => Skeleton::Blazepose33,
+            3 => Skeleton::LeftHand21,
+            4 => Skeleton::RightHand21,
             other => {
                 return Err(Error::invalid_input(format!(
                     "skeleton is {other}; give one of opendr_skeleton"

@@ -53,7 +53,8 @@ impl Pose {
             write!(f, "#{id} ")?;
         }
         let found = self.keypoints.iter().filter(|keypoint| keypoint.is_found()).count();
-        write!(f, "person {:.2} with {found} of {} joints", self.confidence, self.keypoints.len())?;
+        let (body, joints) = (self.skeleton.body(), self.keypoints.len());
+        write!(f, "{body} {:.2} with {found} of {joints} joints", self.confidence)?;
         if let Some([left, top, width, height]) = self.bounding_box() {
             write!(f, " at left {left:.1} top {top:.1} width {width:.1} height {height:.1}")?;
         }

@@ -12,17 +12,94 @@ pub enum Skeleton {
     Opendr18,
     /// COCO's 17 joints of a person.
     Coco17,
+    /// BlazePose's 33 points of a person.
+    Blazepose33,
+    /// MediaPipe's 21 joints of a left hand: the wrist, then four of each finger from the palm to the tip.
+    LeftHand21,
+    /// The same of a right hand.
+    RightHand21,
 }
+
+/// The joints of a hand, and its bones.
+const HAND: &[&str] = &[
+    "wrist",
+    "thumb_cmc",
+    "thumb_mcp",
+    "thumb_ip",
+    "thumb_tip",
+    "index_mcp",
+    "index_pip",
+    "index_dip",
+    "index_tip",
+    "middle_mcp",
+    "middle_pip",
+    "middle_dip",
+    "middle_tip",
+    "ring_mcp",
+    "ring_pip",
+    "ring_dip",
+    "ring_tip",
+    "pinky_mcp",
+    "pinky_pip",
+    "pinky_dip",
+    "pinky_tip",
+];
+const HAND_BONES: &[[usize; 2]] = &[
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 4],
+    [0, 5],
+    [5, 6],
+    [6, 7],
+    [7, 8],
+    [5, 9],
+    [9, 10],
+    [10, 11],
+    [11, 12],
+    [9, 13],
+    [13, 14],
+    [14, 15],
+    [15, 16],
+    [13, 17],
+    [17, 18],
+    [18, 19],
+    [19, 20],
+    [0, 17],
+];
 
 impl Skeleton {
     /// Every skeleton.
-    pub const ALL: &'static [Self] = &[Self::Opendr18, Self::Coco17];
+    pub const ALL: &'static [Self] =
+        &[Self::Opendr18, Self::Coco17, Self::Blazepose33, Self::LeftHand21, Self::RightHand21];
 
     /// Its name, as JSON and messages write it.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Opendr18 => "opendr18",
             Self::Coco17 => "coco17",
+            Self::Blazepose33 => "blazepose33",
+            Self::LeftHand21 => "left_hand21",
+            Self::RightHand21 => "right_hand21",
+        }
+    }
+
+    /// What has these joints, in words.
+    pub const fn body(self) -> &'static str {
+        match self {
+            Self::LeftHand21 => "left hand",
+            Self::RightHand21 => "right hand",
+            _ => "person",
+        }
+    }
+
+    /// What a mirror shows: a left hand becomes a right one.
+    #[must_use]
+    pub const fn mirrored(self) -> Self {
+        match self {
+            Self::LeftHand21 => Self::RightHand21,
+            Self::RightHand21 => Self::LeftHand21,
+            other => other,
         }
     }
 
@@ -37,6 +114,42 @@ impl Skeleton {
                 "nose", "l_eye", "r_eye", "l_ear", "r_ear", "l_sho", "r_sho", "l_elb", "r_elb", "l_wri",
                 "r_wri", "l_hip", "r_hip", "l_knee", "r_knee", "l_ank", "r_ank",
             ],
+            Self::Blazepose33 => &[
+                "nose",
+                "l_eye_inner",
+                "l_eye",
+                "l_eye_outer",
+                "r_eye_inner",
+                "r_eye",
+                "r_eye_outer",
+                "l_ear",
+                "r_ear",
+                "l_mouth",
+                "r_mouth",
+                "l_sho",
+                "r_sho",
+                "l_elb",
+                "r_elb",
+                "l_wri",
+                "r_wri",
+                "l_pinky",
+                "r_pinky",
+                "l_index",
+                "r_index",
+                "l_thumb",
+                "r_thumb",
+                "l_hip",
+                "r_hip",
+                "l_knee",
+                "r_knee",
+                "l_ank",
+                "r_ank",
+                "l_heel",
+                "r_heel",
+                "l_foot",
+                "r_foot",
+            ],
+            Self::LeftHand21 | Self::RightHand21 => HAND,
         }
     }
 
@@ -81,6 +194,44 @@ impl Skeleton {
                 [1, 3],
                 [2, 4],
             ],
+            Self::Blazepose33 => &[
+                [0, 1],
+                [1, 2],
+                [2, 3],
+                [3, 7],
+                [0, 4],
+                [4, 5],
+                [5, 6],
+                [6, 8],
+                [9, 10],
+                [11, 12],
+                [11, 13],
+                [13, 15],
+                [15, 17],
+                [15, 19],
+                [15, 21],
+                [17, 19],
+                [12, 14],
+                [14, 16],
+                [16, 18],
+                [16, 20],
+                [16, 22],
+                [18, 20],
+                [11, 23],
+                [12, 24],
+                [23, 24],
+                [23, 25],
+                [24, 26],
+                [25, 27],
+                [26, 28],
+                [27, 29],
+                [28, 30],
+                [29, 31],
+                [30, 32],
+                [27, 31],
+                [28, 32],
+            ],
+            Self::LeftHand21 | Self::RightHand21 => HAND_BONES,
         }
     }
 
@@ -96,8 +247,10 @@ mod tests {
 
     #[test]
     fn bones_join_joints() {
-        for skeleton in [Skeleton::Opendr18, Skeleton::Coco17] {
+        for skeleton in Skeleton::ALL {
             let count = skeleton.joints().len();
+            let said: String = skeleton.name().chars().filter(char::is_ascii_digit).collect();
+            assert_eq!(said, count.to_string());
             assert!(skeleton.bones().iter().flatten().all(|joint| *joint < count));
         }
         assert_eq!(Skeleton::Opendr18.joint("l_ear"), Some(17));

@@ -1,9 +1,10 @@
-//! From a picture to a network's input in one pass: resize, letterbox, order of channels, normalisation, layout.
+//! From a picture to a network's input in one pass: resize, letterbox or turned crop, order of channels,
+//! normalisation, layout.
 //!
 //! # Dispatch
 //! Pictures of `u8` pixels whose 3 or 4 channels lie together run through AVX2 kernels where the processor has AVX2
 //! and FMA (asked at run time), else, and for all other pictures, through plain Rust. No code path is specific to
-//! other processors.
+//! other processors. Turned crops are plain Rust everywhere.
 
 mod band;
 mod geometry;
@@ -14,20 +15,23 @@ mod plan;
 mod sample;
 mod source;
 mod strided;
+mod warped;
 
 use std::sync::Arc;
 
 use opendr_engine::data::{ImageView, Layout};
 use opendr_engine::{Error, Result};
 
+use crate::similarity::Similarity;
 use crate::workers;
-use band::{Band, MAX_BANDS};
+use band::{Band, MAX_BANDS, Row};
 use geometry::Placement;
 pub use geometry::{Anchor, InputGeometry};
 use plan::{Plan, Plans, Sizes};
 pub use sample::InputSample;
 use source::Source;
 use strided::Finish;
+use warped::Line;
 
 /// Pixels below which waking another thread costs more than it helps.
 const PIXELS_ALONE: usize = 96 * 96;
@@ -51,6 +55,15 @@ impl ChannelOrder {
             Self::Grey => 1,
         }
     }
+}
+
+/// What a turned crop shows beside the picture.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Border {
+    /// A level, 0..=255, then normalised as the picture is (OpenCV's `BORDER_CONSTANT`).
+    Level(f32),
+    /// The picture's outermost pixels (OpenCV's `BORDER_REPLICATE`).
+    Repeat,
 }
 
 /// How pictures become the input of a network; built once a learner.
@@ -78,6 +91,7 @@ pub struct Preprocess {
     size: [usize; 2],
     /// Anchor and level of the padding; `None` stretches.
     letterbox: Option<(Anchor, f32)>,
+    border: Border,
     order: ChannelOrder,
     scale: [f32; 3],
     bias: [f32; 3],
@@ -92,6 +106,7 @@ impl Preprocess {
         Self {
             size: [width, height],
             letterbox: None,
+            border: Border::Level(0.0),
             order: ChannelOrder::Rgb,
             scale: [1.0; 3],
             bias: [0.0; 3],
@@ -111,6 +126,12 @@ impl Preprocess {
     #[must_use]
     pub fn stretch(self) -> Self {
         Self { letterbox: None, ..self }
+    }
+
+    /// What [`Preprocess::warp_into`] writes beside the picture; level 0 otherwise.
+    #[must_use]
+    pub fn border(self, border: Border) -> Self {
+        Self { border, ..self }
     }
 
     /// The channels of the input.
@@ -191,6 +212,65 @@ impl Preprocess {
         Ok(placement.geometry(source_size))
     }
 
+    /// Writes the input for the part of `image` that `crop` shows: bilinear, without antialiasing, from any strides,
+    /// in one pass. Order, normalisation, layout and border are those of `self`; a letterbox plays no part.
+    ///
+    /// ```
+    /// use opendr_engine::data::Image;
+    /// use opendr_vision::{Preprocess, Similarity};
+    ///
+    /// let frame = Image::from_rgb8(vec![128; 640 * 480 * 3], 640, 480)?;
+    /// let crop = Similarity::rotated_square([320.0, 240.0], 100.0, 0.5, 224);
+    /// let preprocess = Preprocess::new(224, 224).normalise([0.0; 3], [255.0; 3]);
+    /// let mut input = vec![0f32; preprocess.len()];
+    /// preprocess.warp_into(frame.view(), &crop, &mut input)?;
+    /// assert!((input[0] - 128.0 / 255.0).abs() < 1e-6);
+    /// # Ok::<(), opendr_engine::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// `InvalidInput` when `out` has not [`Preprocess::len`] samples, or when `crop` has numbers that are not finite, a
+    /// scale of 0, or lies more than 2^29 pixels away; `InvalidParam` when the input has no pixel.
+    pub fn warp_into<T: InputSample>(
+        &self,
+        image: ImageView<'_>,
+        crop: &Similarity,
+        out: &mut [T],
+    ) -> Result<()> {
+        if self.is_empty() || out.len() != self.len() {
+            return Err(self.misfit(out.len()));
+        }
+        let [first, right, down] = crop.fixed_point(self.size)?;
+        let source = Source::new(image, self.finish(&image));
+        let position = |index: usize, from: [i64; 2], step: [i64; 2]| {
+            [0, 1].map(|axis| from[axis] + index as i64 * step[axis])
+        };
+        self.for_each_row(out, self.size[0] * self.size[1], |number, row| {
+            let start = position(number, first, down);
+            row.fill_with(|range, mut part| {
+                let line = Line { start: position(range.start, start, right), step: right };
+                source.warp(line, self.border, &mut part);
+            });
+        });
+        Ok(())
+    }
+
+    /// Lets threads write the rows of `out`, where that is worth it for `pixels` pixels.
+    fn for_each_row<T: InputSample>(
+        &self,
+        out: &mut [T],
+        pixels: usize,
+        write: impl Fn(usize, Row<'_, T>) + Sync,
+    ) {
+        let alone = self.threads == 1 || pixels < PIXELS_ALONE;
+        let bands = if alone { 1 } else { MAX_BANDS.min(self.threads * 4) };
+        let cut = Band::whole(out, self.size, self.order.channels(), self.layout).cut(bands);
+        workers::run(bands, self.threads, &|index| {
+            let Some(mut band) = cut[index].lock().ok().and_then(|mut band| band.take()) else { return };
+            band.for_each_row(&write);
+        });
+    }
+
     fn finish(&self, image: &ImageView<'_>) -> Finish {
         let stride = image.strides()[2];
         let [red, green, blue] = image.format().rgb_offsets().map(|channel| channel * stride);
@@ -207,20 +287,14 @@ impl Preprocess {
         let padding = std::array::from_fn(|c| pad * self.scale[c] + self.bias[c]);
         let Placement { x, y, width, height } = placement;
         let columns = self.size[0];
-        let alone = self.threads == 1 || width * height < PIXELS_ALONE;
-        let bands = if alone { 1 } else { MAX_BANDS.min(self.threads * 4) };
-        let cut = Band::whole(out, self.size, self.order.channels(), self.layout).cut(bands);
-        workers::run(bands, self.threads, &|index| {
-            let Some(mut band) = cut[index].lock().ok().and_then(|mut band| band.take()) else { return };
-            band.for_each_row(|number, mut row| {
-                if number < y || number >= y + height {
-                    return row.fill(padding);
-                }
-                row.part(0..x).fill(padding);
-                row.part(x + width..columns).fill(padding);
-                row.part(x..x + width).fill_with(|range, mut part| {
-                    source.write(plan, number - y, range, &mut part);
-                });
+        self.for_each_row(out, width * height, |number, mut row| {
+            if number < y || number >= y + height {
+                return row.fill(padding);
+            }
+            row.part(0..x).fill(padding);
+            row.part(x + width..columns).fill(padding);
+            row.part(x..x + width).fill_with(|range, mut part| {
+                source.write(plan, number - y, range, &mut part);
             });
         });
     }
@@ -240,3 +314,5 @@ impl Preprocess {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod warp_tests;

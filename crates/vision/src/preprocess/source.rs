@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use opendr_engine::data::{ImageView, Samples};
 
+use crate::preprocess::Border;
 use crate::preprocess::band::Row;
 use crate::preprocess::packed::{Packed, PackedRow};
 use crate::preprocess::plan::{Plan, TAP_BYTES};
 use crate::preprocess::sample::Written;
 use crate::preprocess::strided::{Finish, blend_row};
+use crate::preprocess::warped::{Line, warp_row};
 
 /// A view together with what becomes of its pixels.
 pub(super) struct Source<'a> {
@@ -75,6 +77,14 @@ impl<'a> Source<'a> {
             Samples::U8(samples) => blend_row(samples, strides, tap, columns, &self.finish, row),
             Samples::U16(samples) => blend_row(samples, strides, tap, columns, &self.finish, row),
             Samples::F32(samples) => blend_row(samples, strides, tap, columns, &self.finish, row),
+        }
+    }
+    /// Writes the pixels along `line`.
+    pub(super) fn warp<W: Written>(&self, line: Line, border: Border, row: &mut Row<'_, W>) {
+        match self.view.samples() {
+            Samples::U8(samples) => warp_row(samples, &self.view, line, border, &self.finish, row),
+            Samples::U16(samples) => warp_row(samples, &self.view, line, border, &self.finish, row),
+            Samples::F32(samples) => warp_row(samples, &self.view, line, border, &self.finish, row),
         }
     }
 }

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 
 /// The level of one sample.
-fn level(view: &ImageView<'_>, x: usize, y: usize, channel: usize) -> f64 {
+pub(super) fn level(view: &ImageView<'_>, x: usize, y: usize, channel: usize) -> f64 {
     let [row, column, plane] = view.strides();
     let at = y * row + x * column + channel * plane;
     match view.samples() {
@@ -75,7 +75,13 @@ fn noise(count: usize, seed: u64) -> impl Iterator<Item = u32> {
     })
 }
 
-fn noise_image(size: [usize; 2], format: PixelFormat, layout: Layout, bits: u32, seed: u64) -> Image {
+pub(super) fn noise_image(
+    size: [usize; 2],
+    format: PixelFormat,
+    layout: Layout,
+    bits: u32,
+    seed: u64,
+) -> Image {
     let samples = noise(size[0] * size[1] * format.channels(), seed);
     let pixels: Pixels = match bits {
         8 => samples.map(|sample| sample as u8).collect::<Vec<_>>().into(),
@@ -103,9 +109,9 @@ fn check(preprocess: &Preprocess, view: ImageView<'_>) {
     }
 }
 
-const FORMATS: [PixelFormat; 5] =
+pub(super) const FORMATS: [PixelFormat; 5] =
     [PixelFormat::Grey, PixelFormat::Rgb, PixelFormat::Bgr, PixelFormat::Rgba, PixelFormat::Bgra];
-const ORDERS: [ChannelOrder; 3] = [ChannelOrder::Rgb, ChannelOrder::Bgr, ChannelOrder::Grey];
+pub(super) const ORDERS: [ChannelOrder; 3] = [ChannelOrder::Rgb, ChannelOrder::Bgr, ChannelOrder::Grey];
 
 #[test]
 fn every_combination_is_the_reference() {

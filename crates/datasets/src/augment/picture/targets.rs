@@ -79,6 +79,7 @@ fn swap_sides(pose: &mut Pose) {
             pose.keypoints.swap(joint, partner);
         }
     }
+    pose.skeleton = pose.skeleton.mirrored();
 }
 
 /// The joint on the other side of the body.
@@ -132,7 +133,8 @@ mod tests {
 
     #[test]
     fn every_side_has_its_other() {
-        for skeleton in [Skeleton::Opendr18, Skeleton::Coco17] {
+        assert_eq!(Skeleton::LeftHand21.mirrored(), Skeleton::RightHand21);
+        for skeleton in [Skeleton::Opendr18, Skeleton::Coco17, Skeleton::Blazepose33] {
             let mut alone = Vec::new();
             for (joint, name) in skeleton.joints().iter().enumerate() {
                 match partner_of(skeleton, name) {

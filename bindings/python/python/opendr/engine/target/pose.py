@@ -27,7 +27,7 @@ class Pose(Target):
             list of :class:`Keypoint`, whose scores are kept.
         confidence: Score of the whole, in [0, 1].
         id: The person's track.
-        skeleton: What the joints are: ``"opendr18"`` or ``"coco17"``; guessed from their number when left out.
+        skeleton: What the joints are, e.g. ``"opendr18"`` or ``"left_hand21"``; guessed from their number when left out.
         keypoint_confidences: Score of each joint, in [0, 1]; 0 when left out.
         region: The person's box, where it is known: a ``CocoBoundingBox`` tells size and crowd, as COCO annotates
             persons.

@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
-#: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's.
+_HAND = (
+    *("wrist", "thumb_cmc", "thumb_mcp", "thumb_ip", "thumb_tip", "index_mcp", "index_pip", "index_dip", "index_tip"),
+    *("middle_mcp", "middle_pip", "middle_dip", "middle_tip", "ring_mcp", "ring_pip", "ring_dip", "ring_tip"),
+    *("pinky_mcp", "pinky_pip", "pinky_dip", "pinky_tip"),
+)
+
+#: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's,
+#: ``"blazepose33"`` BlazePose's, ``"left_hand21"`` and ``"right_hand21"`` are MediaPipe's hands.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -12,6 +19,14 @@ JOINTS: dict[str, tuple[str, ...]] = {
         *("nose", "l_eye", "r_eye", "l_ear", "r_ear", "l_sho", "r_sho", "l_elb", "r_elb", "l_wri"),
         *("r_wri", "l_hip", "r_hip", "l_knee", "r_knee", "l_ank", "r_ank"),
     ),
+    "blazepose33": (
+        *("nose", "l_eye_inner", "l_eye", "l_eye_outer", "r_eye_inner", "r_eye", "r_eye_outer", "l_ear", "r_ear"),
+        *("l_mouth", "r_mouth", "l_sho", "r_sho", "l_elb", "r_elb", "l_wri", "r_wri", "l_pinky", "r_pinky"),
+        *("l_index", "r_index", "l_thumb", "r_thumb", "l_hip", "r_hip", "l_knee", "r_knee", "l_ank", "r_ank"),
+        *("l_heel", "r_heel", "l_foot", "r_foot"),
+    ),
+    "left_hand21": _HAND,
+    "right_hand21": _HAND,
 }
 
 

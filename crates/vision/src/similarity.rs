@@ -1,0 +1,225 @@
+//! Where a turned crop lies in its picture.
+
+use opendr_engine::{Error, Result};
+
+/// A scale, a rotation and a translation between a picture and a crop of it, without reflection.
+///
+/// Positions are continuous, as [`crate::InputGeometry`]'s: the left-top corner of the first pixel is (0, 0), its
+/// centre (0.5, 0.5). Angles are in radians and turn from x to y: clockwise as pictures are shown.
+/// [`crate::Preprocess::warp_into`] makes a network's input of the crop.
+///
+/// ```
+/// use opendr_vision::Similarity;
+///
+/// // A square of 100 pixels, turned by 90 degrees, as a crop of 50 pixels.
+/// let crop = Similarity::rotated_square([320.0, 240.0], 100.0, std::f32::consts::FRAC_PI_2, 50);
+/// let [x, y] = crop.image_from_crop([50.0, 25.0]);
+/// assert!((x - 320.0).abs() < 1e-3 && (y - 290.0).abs() < 1e-3);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Similarity {
+    /// Scale times cosine and sine of the angle.
+    turn: [f64; 2],
+    /// The picture's position of the crop's (0, 0).
+    origin: [f64; 2],
+}
+
+impl Similarity {
+    /// The crop is the picture.
+    pub const IDENTITY: Self = Self { turn: [1.0, 0.0], origin: [0.0, 0.0] };
+
+    /// A crop whose pixels are `scale` pixels of the picture wide, whose x axis points along `angle` in the picture
+    /// and whose left-top corner lies at `origin`.
+    pub fn new(scale: f32, angle: f32, origin: [f32; 2]) -> Self {
+        let (sine, cosine) = f64::from(angle).sin_cos();
+        let scale = f64::from(scale);
+        Self { turn: [scale * cosine, scale * sine], origin: origin.map(f64::from) }
+    }
+
+    /// The square with `side` pixels around `centre` whose x axis points along `angle`, as a crop of `crop_side`
+    /// pixels a side.
+    pub fn rotated_square(centre: [f32; 2], side: f32, angle: f32, crop_side: usize) -> Self {
+        let centred = Self::new(side / crop_side as f32, angle, [0.0, 0.0]);
+        let middle = centred.forward([crop_side as f64 / 2.0; 2]);
+        Self { origin: std::array::from_fn(|axis| f64::from(centre[axis]) - middle[axis]), ..centred }
+    }
+
+    /// The similarity that brings points of the picture closest to points of the crop: the sum of squared distances,
+    /// measured in the crop, is least (Umeyama, "Least-squares estimation of transformation parameters between two
+    /// point patterns", 1991; alignment of faces to a template does this). Reflections are no answer.
+    ///
+    /// `None` where there are fewer than two points, not as many of both, values that are not finite, or points of
+    /// which all are the same.
+    pub fn from_points(image: &[[f32; 2]], crop: &[[f32; 2]]) -> Option<Self> {
+        if image.len() != crop.len() || image.len() < 2 {
+            return None;
+        }
+        let (from, to) = (mean(image), mean(crop));
+        let centred =
+            |point: &[f32; 2], mean: [f64; 2]| [f64::from(point[0]) - mean[0], f64::from(point[1]) - mean[1]];
+        let (mut along, mut across, mut spread) = (0.0, 0.0, 0.0);
+        for (image, crop) in image.iter().zip(crop) {
+            let ([x, y], [u, v]) = (centred(image, from), centred(crop, to));
+            along += x * u + y * v;
+            across += x * v - y * u;
+            spread += x * x + y * y;
+        }
+        // crop = (a, b) * image + shift, as complex numbers.
+        let [a, b] = [along / spread, across / spread];
+        let shift = [to[0] - (a * from[0] - b * from[1]), to[1] - (b * from[0] + a * from[1])];
+        let norm = a * a + b * b;
+        let inverse = Self { turn: [a / norm, -b / norm], origin: [0.0, 0.0] };
+        let [x, y] = inverse.forward(shift);
+        let found = Self { origin: [-x, -y], ..inverse };
+        found.is_regular().then_some(found)
+    }
+
+    /// A point of the crop, in pixels of the picture; it may lie outside of it.
+    pub fn image_from_crop(&self, point: [f32; 2]) -> [f32; 2] {
+        self.forward(point.map(f64::from)).map(|value| value as f32)
+    }
+
+    /// A point of the picture, in pixels of the crop; it may lie outside of it.
+    pub fn crop_from_image(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let (x, y) = (f64::from(x) - self.origin[0], f64::from(y) - self.origin[1]);
+        let [a, b] = self.turn;
+        let norm = a * a + b * b;
+        [((a * x + b * y) / norm) as f32, ((a * y - b * x) / norm) as f32]
+    }
+
+    /// Pixels of the picture per pixel of the crop.
+    pub fn scale(&self) -> f32 {
+        self.turn[0].hypot(self.turn[1]) as f32
+    }
+
+    /// Where the crop's x axis points in the picture, in radians, -pi..=pi.
+    pub fn angle(&self) -> f32 {
+        self.turn[1].atan2(self.turn[0]) as f32
+    }
+
+    /// Whether all numbers are finite and a crop pixel shows more than a point.
+    pub fn is_regular(&self) -> bool {
+        let [a, b] = self.turn;
+        (a * a + b * b).is_normal() && self.origin.iter().all(|value| value.is_finite())
+    }
+
+    fn forward(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [a, b] = self.turn;
+        [a * x - b * y + self.origin[0], b * x + a * y + self.origin[1]]
+    }
+
+    /// The picture's position of the centre of the first pixel, and the steps to the next column and the next row, in
+    /// pixels of the picture times 2^32: [x, y] each. Positions count from the centre of the picture's first pixel.
+    ///
+    /// # Errors
+    /// `InvalidInput` when a pixel of a crop of `size` lies further than 2^29 pixels away, or nowhere.
+    pub(crate) fn fixed_point(&self, size: [usize; 2]) -> Result<[[i64; 2]; 3]> {
+        const ONE: f64 = 4_294_967_296.0;
+        const FURTHEST: f64 = 536_870_912.0;
+        let [width, height] = size.map(|side| side as f64);
+        let near = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]]
+            .into_iter()
+            .all(|corner| self.forward(corner).iter().all(|value| value.abs() <= FURTHEST));
+        if !self.is_regular() || !near {
+            return Err(Error::invalid_input(format!(
+                "a crop of scale {}, angle {} and origin {:?} cannot be cut out of a picture",
+                self.scale(),
+                self.angle(),
+                self.origin
+            )));
+        }
+        let fixed = |value: f64| (value * ONE).round() as i64;
+        let [a, b] = self.turn;
+        let first = self.forward([0.5; 2]).map(|value| fixed(value - 0.5));
+        Ok([first, [fixed(a), fixed(b)], [fixed(-b), fixed(a)]])
+    }
+}
+
+fn mean(points: &[[f32; 2]]) -> [f64; 2] {
+    let sum = |axis: usize| points.iter().map(|point| f64::from(point[axis])).sum::<f64>();
+    [sum(0), sum(1)].map(|sum| sum / points.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn close(a: [f32; 2], b: [f32; 2], within: f32) -> bool {
+        (a[0] - b[0]).abs() <= within && (a[1] - b[1]).abs() <= within
+    }
+
+    #[test]
+    fn reflected_points_are_not_reflected() {
+        let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 1.0]];
+        let mirrored = square.map(|[x, y]| [-x, y]);
+        let found = Similarity::from_points(&square, &mirrored).unwrap();
+        let [a, b] = found.turn;
+        assert!(a * a + b * b > 0.0);
+        // A reflection would have put every point in its place.
+        assert!(square.iter().zip(&mirrored).any(|(a, b)| !close(found.crop_from_image(*a), *b, 0.1)));
+    }
+
+    #[test]
+    fn least_squares_of_umeyama() {
+        // NumPy 2.4: the singular value decomposition of the paper, on ArcFace's template.
+        let image = [[100.0, 120.0], [160.0, 118.0], [131.0, 160.0], [105.0, 190.0], [158.0, 188.0]];
+        let crop = [
+            [38.2946, 51.6963],
+            [73.5318, 51.5014],
+            [56.0252, 71.7366],
+            [41.5493, 92.3655],
+            [70.7299, 92.2041],
+        ];
+        let found = Similarity::from_points(&image, &crop).unwrap();
+        assert!((1.0 / found.scale() - 0.574_866_8).abs() < 1e-5);
+        assert!((-found.angle() - 0.021_253).abs() < 1e-5);
+        assert!(close(found.crop_from_image([0.0, 0.0]), [-17.253_397, -18.896_346], 1e-3));
+    }
+
+    #[test]
+    fn what_has_no_answer_is_none() {
+        assert!(Similarity::from_points(&[[1.0, 2.0]], &[[1.0, 2.0]]).is_none());
+        assert!(Similarity::from_points(&[[1.0, 2.0]; 3], &[[1.0, 2.0]; 2]).is_none());
+        assert!(Similarity::from_points(&[[1.0, 2.0]; 3], &[[1.0, 2.0], [2.0, 2.0], [3.0, 3.0]]).is_none());
+        assert!(Similarity::from_points(&[[1.0, 2.0], [3.0, 2.0]], &[[4.0, 4.0]; 2]).is_none());
+        assert!(Similarity::from_points(&[[f32::NAN, 2.0], [3.0, 2.0]], &[[1.0, 4.0], [2.0, 4.0]]).is_none());
+        assert!(!Similarity::new(0.0, 0.0, [0.0; 2]).is_regular());
+        assert!(Similarity::new(f32::NAN, 0.0, [0.0; 2]).fixed_point([2, 2]).is_err());
+        assert!(Similarity::new(1.0, f32::INFINITY, [0.0; 2]).fixed_point([2, 2]).is_err());
+        assert!(Similarity::new(1.0, 0.0, [0.0, f32::NAN]).fixed_point([2, 2]).is_err());
+        assert!(Similarity::new(1e9, 0.0, [0.0; 2]).fixed_point([2, 2]).is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn points_find_their_similarity(
+            scale in 0.05f32..20.0, angle in -3.1f32..3.1, origin in [-2e3f32..2e3, -2e3f32..2e3],
+            points in prop::collection::vec([0.0f32..200.0, 0.0f32..200.0], 2..9),
+        ) {
+            let made = Similarity::new(scale, angle, origin);
+            prop_assert!((made.scale() / scale - 1.0).abs() < 1e-5 && (made.angle() - angle).abs() < 1e-5);
+            let image: Vec<_> = points.iter().map(|point| made.image_from_crop(*point)).collect();
+            for (there, back) in image.iter().zip(&points) {
+                prop_assert!(close(made.crop_from_image(*there), *back, 0.05));
+            }
+            prop_assume!(points.iter().any(|point| !close(*point, points[0], 30.0)));
+            let found = Similarity::from_points(&image, &points).unwrap();
+            for (there, back) in image.iter().zip(&points) {
+                prop_assert!(close(found.crop_from_image(*there), *back, 0.1));
+            }
+        }
+
+        #[test]
+        fn squares_have_their_centre_and_side(
+            centre in [-50.0f32..700.0, -50.0f32..500.0], side in 1.0f32..900.0, angle in -4.0f32..4.0,
+        ) {
+            let crop = Similarity::rotated_square(centre, side, angle, 224);
+            prop_assert!(close(crop.image_from_crop([112.0, 112.0]), centre, 1e-3));
+            let [x, y] = crop.image_from_crop([224.0, 112.0]);
+            let right = [centre[0] + side / 2.0 * angle.cos(), centre[1] + side / 2.0 * angle.sin()];
+            prop_assert!(close([x, y], right, 2e-3));
+        }
+    }
+}
