@@ -5,6 +5,9 @@ use std::sync::OnceLock;
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
+use opendr_perception::face_recognition::FaceRecognition;
+use opendr_perception::facial_expression_recognition::FacialEmotion;
+use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
@@ -24,6 +27,9 @@ pub fn registry() -> &'static Registry {
             SingleShotDetector,
             UltraLightFace,
             Yunet,
+            FaceRecognition,
+            FaceMesh,
+            FacialEmotion,
             Movenet,
             Posenet,
             LightweightOpenPose,

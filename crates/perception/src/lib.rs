@@ -1,6 +1,9 @@
 //! Perception learners: one folder per task, one file per learner.
 
 pub mod face_detection;
+pub mod face_recognition;
+pub mod facial_expression_recognition;
+pub mod facial_landmarks;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
 pub mod mfcc;
@@ -10,6 +13,7 @@ pub mod speech_recognition;
 pub mod suppression;
 
 mod category_scores;
+mod face_finder;
 #[cfg(feature = "training")]
 mod frozen_layers;
 #[cfg(feature = "training")]

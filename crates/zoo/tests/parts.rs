@@ -107,8 +107,9 @@ fn absent_part_and_part_of_itself_are_told() {
     let error = with_part("whole").get("whole", &Silent).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Format);
     assert!(error.to_string().contains("part of itself"), "{error}");
+    let other = with_part("test");
     server.put("/detector", b"y");
-    let error = with_part("test").get("whole", &Silent).unwrap_err();
+    let error = other.get("whole", &Silent).unwrap_err();
     assert_eq!(error.kind(), ErrorKind::Integrity);
     assert!(error.to_string().contains("the part \"detector\" of whole/one"), "{error}");
 }
