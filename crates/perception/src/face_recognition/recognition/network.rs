@@ -36,7 +36,7 @@ impl Network {
             spatial: spatial.with_bias(false).init(device),
             head: LinearConfig::new(channels, dimension).with_bias(false).init(device),
             norm: BatchNormConfig::new(dimension).init(device),
-            centres: Initializer::XavierNormal { gain: 1.0 }.init([classes, dimension], device),
+            centres: Initializer::Normal { mean: 0.0, std: 1.0 }.init([classes, dimension], device),
         }
     }
 

@@ -211,8 +211,8 @@ impl FaceMesh {
             |_| {},
             |outputs| {
                 let presence = outputs[self.outputs.presence].values::<f32>()?;
-                let logit = presence.first().copied().unwrap_or(f32::NEG_INFINITY);
-                let confidence = 1.0 / (1.0 + (-logit).exp());
+                // A probability in TensorFlow.js's form of the network; MediaPipe's own gives its logit, far beyond 0..=1.
+                let confidence = presence.first().copied().unwrap_or(0.0).clamp(0.0, 1.0);
                 let points = outputs[self.outputs.points].values::<f32>()?;
                 pose.confidence = confidence;
                 pose.keypoints.clear();
