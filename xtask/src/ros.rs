@@ -24,7 +24,10 @@ pub fn run_alone() -> Result<()> {
 /// part of the test command.
 pub fn run_zenoh() -> Result<()> {
     install_debian()?;
-    step("build with Zenoh", command("cargo").args(["build", "--package", "opendr-cli", "--features=zenoh"]))?;
+    step(
+        "build with Zenoh",
+        command("cargo").args(["build", "--package", "opendr-cli", "--features=zenoh"]),
+    )?;
     step(
         "tests of keys and tokens",
         command("cargo").args(["test", "--package", "opendr-ros", "--features=zenoh", "--lib"]),

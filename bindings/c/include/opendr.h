@@ -117,6 +117,8 @@ typedef enum opendr_skeleton {
     OPENDR_LEFT_HAND21 = 3,
     // MediaPipe's 21 joints of a right hand.
     OPENDR_RIGHT_HAND21 = 4,
+    // MediaPipe's 478 points of a face.
+    OPENDR_FACE478 = 5,
 } opendr_skeleton;
 
 // A world to act in; threads take turns.

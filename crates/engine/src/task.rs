@@ -45,6 +45,12 @@ tasks! {
     ObjectDetection2d = "object_detection_2d";
     /// Boxes of faces in a picture.
     FaceDetection = "face_detection";
+    /// Whose faces are in a picture.
+    FaceRecognition = "face_recognition";
+    /// Points of faces in a picture.
+    FacialLandmarks = "facial_landmarks";
+    /// What a face expresses.
+    FacialExpressionRecognition = "facial_expression_recognition";
     /// The class that a whole picture belongs to.
     ImageClassification = "image_classification";
     /// Key points of persons in a picture.

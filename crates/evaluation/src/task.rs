@@ -10,9 +10,14 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
     match task {
         Task::ObjectDetection2d => Ok("coco_detection"),
         Task::FaceDetection => Ok("voc_detection"),
-        Task::ImageClassification => Ok("classification"),
+        Task::ImageClassification | Task::FaceRecognition | Task::FacialExpressionRecognition => {
+            Ok("classification")
+        }
+        Task::FacialLandmarks => Ok("keypoints"),
         Task::PoseEstimation => Ok("coco_keypoints"),
-        Task::GestureRecognition | Task::HeartAnomalyDetection | Task::SpeechRecognition => Ok("classification"),
+        Task::GestureRecognition | Task::HeartAnomalyDetection | Task::SpeechRecognition => {
+            Ok("classification")
+        }
         other => {
             Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
         }

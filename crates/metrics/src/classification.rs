@@ -1,11 +1,12 @@
 //! Classification: accuracy, top-k, precision, recall, F1, confusion matrix and calibration, equal to scikit-learn.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use opendr_engine::params::Params;
-use opendr_engine::target::Category;
-use opendr_engine::{Error, Result};
+use opendr_engine::target::{Category, Name};
+use opendr_engine::{Datum, Error, Result, ValueRef};
 
 use crate::average::{mean, ratio};
 use crate::{
@@ -214,6 +215,21 @@ impl Metric for Classification {
         }
         self.add(truth.class, prediction.class);
         Ok(f64::from(u8::from(correct)))
+    }
+
+    /// A list of boxes stands for its surest one's class (recognised faces), and an empty one for class -1.
+    fn prediction(value: ValueRef<'_>) -> Option<Cow<'_, Category>> {
+        let ValueRef::BoundingBoxList(list) = value else {
+            return Category::from_value_ref(value).map(Cow::Borrowed);
+        };
+        let surest = list.boxes.iter().max_by(|one, other| one.confidence.total_cmp(&other.confidence));
+        let Some(surest) = surest else { return Some(Cow::Owned(Category::new(-1, None))) };
+        let class = match &surest.name {
+            Name::Index(class) => *class,
+            Name::Label(label) => list.classes.index(label).unwrap_or(-1),
+        };
+        let description = list.label(surest).map(Arc::from);
+        Some(Cow::Owned(Category { description, ..Category::new(class, Some(surest.confidence)) }))
     }
 
     fn merge(&mut self, other: Self) {

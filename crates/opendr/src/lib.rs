@@ -48,9 +48,9 @@ pub use fit::{
 };
 pub use opendr_engine::*;
 pub use opendr_perception::{
-    face_detection, fall_detection, gesture_recognition, hand_pose_estimation, heart_anomaly_detection,
-    image_classification, mfcc, object_detection_2d, pose_estimation, regions, speech_recognition,
-    suppression,
+    face_detection, face_recognition, facial_expression_recognition, facial_landmarks, fall_detection,
+    gesture_recognition, hand_pose_estimation, heart_anomaly_detection, image_classification, mfcc,
+    object_detection_2d, pose_estimation, regions, speech_recognition, suppression,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

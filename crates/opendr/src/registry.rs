@@ -5,6 +5,9 @@ use std::sync::OnceLock;
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
+use opendr_perception::face_recognition::FaceRecognition;
+use opendr_perception::facial_expression_recognition::FacialEmotion;
+use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::fall_detection::FallDetector;
 use opendr_perception::gesture_recognition::KeypointGesture;
 use opendr_perception::hand_pose_estimation::HandPose;
@@ -29,6 +32,9 @@ pub fn registry() -> &'static Registry {
             SingleShotDetector,
             UltraLightFace,
             Yunet,
+            FaceRecognition,
+            FaceMesh,
+            FacialEmotion,
             Movenet,
             Posenet,
             LightweightOpenPose,

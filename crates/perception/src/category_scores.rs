@@ -8,18 +8,33 @@ use opendr_engine::{Error, Result};
 /// # Errors
 /// `Format` when there are no logits, or not as many as `classes` names.
 pub(crate) fn category_from_logits(category: &mut Category, logits: &[f32], classes: &Classes) -> Result<()> {
-    if logits.is_empty() || !(classes.is_empty() || classes.len() == logits.len()) {
-        let (scores, names) = (logits.len(), classes.len());
+    let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    category_from_scores(category, logits.iter().map(|logit| (logit - highest).exp()), classes)
+}
+
+/// Fills `category` with the class of the highest of `scores`, none below 0; its probability and those of all classes
+/// are their shares in the sum.
+///
+/// # Errors
+/// `Format` when there are no scores, or not as many as `classes` names.
+pub(crate) fn category_from_scores(
+    category: &mut Category,
+    scores: impl Iterator<Item = f32>,
+    classes: &Classes,
+) -> Result<()> {
+    category.probabilities.clear();
+    category.probabilities.extend(scores);
+    let count = category.probabilities.len();
+    if count == 0 || !(classes.is_empty() || classes.len() == count) {
+        let names = classes.len();
         return Err(Error::format(format!(
-            "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
+            "the model gives {count} scores for {names} classes; export it with the classes it was trained on"
         )));
     }
-    let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    category.probabilities.clear();
-    category.probabilities.extend(logits.iter().map(|logit| (logit - highest).exp()));
+    let highest = category.probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let class = category.probabilities.iter().position(|score| *score == highest).unwrap_or_default();
     let sum: f32 = category.probabilities.iter().sum();
     category.probabilities.iter_mut().for_each(|probability| *probability /= sum);
-    let class = logits.iter().position(|logit| *logit == highest).unwrap_or_default();
     category.class = class as i64;
     category.confidence = category.probabilities.get(class).copied();
     category.description = classes.name(category.class).cloned();

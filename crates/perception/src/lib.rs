@@ -1,6 +1,9 @@
 //! Perception learners: one folder per task, one file per learner.
 
 pub mod face_detection;
+pub mod face_recognition;
+pub mod facial_expression_recognition;
+pub mod facial_landmarks;
 pub mod fall_detection;
 pub mod gesture_recognition;
 pub mod hand_pose_estimation;
@@ -14,6 +17,7 @@ pub mod speech_recognition;
 pub mod suppression;
 
 mod category_scores;
+mod face_finder;
 mod frame_clock;
 #[cfg(feature = "training")]
 mod frozen_layers;

@@ -9,7 +9,7 @@ use opendr_vision::{InputGeometry, Preprocess, Similarity};
 /// The file of the network in every container.
 const FILE: &str = "model.onnx";
 
-/// A session with the pre-processing of its one input, `[1, 3, height, width]`, and memory used again.
+/// A session with the pre-processing of its one input, a picture, and memory used again.
 pub(crate) struct PictureNetwork {
     session: Session,
     preprocess: Preprocess,
@@ -80,11 +80,36 @@ impl PictureNetwork {
         crop: &Similarity,
         sink: impl FnMut(&[TensorView<'_>]) -> Result<()>,
     ) -> Result<()> {
+        self.run_warped(image, crop, |_| (), sink)
+    }
+
+    /// Runs on the part of a picture that `crop` shows; `edit` may change the network's input before.
+    pub fn run_warped(
+        &self,
+        image: &Image,
+        crop: &Similarity,
+        edit: impl FnOnce(&mut [f32]),
+        sink: impl FnMut(&[TensorView<'_>]) -> Result<()>,
+    ) -> Result<()> {
         let (shape, count) = (self.preprocess.shape(), self.preprocess.len());
         let mut input = self.inputs.take();
         input.resize(count, 0.0);
-        self.preprocess.warp_into(image.view(), crop, &mut input)?;
+        self.preprocess.warp_into(image.view(), crop, &mut input[..])?;
+        edit(&mut input);
         self.session.run(&[TensorView::new(&shape, &input[..])?], sink)
+    }
+
+    /// Swaps left and right of an input.
+    pub fn mirror(&self, input: &mut [f32]) {
+        let [_, _, _, last] = self.preprocess.shape();
+        let [width, _] = self.preprocess.size();
+        if last == width {
+            return input.chunks_exact_mut(width).for_each(<[f32]>::reverse);
+        }
+        for row in input.chunks_exact_mut(width * last) {
+            row.reverse();
+            row.chunks_exact_mut(last).for_each(<[f32]>::reverse);
+        }
     }
 
     fn run_through(

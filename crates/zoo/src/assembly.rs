@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use opendr_engine::model::{Manifest, ModelWriter};
+use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Error, ErrorKind, Progress, Result, ResultExt};
 
 use crate::cache::Cache;
-use crate::card::ItemKind;
+use crate::card::{CardFile, ItemKind};
 use crate::import::imported;
 use crate::item::Item;
 use crate::repository::card_files;
@@ -21,7 +21,8 @@ pub(crate) struct Assembly<'a> {
 
 impl Assembly<'_> {
     /// Makes it of the card's files; `None` when one is missing or was damaged since it came.
-    pub(crate) fn of_files(&self, folder: &Path) -> Result<Option<PathBuf>> {
+    /// `parts` go into it.
+    pub(crate) fn of_files(&self, folder: &Path, parts: &[(&str, Model)]) -> Result<Option<PathBuf>> {
         let files = &self.item.variant.files;
         if !files.iter().all(|file| self.cache.has(file)) {
             return Ok(None);
@@ -36,7 +37,7 @@ impl Assembly<'_> {
         };
         let made = match self.item.card.kind {
             ItemKind::Sample => self.sample(folder, &bytes),
-            ItemKind::Model => self.model(folder, &bytes),
+            ItemKind::Model => self.model(folder, &bytes, parts),
         };
         made.map(Some).context(|| format!("making {}", self.item))
     }
@@ -55,18 +56,28 @@ impl Assembly<'_> {
         Ok(folder.to_owned())
     }
 
-    fn model(&self, folder: &Path, files: &[Vec<u8>]) -> Result<PathBuf> {
+    fn model(&self, folder: &Path, files: &[Vec<u8>], parts: &[(&str, Model)]) -> Result<PathBuf> {
         let work = self.cache.work(self.progress)?;
         let made = work.path().join("item");
         let mut writer = ModelWriter::new(&made, self.item.manifest())?;
-        if let Some(import) = &self.item.variant.import {
-            self.progress.note(&format!("converting {} to ONNX", self.item));
-            let (name, bytes) = imported(import, files)?;
-            writer.add(&name, &bytes)?;
-        } else {
-            for (file, bytes) in self.item.variant.files.iter().zip(files) {
+        let own = &self.item.variant.files;
+        if self.item.variant.import.is_empty() {
+            for (file, bytes) in own.iter().zip(files) {
                 writer.add(&file.name, bytes)?;
             }
+        } else {
+            self.progress.note(&format!("converting {} to ONNX", self.item));
+        }
+        for import in &self.item.variant.import {
+            let bytes_of = |file: &'_ CardFile| own.iter().position(|other| other.name == file.name);
+            let named = import.files_of(own).into_iter().filter_map(bytes_of);
+            let named: Vec<_> = named.map(|at| (own[at].name.as_str(), files[at].as_slice())).collect();
+            for (name, bytes) in imported(import, &named)? {
+                writer.add(name, &bytes)?;
+            }
+        }
+        for (name, part) in parts {
+            writer.add_part(name, part)?;
         }
         writer.finish()?;
         place(&made, folder)?;

@@ -1,9 +1,11 @@
 //! Model cards: what a learner's models are, under which terms, and where they come from.
 
+use std::collections::BTreeMap;
+
 use opendr_engine::model::{Licence, Sha256};
 use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result, Task};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
 use crate::check::check_card;
@@ -79,9 +81,12 @@ pub struct Variant {
     pub speed: Option<Speed>,
     /// The files to get.
     pub files: Vec<CardFile>,
-    /// How the model's one file is made from them; absent when they are the model.
+    /// Models of the zoo that it carries as parts (`Model::part`): the name of the part, and the item.
     #[serde(default)]
-    pub import: Option<Import>,
+    pub parts: BTreeMap<String, String>,
+    /// How the model's files are made from them, one network each; empty when they are the model.
+    #[serde(default, deserialize_with = "one_or_several")]
+    pub import: Vec<Import>,
     /// Where the files are, in the order in which to try.
     pub sources: Vec<Source>,
 }
@@ -112,35 +117,78 @@ pub struct CardFile {
     pub sha256: Sha256,
 }
 
-/// How files of another format become one ONNX file.
+/// How files of another format become ONNX files; a table in the card, or a list of tables.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "format", rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
 pub enum Import {
     /// A TensorFlow.js graph model: the first of the files is its JSON, the others are its weights in the JSON's order.
-    Tfjs {
-        /// Name of the file that is made.
-        #[serde(default = "model_onnx")]
-        output: String,
-        /// Height and width of an image input whose size the model leaves open.
-        #[serde(default)]
-        image_size: Option<(usize, usize)>,
-        /// Outputs to keep; all when empty.
-        #[serde(default)]
-        outputs: Vec<String>,
-    },
-    /// A TensorFlow Lite model, the one file.
-    Tflite {
-        /// Name of the file that is made.
-        #[serde(default = "model_onnx")]
-        output: String,
-        /// Height and width of an image input whose size the model leaves open.
-        #[serde(default)]
-        image_size: Option<(usize, usize)>,
-        /// Outputs to keep; all when empty.
-        #[serde(default)]
-        outputs: Vec<String>,
-    },
+    Tfjs(ImportedNetwork),
+    /// A TensorFlow Lite model, one file.
+    Tflite(ImportedNetwork),
+    /// A Whisper that CTranslate2 converted: the first of the files is its `model.bin`, of which `encoder.onnx` and
+    /// `decoder.onnx` are made; the others go into the container as they are.
+    Ctranslate2Whisper,
+}
+
+/// One network that is made of files of another format.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ImportedNetwork {
+    /// Which of the card's files it is made of; all when empty.
+    #[serde(default)]
+    pub files: Vec<String>,
+    /// Name of the file that is made.
+    #[serde(default = "model_onnx")]
+    pub output: String,
+    /// Height and width of an image input whose size the model leaves open.
+    #[serde(default)]
+    pub image_size: Option<(usize, usize)>,
+    /// Outputs to keep; all when empty.
+    #[serde(default)]
+    pub outputs: Vec<String>,
+}
+
+impl Import {
+    /// What is made of a Whisper.
+    pub(crate) const WHISPER: [&'static str; 2] = ["encoder.onnx", "decoder.onnx"];
+
+    /// Names of the files that are made.
+    pub fn outputs(&self) -> Vec<&str> {
+        match self {
+            Self::Tfjs(network) | Self::Tflite(network) => vec![&network.output],
+            Self::Ctranslate2Whisper => Self::WHISPER.to_vec(),
+        }
+    }
+
+    /// Those of the card's files that it names; all are meant when it names none.
+    pub(crate) fn named_files(&self) -> &[String] {
+        match self {
+            Self::Tfjs(network) | Self::Tflite(network) => &network.files,
+            Self::Ctranslate2Whisper => &[],
+        }
+    }
+
+    /// Which of `files` it is made of, in the order in which it names them.
+    pub(crate) fn files_of<'a>(&self, files: &'a [CardFile]) -> Vec<&'a CardFile> {
+        match self.named_files() {
+            [] => files.iter().collect(),
+            names => names.iter().filter_map(|name| files.iter().find(|file| file.name == *name)).collect(),
+        }
+    }
+}
+
+fn one_or_several<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<Import>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum OneOrSeveral {
+        One(Import),
+        Several(Vec<Import>),
+    }
+    Ok(match OneOrSeveral::deserialize(deserializer)? {
+        OneOrSeveral::One(import) => vec![import],
+        OneOrSeveral::Several(imports) => imports,
+    })
 }
 
 fn model_onnx() -> String {

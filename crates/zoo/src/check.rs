@@ -33,22 +33,20 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
         ensure(names.insert(file.name.to_lowercase()), || format!("two files are called {:?}", file.name))?;
         check_size(file.size).context(|| file.name.clone())?;
     }
+    for (part, item) in &variant.parts {
+        check_name("part", part)?;
+        item.split('/').try_for_each(|word| check_name("item", word)).context(|| format!("part {part:?}"))?;
+        let taken = |name: &String| name == part || name.starts_with(&format!("{part}/"));
+        ensure(!names.iter().any(taken), || format!("a file lies where the part {part:?} goes"))?;
+        ensure(kind == ItemKind::Model, || "a sample has no parts".into())?;
+    }
     if let Some(list) = &variant.classes {
         ensure(classes(list).is_some(), || format!("there is no models/classes/{list}.txt"))?;
     }
-    match &variant.import {
-        Some(Import::Tfjs { output, .. }) => {
-            member_path(output)?;
-            ensure(variant.files.len() >= 2, || "a TensorFlow.js model has a JSON and weights".into())?;
-        }
-        Some(Import::Tflite { output, .. }) => {
-            member_path(output)?;
-            ensure(variant.files.len() == 1, || "a TensorFlow Lite model is one file".into())?;
-        }
-        None if kind == ItemKind::Sample => {
-            ensure(variant.files.len() == 1, || "a sample is one file".into())?;
-        }
-        None => ensure(!variant.files.is_empty(), || "no files".into())?,
+    check_imports(variant)?;
+    match kind {
+        ItemKind::Sample => ensure(variant.files.len() == 1, || "a sample is one file".into())?,
+        ItemKind::Model => ensure(!variant.files.is_empty(), || "no files".into())?,
     }
     ensure(!variant.sources.is_empty(), || "no sources".into())?;
     variant.sources.iter().try_for_each(|source| {
@@ -58,6 +56,26 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
             .and_then(|()| check_source(source))
             .context(|| source.to_string())
     })
+}
+
+fn check_imports(variant: &Variant) -> Result<()> {
+    let mut made = HashSet::new();
+    for import in &variant.import {
+        for output in import.outputs() {
+            member_path(output)?;
+            ensure(made.insert(output.to_lowercase()), || format!("{output:?} is made twice"))?;
+        }
+        let there = |name: &&String| variant.files.iter().any(|file| file.name == **name);
+        let absent = import.named_files().iter().find(|name| !there(name));
+        ensure(absent.is_none(), || format!("an import takes {absent:?}, which is none of the files"))?;
+        let count = import.files_of(&variant.files).len();
+        match import {
+            Import::Tfjs(_) => ensure(count >= 2, || "a TensorFlow.js model has a JSON and weights".into())?,
+            Import::Tflite(_) => ensure(count == 1, || "a TensorFlow Lite model is one file".into())?,
+            Import::Ctranslate2Whisper => ensure(count >= 1, || "no files".into())?,
+        }
+    }
+    Ok(())
 }
 
 fn check_source(source: &Source) -> Result<()> {

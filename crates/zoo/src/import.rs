@@ -1,36 +1,51 @@
 //! Turns files of other formats into ONNX.
 
-use opendr_engine::{Error, Result};
-use opendr_import::{ImportOptions, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files};
+use std::borrow::Cow;
 
-use crate::card::Import;
+use opendr_engine::{Error, Result};
+use opendr_import::{
+    ImportOptions, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files, whisper_from_ctranslate2,
+};
+
+use crate::card::{Import, ImportedNetwork};
 
 /// Changes whenever the importer's sources do, so that no stale conversion is ever used.
 pub(crate) const IMPORTER: &str = env!("OPENDR_IMPORTER");
 
-/// The name of the file that is made and its bytes; `files` are those of the card, in its order.
-pub(crate) fn imported(import: &Import, files: &[Vec<u8>]) -> Result<(String, Vec<u8>)> {
-    let (Import::Tfjs { output, image_size, outputs } | Import::Tflite { output, image_size, outputs }) =
-        import;
-    let options = ImportOptions { image_size: *image_size, outputs: outputs.clone() };
-    let onnx = match import {
-        Import::Tfjs { .. } => from_tfjs(files, &options),
-        Import::Tflite { .. } => match files {
-            [model] => onnx_from_tflite(model, &options),
-            other => Err(Error::format(format!("a TensorFlow Lite model of {} files", other.len()))),
-        },
+/// Names and bytes of files.
+type Files<'a> = Vec<(&'a str, Cow<'a, [u8]>)>;
+
+/// The files that are made; `files` are those that they are made of, with their names, in the import's order.
+pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) -> Result<Files<'a>> {
+    let Some(((_, first), others)) = files.split_first() else {
+        return Err(Error::format("a model without files"));
     };
-    Ok((output.clone(), onnx?))
+    match import {
+        Import::Tfjs(network) => {
+            let weights: Vec<&[u8]> = others.iter().map(|(_, bytes)| *bytes).collect();
+            let named = tfjs_weight_files(first)?.len();
+            if named != weights.len() {
+                let given = weights.len();
+                return Err(Error::format(format!("the model has {named} weight files, the card {given}")));
+            }
+            Ok(vec![(&network.output, onnx_from_tfjs(first, &weights, &options(network))?.into())])
+        }
+        Import::Tflite(network) if others.is_empty() => {
+            Ok(vec![(&network.output, onnx_from_tflite(first, &options(network))?.into())])
+        }
+        Import::Tflite(_) => Err(Error::format(format!("a TensorFlow Lite model of {} files", files.len()))),
+        Import::Ctranslate2Whisper => {
+            let networks = whisper_from_ctranslate2(first)?;
+            let [encoder, decoder] = Import::WHISPER;
+            let made = [(encoder, networks.encoder.into()), (decoder, networks.decoder.into())];
+            Ok(made
+                .into_iter()
+                .chain(others.iter().map(|(name, bytes)| (*name, Cow::Borrowed(*bytes))))
+                .collect())
+        }
+    }
 }
 
-fn from_tfjs(files: &[Vec<u8>], options: &ImportOptions) -> Result<Vec<u8>> {
-    let Some((json, weights)) = files.split_first() else {
-        return Err(Error::format("a TensorFlow.js model without files"));
-    };
-    let weights: Vec<&[u8]> = weights.iter().map(Vec::as_slice).collect();
-    let named = tfjs_weight_files(json)?.len();
-    if named != weights.len() {
-        return Err(Error::format(format!("the model has {named} weight files, the card {}", weights.len())));
-    }
-    onnx_from_tfjs(json, &weights, options)
+fn options(network: &ImportedNetwork) -> ImportOptions {
+    ImportOptions { image_size: network.image_size, outputs: network.outputs.clone() }
 }

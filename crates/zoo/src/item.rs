@@ -3,7 +3,7 @@
 use std::fmt;
 
 use opendr_engine::Result;
-use opendr_engine::model::{Lineage, Manifest, Sha256};
+use opendr_engine::model::{Lineage, Manifest};
 
 use crate::card::{Card, Variant};
 use crate::embedded::classes;
@@ -54,16 +54,17 @@ impl Item<'_> {
         manifest.metrics = self.variant.metrics.clone();
         manifest.lineage = Lineage {
             source: self.public_source().map(ToString::to_string).unwrap_or_default(),
-            importer: self.variant.import.as_ref().map(|_| IMPORTER.to_owned()).unwrap_or_default(),
+            importer: if self.variant.import.is_empty() { String::new() } else { IMPORTER.to_owned() },
             command: format!("opendr download {self}"),
         };
         manifest
     }
 
-    /// Stands for all that goes into the finished item, so that one made from an older card is not taken for it.
-    pub(crate) fn recipe(&self) -> Result<Sha256> {
+    /// Stands for all that goes into the finished item but its parts, so that one made from an older card is not taken
+    /// for it.
+    pub(crate) fn recipe(&self) -> Result<Vec<u8>> {
         let mut text = self.manifest().to_json()?;
         text.extend(format!("{:?} {:?}", self.variant.files, self.variant.import).bytes());
-        Ok(Sha256::of(&text))
+        Ok(text)
     }
 }

@@ -18,6 +18,9 @@ use crate::repository::{Repository, card_files, copy_container};
 use crate::stopped;
 use crate::tried::Tried;
 
+/// A part of a part of a part is as deep as it goes, so that an item that is its own part is told.
+const MAX_NESTING: usize = 4;
+
 /// The models and samples that the cards name, and the cache that holds those that were got.
 ///
 /// ```no_run
@@ -146,7 +149,37 @@ impl Zoo {
 
     /// Where the item is made from the card's files.
     fn folder(&self, item: &Item<'_>) -> Result<PathBuf> {
-        Ok(self.cache.item(&item.card.learner, &item.variant.name, &item.recipe()?))
+        let recipe = Sha256::of(&self.recipe(item, MAX_NESTING)?);
+        Ok(self.cache.item(&item.card.learner, &item.variant.name, &recipe))
+    }
+
+    /// Stands for all that goes into the item, its parts too, of which the repository may have its own.
+    fn recipe(&self, item: &Item<'_>, nesting: usize) -> Result<Vec<u8>> {
+        let mut text = item.recipe()?;
+        for (name, part) in &item.variant.parts {
+            let part = self.find(part).context(|| format!("the part {name:?} of {item}"))?;
+            let deeper = nesting.checked_sub(1).ok_or_else(|| {
+                Error::format(format!(
+                    "parts of {item} lie more than {MAX_NESTING} deep: is it a part of itself?"
+                ))
+            })?;
+            text.extend(name.bytes().chain(self.recipe(&part, deeper)?));
+            if let Some(path) = self.own_container(&part) {
+                text.extend(Model::open(path)?.manifest().to_json()?);
+            } else if let Some(address) = self.repository.as_ref().and_then(Repository::address) {
+                text.extend(address.bytes());
+            }
+        }
+        Ok(text)
+    }
+
+    /// The item's parts, got like any item, every byte of them checked.
+    fn parts<'a>(&self, item: &Item<'a>, progress: &dyn Progress) -> Result<Vec<(&'a str, Model)>> {
+        let part = |(name, part): (&'a String, &'a String)| {
+            let model = self.download(part, None, progress).and_then(Model::open);
+            Ok((name.as_str(), model.context(|| format!("the part {name:?} of {item}"))?))
+        };
+        item.variant.parts.iter().map(part).collect()
     }
 
     /// Where a container of the repository's address is kept, so that it serves only while that repository is set.
@@ -202,12 +235,13 @@ impl Zoo {
             }
             Err(error) => tried.add("OPENDR_MODEL_REPOSITORY", error),
         }
-        if let Some(path) = assembly.of_files(&folder)? {
+        let parts = self.parts(item, progress)?;
+        if let Some(path) = assembly.of_files(&folder, &parts)? {
             return Ok(path);
         }
         for source in &item.variant.sources {
             match fetch.files(item, source) {
-                Ok(()) => match assembly.of_files(&folder)? {
+                Ok(()) => match assembly.of_files(&folder, &parts)? {
                     Some(path) => return Ok(path),
                     None => {
                         tried.add(source.to_string(), Error::integrity("the files do not stay whole on disk"))

@@ -28,6 +28,9 @@ fn built_in_cards_are_sound_and_named_after_their_learner() {
             let licence = &variant.licence;
             let stated = !licence.weights.is_empty() || card.kind == ItemKind::Sample;
             assert!(stated && !licence.data.is_empty(), "{}/{}: licence", card.learner, variant.name);
+            for part in variant.parts.values() {
+                Zoo::with_cards(Place::new().options(), cards.clone()).find(part).unwrap();
+            }
         }
     }
 }
@@ -68,9 +71,13 @@ fn hostile_and_faulty_cards_are_refused() {
         ("size = 1,", "size = 9223372036854775807,"),
         ("sha256 = \"", "sha256 = \"0"),
         ("licence = {}", "licence = {}\nclasses = \"../../etc/passwd\""),
+        ("licence = {}", "licence = {}\nparts = { detector = \"../yunet\" }"),
+        ("licence = {}", "licence = {}\nparts = { \"../detector\" = \"yunet\" }"),
+        ("licence = {}", "licence = {}\nparts = { detector = \"\" }"),
         ("licence = {}", "licence = {}\nimport = { format = \"pickle\" }"),
         ("licence = {}", "licence = {}\nimport = { format = \"tfjs\" }"),
         ("licence = {}", "licence = {}\nimport = { format = \"tflite\", weights = \"x\" }"),
+        ("licence = {}", "licence = {}\nimport = [{ format = \"tfjs\", files = [\"x\", \"model.onnx\"] }]"),
         ("\"@a/b\"", "\"--registry=http://evil\""),
         ("\"@a/b\"", "\"-x\""),
         ("\"@a/b\"", "\"@a/../b\""),

@@ -25,6 +25,8 @@ pub enum opendr_skeleton {
     OPENDR_LEFT_HAND21 = 3,
     /// MediaPipe's 21 joints of a right hand.
     OPENDR_RIGHT_HAND21 = 4,
+    /// MediaPipe's 478 points of a face.
+    OPENDR_FACE478 = 5,
 }
 
 /// A point found in a picture, pixels; (-1, -1) means not found.
@@ -105,6 +107,7 @@ impl List for PoseList {
                 Skeleton::Blazepose33 => opendr_skeleton::OPENDR_BLAZEPOSE33 as i32,
                 Skeleton::LeftHand21 => opendr_skeleton::OPENDR_LEFT_HAND21 as i32,
                 Skeleton::RightHand21 => opendr_skeleton::OPENDR_RIGHT_HAND21 as i32,
+                Skeleton::Face478 => opendr_skeleton::OPENDR_FACE478 as i32,
                 _ => opendr_skeleton::OPENDR_OPENDR18 as i32,
             },
             id: item.id.unwrap_or(-1),
@@ -118,6 +121,7 @@ impl List for PoseList {
             2 => Skeleton::Blazepose33,
             3 => Skeleton::LeftHand21,
             4 => Skeleton::RightHand21,
+            5 => Skeleton::Face478,
             other => {
                 return Err(Error::invalid_input(format!(
                     "skeleton is {other}; give one of opendr_skeleton"

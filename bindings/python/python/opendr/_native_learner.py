@@ -434,6 +434,38 @@ class NativeLearner(NativeBase, Learner):
         outcome = json.loads(report)
         return {**outcome.get("curves", {}), **outcome.get("scalars", {}), "report": outcome}
 
+    def fit_reference(
+        self,
+        path: PathLike,
+        save_path: Optional[PathLike] = None,
+        create_new: bool = True,
+        *,
+        silent: bool = True,
+    ) -> dict[str, Any]:
+        """Makes persons known by reference pictures, for learners whose ``fit`` takes such (``create_new``).
+
+        Args:
+            path: A folder with a folder of pictures for each person, called as the person is.
+            save_path: Folder for the model with its references, in ``model``, and a report; by default ``temp_path`` or else
+                ``runs/NAME-DATE``. ``save(path)`` writes the model anywhere.
+            create_new: Whether the persons that the model knows are forgotten.
+            silent: Whether to show nothing.
+
+        Returns:
+            ``persons``, ``pictures``, and under ``"report"`` all there is.
+
+        Raises:
+            opendr.Unsupported: This learner takes no references.
+            FileNotFoundError: There is no folder.
+            ValueError: No model is loaded, or a person has no picture with a face.
+        """
+        from opendr.engine.datasets import ExternalDataset
+
+        if all(field["name"] != "create_new" for field in self._entry["fit_params"]):
+            self._cannot("fit_reference")
+        dataset = ExternalDataset(os.fspath(path), "imagenet")
+        return self.fit(dataset, silent=silent, output=save_path, create_new=create_new)
+
 
 class Stream:
     """A memory of its own over the model of a learner."""

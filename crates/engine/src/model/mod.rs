@@ -3,9 +3,13 @@
 //! Containers come from anyone. Nothing in one is ever run or unpickled, no name leaves its folder, sizes are checked
 //! before memory is taken, and every file is checked against its sha256 each time it is read: 15 MB take 10 to 20 ms
 //! on a processor with SHA instructions, so no stamp of an earlier check is trusted.
+//!
+//! A model of several networks that are models of their own (a face recogniser with the detector that finds the faces)
+//! carries them as parts: whole containers in folders of its own, whose files are among its files.
 
 mod manifest;
 mod member;
+mod part;
 mod sha256;
 mod store;
 #[cfg(test)]
@@ -132,15 +136,14 @@ impl Model {
         read().context(|| format!("reading the model {}", self.path.display()))
     }
 
-    /// The bytes of the model's one ONNX file.
+    /// The bytes of the model's one ONNX file; those of its parts do not count.
     ///
     /// # Errors
     /// `NotFound` when it names none, `InvalidInput` when it names several, else as [`Model::file`].
     pub fn onnx(&self) -> Result<Vec<u8>> {
         let is_onnx =
             |name: &str| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("onnx"));
-        let mut names =
-            self.manifest.files.iter().map(|file| file.name.as_str()).filter(|name| is_onnx(name));
+        let mut names = self.own_files().map(|file| file.name.as_str()).filter(|name| is_onnx(name));
         match (names.next(), names.next()) {
             (Some(name), None) => self.file(name),
             (None, _) => {

@@ -263,3 +263,80 @@ fn model_of_another_learner_is_refused() {
     assert!(model.check_learner("nanodet").is_ok());
     assert_eq!(kind_of(model.check_learner("yunet")), ErrorKind::InvalidInput);
 }
+
+/// A recogniser that carries a detector, which carries a landmark network.
+fn with_parts(folder: &Folder, path: &str) -> Model {
+    let mut writer = ModelWriter::new(folder.join("landmarks"), Manifest::new("landmarks", "")).unwrap();
+    writer.add("model.onnx", b"points").unwrap();
+    let landmarks = writer.finish().unwrap();
+    let mut writer = ModelWriter::new(folder.join("detector.zip"), Manifest::new("yunet", "320")).unwrap();
+    writer.add("model.onnx", b"boxes").unwrap();
+    writer.add_part("landmarks", &landmarks).unwrap();
+    let detector = writer.finish().unwrap();
+    let mut writer = ModelWriter::new(folder.join(path), manifest()).unwrap();
+    writer.add("model.onnx", b"embedding").unwrap();
+    writer.add_part("detector", &detector).unwrap();
+    writer.finish().unwrap()
+}
+
+#[test]
+fn parts_are_models_in_folders_and_zips() {
+    let folder = Folder::new();
+    for path in ["whole", "whole.zip"] {
+        let whole = with_parts(&folder, path);
+        assert_eq!(whole.parts().collect::<Vec<_>>(), ["detector"]);
+        assert_eq!(whole.onnx().unwrap(), b"embedding", "the networks of parts are not its own");
+        let detector = whole.part("detector").unwrap();
+        assert_eq!(detector.manifest().learner, "yunet");
+        assert_eq!(detector.onnx().unwrap(), b"boxes");
+        assert_eq!(detector.part("landmarks").unwrap().onnx().unwrap(), b"points");
+        assert_eq!(whole.part("detector/landmarks").unwrap().onnx().unwrap(), b"points");
+        assert_eq!(detector.path(), folder.join(path).join("detector"));
+
+        let error = whole.part("embedder").unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::NotFound);
+        assert!(error.to_string().contains("\"embedder\"; it carries detector"), "{error}");
+        for name in ["", "..", "../detector", "/detector", "detector/../detector", "detector/"] {
+            assert_eq!(kind_of(whole.part(name)), ErrorKind::Integrity, "{name:?}");
+        }
+    }
+    let detector = Model::open(folder.join("whole/detector")).unwrap();
+    assert_eq!(detector.onnx().unwrap(), b"boxes", "a part is a container of its own");
+}
+
+#[test]
+fn damaged_part_is_refused() {
+    let folder = Folder::new();
+    let whole = with_parts(&folder, "whole");
+    fs::write(folder.join("whole/detector/model.onnx"), b"b0xes").unwrap();
+    assert_eq!(kind_of(whole.part("detector").unwrap().onnx()), ErrorKind::Integrity);
+    assert_eq!(kind_of(whole.file("detector/model.onnx")), ErrorKind::Integrity);
+    let json = fs::read_to_string(folder.join("whole/detector/model.json")).unwrap();
+    fs::write(folder.join("whole/detector/model.json"), json.replace("yunet", "yumet")).unwrap();
+    assert_eq!(kind_of(whole.part("detector")), ErrorKind::Integrity);
+
+    // OpenDR's JSON would name a file without a checksum.
+    let mut writer = ModelWriter::new(folder.join("old"), manifest()).unwrap();
+    let json = br#"{"model_paths": ["a.onnx"], "framework": "pytorch", "format": "onnx"}"#;
+    writer.add("detector/model.json", json).unwrap();
+    assert_eq!(kind_of(writer.finish().unwrap().part("detector")), ErrorKind::Format);
+}
+
+#[test]
+fn file_of_a_part_written_anew_is_stated_by_the_part_too() {
+    let folder = Folder::new();
+    let whole = with_parts(&folder, "whole");
+    let mut writer = ModelWriter::new(folder.join("smaller.zip"), whole.manifest().clone()).unwrap();
+    for file in &whole.manifest().files {
+        let bytes = if file.name == "detector/landmarks/model.onnx" {
+            b"int8".to_vec()
+        } else {
+            whole.file(&file.name).unwrap()
+        };
+        writer.add(&file.name, &bytes).unwrap();
+    }
+    let detector = writer.finish().unwrap().part("detector").unwrap();
+    assert_eq!(detector.onnx().unwrap(), b"boxes");
+    assert_eq!(detector.file("landmarks/model.onnx").unwrap(), b"int8");
+    assert_eq!(detector.part("landmarks").unwrap().onnx().unwrap(), b"int8");
+}

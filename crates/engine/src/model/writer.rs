@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
+use super::part::{inside, parts_of};
 use super::{MANIFEST_NAME, Manifest, Model, ModelFile, Sha256, member_path};
 use crate::{Error, Result, ResultExt};
 
@@ -69,19 +70,30 @@ impl ModelWriter {
             fs::create_dir_all(parent)?;
         }
         write_synced(&path, bytes)?;
-        self.manifest.files.push(ModelFile {
-            name: name.to_owned(),
-            size: Some(bytes.len() as u64),
-            sha256: Some(Sha256::of(bytes)),
-        });
+        self.manifest.files.push(entry(name, bytes));
         Ok(())
+    }
+
+    /// Adds a model as the part `name`, which [`Model::part`] opens, checking every file on the way.
+    ///
+    /// # Errors
+    /// As [`ModelWriter::add`] and [`Model::file`].
+    pub fn add_part(&mut self, name: &str, part: &Model) -> Result<()> {
+        let mut manifest = part.manifest().clone();
+        for file in &mut manifest.files {
+            let bytes = part.file(&file.name)?;
+            self.add(&format!("{name}/{}", file.name), &bytes)?;
+            *file = entry(&file.name, &bytes);
+        }
+        self.add(&format!("{name}/{MANIFEST_NAME}"), &manifest.to_json()?)
     }
 
     /// Puts the container in its place, where it replaces an older one, and opens it.
     ///
     /// # Errors
     /// `Io` when writing or renaming fails.
-    pub fn finish(self) -> Result<Model> {
+    pub fn finish(mut self) -> Result<Model> {
+        self.renew_parts()?;
         write_synced(&self.temporary.join(MANIFEST_NAME), &self.manifest.to_json()?)?;
         if self.target.extension().is_some_and(|extension| extension == "zip") {
             let packed = self.temporary.join("packed.zip");
@@ -91,6 +103,37 @@ impl ModelWriter {
             self.place_folder().context(|| self.target.display().to_string())?;
         }
         Model::open(&self.target)
+    }
+
+    /// Lets the manifests of the parts state their files as they were added, which is not as they were when someone
+    /// wrote a smaller network in the place of a part's.
+    fn renew_parts(&mut self) -> Result<()> {
+        let mut parts: Vec<_> = parts_of(&self.manifest.files).map(str::to_owned).collect();
+        parts.sort_by_key(|part| std::cmp::Reverse(part.matches('/').count()));
+        for part in parts {
+            let name = format!("{part}/{MANIFEST_NAME}");
+            let path = self.temporary.join(member_path(&name)?);
+            let Ok(mut manifest) = Manifest::from_json(&fs::read(&path)?) else { continue };
+            let added = |file: &ModelFile| {
+                let same = |other: &&ModelFile| inside(&part, &other.name) == Some(&file.name);
+                self.manifest
+                    .files
+                    .iter()
+                    .find(same)
+                    .map(|other| ModelFile { name: file.name.clone(), ..*other })
+            };
+            let files: Vec<_> =
+                manifest.files.iter().map(|file| added(file).unwrap_or_else(|| file.clone())).collect();
+            if files != manifest.files {
+                manifest.files = files;
+                let json = manifest.to_json()?;
+                write_synced(&path, &json)?;
+                self.manifest.files.iter_mut().filter(|file| file.name == name).for_each(|file| {
+                    *file = entry(&name, &json);
+                });
+            }
+        }
+        Ok(())
     }
 
     fn pack(&self, path: &Path) -> Result<()> {
@@ -128,6 +171,10 @@ impl Drop for ModelWriter {
         // Gone already after a successful `finish`; a leftover only costs room.
         let _ = fs::remove_dir_all(&self.temporary);
     }
+}
+
+fn entry(name: &str, bytes: &[u8]) -> ModelFile {
+    ModelFile { name: name.to_owned(), size: Some(bytes.len() as u64), sha256: Some(Sha256::of(bytes)) }
 }
 
 fn check_replaceable(target: &Path) -> Result<()> {

@@ -1,5 +1,7 @@
 //! Which joints a pose has, in which order, and which of them are joined by a bone.
 
+mod face;
+
 use serde::{Deserialize, Serialize};
 
 /// The joints of a kind of body.
@@ -18,6 +20,8 @@ pub enum Skeleton {
     LeftHand21,
     /// The same of a right hand.
     RightHand21,
+    /// MediaPipe's 478 points of a face: the mesh, then five of each iris, the one on the picture's left first.
+    Face478,
 }
 
 /// The joints of a hand, and its bones.
@@ -70,8 +74,14 @@ const HAND_BONES: &[[usize; 2]] = &[
 
 impl Skeleton {
     /// Every skeleton.
-    pub const ALL: &'static [Self] =
-        &[Self::Opendr18, Self::Coco17, Self::Blazepose33, Self::LeftHand21, Self::RightHand21];
+    pub const ALL: &'static [Self] = &[
+        Self::Opendr18,
+        Self::Coco17,
+        Self::Blazepose33,
+        Self::LeftHand21,
+        Self::RightHand21,
+        Self::Face478,
+    ];
 
     /// Its name, as JSON and messages write it.
     pub const fn name(self) -> &'static str {
@@ -81,6 +91,7 @@ impl Skeleton {
             Self::Blazepose33 => "blazepose33",
             Self::LeftHand21 => "left_hand21",
             Self::RightHand21 => "right_hand21",
+            Self::Face478 => "face478",
         }
     }
 
@@ -89,6 +100,7 @@ impl Skeleton {
         match self {
             Self::LeftHand21 => "left hand",
             Self::RightHand21 => "right hand",
+            Self::Face478 => "face",
             _ => "person",
         }
     }
@@ -150,6 +162,7 @@ impl Skeleton {
                 "r_foot",
             ],
             Self::LeftHand21 | Self::RightHand21 => HAND,
+            Self::Face478 => face::JOINTS,
         }
     }
 
@@ -232,6 +245,7 @@ impl Skeleton {
                 [28, 32],
             ],
             Self::LeftHand21 | Self::RightHand21 => HAND_BONES,
+            Self::Face478 => face::BONES,
         }
     }
 

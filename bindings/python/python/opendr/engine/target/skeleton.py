@@ -8,6 +8,11 @@ _HAND = (
     *("pinky_mcp", "pinky_pip", "pinky_dip", "pinky_tip"),
 )
 
+_FACE = (
+    *(f"mesh_{number}" for number in range(468)),
+    *(f"{side}_iris{point}" for side in "rl" for point in ("", "_a", "_b", "_c", "_d")),
+)
+
 #: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's,
 #: ``"blazepose33"`` BlazePose's, ``"left_hand21"`` and ``"right_hand21"`` are MediaPipe's hands.
 JOINTS: dict[str, tuple[str, ...]] = {
@@ -27,6 +32,7 @@ JOINTS: dict[str, tuple[str, ...]] = {
     ),
     "left_hand21": _HAND,
     "right_hand21": _HAND,
+    "face478": _FACE,
 }
 
 

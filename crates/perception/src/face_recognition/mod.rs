@@ -1,0 +1,7 @@
+//! Whose face it is.
+
+mod recognition;
+
+pub use recognition::{FaceRecognition, FaceRecognitionParams};
+#[cfg(feature = "training")]
+pub use recognition::{FaceRecognitionFitParams, FaceRecognitionMode};

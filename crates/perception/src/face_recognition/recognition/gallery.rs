@@ -1,0 +1,184 @@
+//! The persons that a recogniser knows.
+
+use opendr_engine::model::Model;
+use opendr_engine::target::Classes;
+use opendr_engine::{Error, Result};
+use serde::{Deserialize, Serialize};
+
+/// How many pictures there are of each class of the container.
+const HEADER: &str = "gallery.json";
+/// Their embeddings, one after the other: 32-bit floats, little-endian.
+const EMBEDDINGS: &str = "gallery.f32";
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    dimension: usize,
+    pictures: Vec<usize>,
+}
+
+/// Persons with the embeddings of their pictures.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Gallery {
+    dimension: usize,
+    persons: Vec<Person>,
+}
+
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Person {
+    name: String,
+    /// Of length 1, one after the other.
+    embeddings: Vec<f32>,
+}
+
+/// Scales to length 1; `false`, and all as it was, where it has none.
+pub(crate) fn normalise(embedding: &mut [f32]) -> bool {
+    let length = embedding.iter().map(|value| value * value).sum::<f32>().sqrt();
+    let is_direction = length.is_normal();
+    if is_direction {
+        embedding.iter_mut().for_each(|value| *value /= length);
+    }
+    is_direction
+}
+
+impl Gallery {
+    /// Of nobody.
+    pub fn new(dimension: usize) -> Self {
+        Self { dimension, persons: Vec::new() }
+    }
+
+    /// That of a container; of nobody where it has none.
+    ///
+    /// # Errors
+    /// `Format` when its files do not go together, or have embeddings of another network.
+    pub fn of_model(model: &Model, dimension: usize) -> Result<Self> {
+        if !model.manifest().files.iter().any(|file| file.name == HEADER) {
+            return Ok(Self::new(dimension));
+        }
+        Self::from_bytes(&model.file(HEADER)?, &model.file(EMBEDDINGS)?, model.classes(), dimension)
+    }
+
+    fn from_bytes(header: &[u8], embeddings: &[u8], names: &Classes, dimension: usize) -> Result<Self> {
+        let header: Header = serde_json::from_slice(header)
+            .map_err(|error| Error::format(format!("{HEADER} is no gallery")).with_source(error))?;
+        if header.dimension != dimension {
+            return Err(Error::format(format!(
+                "the gallery has embeddings of {} numbers, the network gives {dimension}: take the references again",
+                header.dimension
+            )));
+        }
+        let sum = header.pictures.iter().try_fold(0usize, |sum, count| sum.checked_add(*count));
+        let bytes = sum.and_then(|sum| sum.checked_mul(4 * dimension));
+        if bytes != Some(embeddings.len()) || header.pictures.len() != names.len() {
+            return Err(Error::format(format!(
+                "the gallery has {} bytes of embeddings and {} names for {:?} pictures of {} persons",
+                embeddings.len(),
+                names.len(),
+                sum,
+                header.pictures.len()
+            )));
+        }
+        let mut numbers = embeddings.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes));
+        let persons = names.iter().zip(&header.pictures).map(|(name, count)| {
+            let mut embeddings: Vec<f32> = numbers.by_ref().take(count * dimension).collect();
+            let sound = embeddings.chunks_exact_mut(dimension.max(1)).all(normalise);
+            let error =
+                || Error::format(format!("an embedding of {name:.80?} in the gallery has no direction"));
+            sound.then(|| Person { name: name.to_owned(), embeddings }).ok_or_else(error)
+        });
+        Ok(Self { dimension, persons: persons.collect::<Result<_>>()? })
+    }
+
+    /// The files of the container, which names the persons as its classes.
+    pub fn to_files(&self) -> Result<[(&'static str, Vec<u8>); 2]> {
+        let pictures = self.persons.iter().map(|person| person.embeddings.len() / self.dimension.max(1));
+        let header = Header { dimension: self.dimension, pictures: pictures.collect() };
+        let header = serde_json::to_vec(&header)
+            .map_err(|error| Error::internal("a gallery has no form as JSON").with_source(error))?;
+        let numbers = self.persons.iter().flat_map(|person| &person.embeddings);
+        Ok([(HEADER, header), (EMBEDDINGS, numbers.flat_map(|number| number.to_le_bytes()).collect())])
+    }
+
+    /// Whether the file of a container is of its gallery.
+    pub fn is_file(name: &str) -> bool {
+        name == HEADER || name == EMBEDDINGS
+    }
+
+    /// Numbers of an embedding.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The names, by class number.
+    pub fn names(&self) -> Classes {
+        self.persons.iter().map(|person| person.name.as_str()).collect()
+    }
+
+    /// Adds a picture of somebody; an embedding of length 1.
+    pub fn add(&mut self, name: &str, embedding: &[f32]) {
+        let at = self.persons.iter().position(|person| person.name == name).unwrap_or_else(|| {
+            self.persons.push(Person { name: name.to_owned(), embeddings: Vec::new() });
+            self.persons.len() - 1
+        });
+        self.persons[at].embeddings.extend_from_slice(embedding);
+    }
+
+    /// The number of the person with the picture closest to `embedding`, and their cosine; -1 where nobody is known.
+    pub fn nearest(&self, embedding: &[f32]) -> (usize, f32) {
+        let mut nearest = (0, -1.0);
+        for (at, person) in self.persons.iter().enumerate() {
+            for other in person.embeddings.chunks_exact(self.dimension.max(1)) {
+                let cosine = other.iter().zip(embedding).map(|(a, b)| a * b).sum::<f32>();
+                if cosine > nearest.1 {
+                    nearest = (at, cosine);
+                }
+            }
+        }
+        nearest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::ErrorKind;
+
+    use super::*;
+
+    fn gallery() -> Gallery {
+        let mut gallery = Gallery::new(2);
+        gallery.add("ann", &[1.0, 0.0]);
+        gallery.add("bob", &[0.0, 1.0]);
+        gallery.add("ann", &[0.6, 0.8]);
+        gallery
+    }
+
+    #[test]
+    fn the_closest_of_all_pictures_counts() {
+        let (person, cosine) = gallery().nearest(&[0.8, 0.6]);
+        assert_eq!(person, 0);
+        assert!((cosine - 0.96).abs() < 1e-6);
+        assert_eq!(gallery().nearest(&[0.0, 1.0]), (1, 1.0));
+        assert_eq!(Gallery::new(2).nearest(&[0.0, 1.0]), (0, -1.0));
+        assert_eq!(gallery().nearest(&[f32::NAN, 1.0]).1, -1.0);
+    }
+
+    #[test]
+    fn files_hold_it() {
+        let [(_, header), (_, embeddings)] = gallery().to_files().unwrap();
+        let read = |header: &[u8], embeddings: &[u8], names: &[&str], dimension| {
+            Gallery::from_bytes(header, embeddings, &names.iter().copied().collect(), dimension)
+        };
+        assert_eq!(read(&header, &embeddings, &["ann", "bob"], 2).unwrap(), gallery());
+        let huge = br#"{"dimension": 2, "pictures": [18446744073709551615, 18446744073709551615]}"#;
+        for (header, embeddings, names, dimension) in [
+            (&header[..], &embeddings[..], &["ann"][..], 2),
+            (&header, &embeddings[4..], &["ann", "bob"], 2),
+            (&header, &embeddings, &["ann", "bob"], 3),
+            (&header, &[255; 24], &["ann", "bob"], 2),
+            (huge, &embeddings, &["ann", "bob"], 2),
+            (b"{}", &embeddings, &["ann", "bob"], 2),
+        ] {
+            let error = read(header, embeddings, names, dimension).unwrap_err();
+            assert_eq!(error.kind(), ErrorKind::Format, "{error}");
+        }
+    }
+}

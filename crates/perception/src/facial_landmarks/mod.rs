@@ -1,0 +1,5 @@
+//! Points of faces.
+
+mod face_mesh;
+
+pub use face_mesh::{FaceMesh, FaceMeshParams, FaceTracks};
