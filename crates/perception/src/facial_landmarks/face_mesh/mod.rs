@@ -117,8 +117,9 @@ impl Learner for FaceMesh {
     type State = FaceTracks;
 
     fn load(model: &Model, params: FaceMeshParams, device: Device) -> Result<Self> {
-        let mesh = PictureNetwork::open_file(model, FILES[0], device, |input| preprocess(input, SIDE))?;
-        let iris = PictureNetwork::open_file(model, FILES[1], device, |input| preprocess(input, EYE_SIDE))?;
+        let mesh = PictureNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
+        let iris =
+            PictureNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)))?;
         let (Some(points), Some(presence)) = (output_of(&mesh, 3 * MESH), output_of(&mesh, 1)) else {
             return Err(Error::format(format!("{} gives no {MESH} points with a score", FILES[0])));
         };
