@@ -12,7 +12,9 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::FaceDetection => Ok("voc_detection"),
         Task::ImageClassification => Ok("classification"),
         Task::PoseEstimation => Ok("coco_keypoints"),
-        Task::HeartAnomalyDetection | Task::SpeechRecognition => Ok("classification"),
+        Task::HeartAnomalyDetection | Task::SpeechRecognition | Task::VoiceActivityDetection => {
+            Ok("classification")
+        }
         other => {
             Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
         }

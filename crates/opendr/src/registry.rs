@@ -9,7 +9,8 @@ use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
-use opendr_perception::speech_recognition::MatchboxNet;
+use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
+use opendr_perception::voice_activity_detection::SileroVad;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 
@@ -30,6 +31,8 @@ pub fn registry() -> &'static Registry {
             ImageClassifier,
             GatedRecurrentUnit,
             MatchboxNet,
+            DsCnn,
+            SileroVad,
             PpoLearner,
             SacLearner,
             Td3Learner,

@@ -8,18 +8,38 @@ use opendr_engine::{Error, Result};
 /// # Errors
 /// `Format` when there are no logits, or not as many as `classes` names.
 pub(crate) fn category_from_logits(category: &mut Category, logits: &[f32], classes: &Classes) -> Result<()> {
-    if logits.is_empty() || !(classes.is_empty() || classes.len() == logits.len()) {
-        let (scores, names) = (logits.len(), classes.len());
-        return Err(Error::format(format!(
-            "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
-        )));
-    }
     let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     category.probabilities.clear();
     category.probabilities.extend(logits.iter().map(|logit| (logit - highest).exp()));
     let sum: f32 = category.probabilities.iter().sum();
     category.probabilities.iter_mut().for_each(|probability| *probability /= sum);
-    let class = logits.iter().position(|logit| *logit == highest).unwrap_or_default();
+    highest_wins(category, classes)
+}
+
+/// Fills `category` with the class of the highest of `probabilities`, and with all of them.
+///
+/// # Errors
+/// As [`category_from_logits`].
+pub(crate) fn category_from_probabilities(
+    category: &mut Category,
+    probabilities: impl Iterator<Item = f32>,
+    classes: &Classes,
+) -> Result<()> {
+    category.probabilities.clear();
+    category.probabilities.extend(probabilities);
+    highest_wins(category, classes)
+}
+
+fn highest_wins(category: &mut Category, classes: &Classes) -> Result<()> {
+    let (scores, names) = (category.probabilities.len(), classes.len());
+    if scores == 0 || !(names == 0 || names == scores) {
+        return Err(Error::format(format!(
+            "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
+        )));
+    }
+    let highest = category.probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let class =
+        category.probabilities.iter().position(|probability| *probability == highest).unwrap_or_default();
     category.class = class as i64;
     category.confidence = category.probabilities.get(class).copied();
     category.description = classes.name(category.class).cloned();

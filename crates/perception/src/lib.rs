@@ -1,5 +1,6 @@
 //! Perception learners: one folder per task, one file per learner.
 
+pub mod beats;
 pub mod face_detection;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
@@ -8,15 +9,23 @@ pub mod object_detection_2d;
 pub mod pose_estimation;
 pub mod speech_recognition;
 pub mod suppression;
+pub mod voice_activity;
+pub mod voice_activity_detection;
 
 mod category_scores;
 #[cfg(feature = "training")]
 mod frozen_layers;
 #[cfg(feature = "training")]
 mod labelled;
+#[cfg(feature = "training")]
+mod labelled_pictures;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod overfit;
 mod picture_network;
+#[cfg(feature = "training")]
+mod small_classifier;
+#[cfg(test)]
+mod test_models;
 #[cfg(feature = "training")]
 mod trainable_weights;
