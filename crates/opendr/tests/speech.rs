@@ -129,9 +129,8 @@ fn speech_is_told_from_silence_and_noise() {
         let (class, probability) = speaks(words(&models, &[word]));
         assert!(class == "speech" && probability > 0.9, "{word}: {probability}");
     }
-    let noise: Vec<f32> =
-        (0..16_000u32).map(|at| (at.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32 - 0.5);
-    let noise = noise.map(|sample| 0.1 * sample).collect();
+    let noise = |at: u32| 0.1 * ((at.wrapping_mul(2_654_435_761) >> 8) as f32 / (1 << 24) as f32 - 0.5);
+    let noise = (0..16_000).map(noise).collect();
     for quiet in [vec![0.0; 16_000], noise, vec![0.0; 1]] {
         let (class, probability) = speaks(quiet);
         assert!(class == "silence" && probability < 0.3, "{probability}");
@@ -148,7 +147,7 @@ fn where_nobody_speaks_no_word_is_told() {
     sound.extend([0.0; 5 * 16_000]);
     let params = ParamMap::from([(
         "voice_activity".to_owned(),
-        ParamValue::from(voice.to_string_lossy().into_owned()),
+        ParamValue::Text(voice.to_string_lossy().into_owned()),
     )]);
     let learner = learner("ds_cnn", &model, params);
     let answers = streamed(&mut *learner.stream().unwrap(), &sound, 1600);
