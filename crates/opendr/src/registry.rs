@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
-use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
+use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
@@ -30,6 +30,7 @@ pub fn registry() -> &'static Registry {
             LightweightOpenPose,
             ImageClassifier,
             GatedRecurrentUnit,
+            AttentionNeuralBagOfFeature,
             MatchboxNet,
             DsCnn,
             SileroVad,

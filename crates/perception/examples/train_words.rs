@@ -22,22 +22,32 @@ use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [learner, clips, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give a learner, the folder of the clips and one for the model"));
+    let (learner, clips, output, epochs) = match &arguments[..] {
+        [learner, clips, output] => (learner, clips, output, 60),
+        [learner, clips, output, epochs] => {
+            let wrong = || Error::invalid_param(format!("{epochs:?} epochs; give a number"));
+            (learner, clips, output, epochs.parse().map_err(|_| wrong())?)
+        }
+        _ => {
+            return Err(Error::invalid_param(
+                "give a learner, the folder of the clips, one for the model and, if you like, the epochs (60)",
+            ));
+        }
     };
     let words = |dropout| WordFitParams { dropout, augment: true };
     match learner.as_str() {
         "matchboxnet" => {
-            let fit_params = MatchboxNetFitParams { training: training(60, 0.003), words: words(0.1) };
+            let fit_params = MatchboxNetFitParams { training: training(epochs, 0.003), words: words(0.1) };
             train::<MatchboxNetKind>(MatchboxNetParams::default(), &fit_params, clips, output)
         }
         "edge_speech_nets" => {
             let params = EdgeSpeechNetsParams { architecture: EdgeSpeechNet::D, ..Default::default() };
-            let fit_params = EdgeSpeechNetsFitParams { training: training(40, 0.003), words: words(0.1) };
+            let fit_params = EdgeSpeechNetsFitParams { training: training(epochs, 0.003), words: words(0.1) };
             train::<EdgeSpeechNetsKind>(params, &fit_params, clips, output)
         }
         "quadratic_self_onn" => {
-            let fit_params = QuadraticSelfOnnFitParams { training: training(40, 0.002), words: words(0.2) };
+            let fit_params =
+                QuadraticSelfOnnFitParams { training: training(epochs, 0.002), words: words(0.2) };
             train::<QuadraticSelfOnnKind>(QuadraticSelfOnnParams::default(), &fit_params, clips, output)
         }
         other => Err(Error::invalid_param(format!(
