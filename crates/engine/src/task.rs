@@ -65,6 +65,8 @@ tasks! {
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.
     SpeechRecognition = "speech_recognition";
+    /// Whether somebody speaks.
+    VoiceActivityDetection = "voice_activity_detection";
     /// What a robot does, learnt by acting.
     ReinforcementLearning = "reinforcement_learning";
     /// Where a robot goes, from its camera to its motion.

@@ -15,9 +15,10 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         }
         Task::FacialLandmarks => Ok("keypoints"),
         Task::PoseEstimation => Ok("coco_keypoints"),
-        Task::GestureRecognition | Task::HeartAnomalyDetection | Task::SpeechRecognition => {
-            Ok("classification")
-        }
+        Task::GestureRecognition
+        | Task::HeartAnomalyDetection
+        | Task::SpeechRecognition
+        | Task::VoiceActivityDetection => Ok("classification"),
         other => {
             Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
         }

@@ -11,13 +11,14 @@ use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::fall_detection::FallDetector;
 use opendr_perception::gesture_recognition::KeypointGesture;
 use opendr_perception::hand_pose_estimation::HandPose;
-use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
+use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
-use opendr_perception::speech_recognition::MatchboxNet;
+use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
+use opendr_perception::voice_activity_detection::SileroVad;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 
@@ -45,7 +46,10 @@ pub fn registry() -> &'static Registry {
             FallDetector,
             ImageClassifier,
             GatedRecurrentUnit,
+            AttentionNeuralBagOfFeature,
             MatchboxNet,
+            DsCnn,
+            SileroVad,
             PpoLearner,
             SacLearner,
             Td3Learner,

@@ -1,10 +1,10 @@
-//! Trains a learner to tell normal heart beats from others, and measures it on a fifth of the beats, kept apart.
+//! Trains a learner of heart signals to tell normal beats from others, and measures it on a fifth of the beats, kept apart.
 //!
 //! The beats are ECG5000 of the UCR archive (of the BIDMC database of PhysioNet). It makes the zoo's
-//! `gated_recurrent_unit/ecg5000`:
+//! `gated_recurrent_unit/ecg5000` and `attention_neural_bag_of_feature/ecg5000`:
 //!
 //! ```console
-//! $ cargo run --release -p opendr-perception --features training --example train_heart -- ECG5000_TRAIN.txt out
+//! $ cargo run --release -p opendr-perception --features training --example train_heart -- gated_recurrent_unit ECG5000_TRAIN.txt out
 //! ```
 
 use std::path::Path;
@@ -17,23 +17,47 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Value};
 use opendr_metrics::Roc;
 use opendr_perception::heart_anomaly_detection::{
-    GatedRecurrentUnit, GatedRecurrentUnitFitParams, GatedRecurrentUnitParams,
+    AttentionNeuralBagOfFeatureFitParams, AttentionNeuralBagOfFeatureKind, AttentionNeuralBagOfFeatureParams,
+    GatedRecurrentUnitFitParams, GatedRecurrentUnitKind, GatedRecurrentUnitParams, HeartLearner,
+    TrainableHeart,
 };
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [series, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give ECG5000_TRAIN.txt and a folder for the model"));
+    let [learner, series, output] = &arguments[..] else {
+        return Err(Error::invalid_param("give a learner, ECG5000_TRAIN.txt and a folder for the model"));
     };
+    match learner.as_str() {
+        "gated_recurrent_unit" => {
+            let params = GatedRecurrentUnitParams { recurrent_unit: 64, ..Default::default() };
+            let mut fit_params = GatedRecurrentUnitFitParams::default();
+            (fit_params.training.epochs, fit_params.training.lr) = (40, 0.002);
+            train::<GatedRecurrentUnitKind>(params, &fit_params, series, output)
+        }
+        "attention_neural_bag_of_feature" => {
+            let params = AttentionNeuralBagOfFeatureParams { n_codeword: 64, ..Default::default() };
+            let mut fit_params = AttentionNeuralBagOfFeatureFitParams::default();
+            (fit_params.training.epochs, fit_params.training.lr) = (40, 0.002);
+            train::<AttentionNeuralBagOfFeatureKind>(params, &fit_params, series, output)
+        }
+        other => Err(Error::invalid_param(format!(
+            "no learner {other}; give gated_recurrent_unit or attention_neural_bag_of_feature"
+        ))),
+    }
+}
+
+fn train<K: TrainableHeart>(
+    params: K::Params,
+    fit_params: &K::FitParams,
+    series: &str,
+    output: &str,
+) -> Result<()> {
     let ecg = open(&ExternalDataset::new(series, "ucr"), &OpenOptions::default(), &Problems::strict())?;
     let beats = Beats(ecg);
     let [training, kept_apart] = Subset::split(&beats, 0.8, 5000)?;
-    let params = GatedRecurrentUnitParams { recurrent_unit: 64, ..Default::default() };
-    let mut fit_params = GatedRecurrentUnitFitParams::default();
-    (fit_params.training.epochs, fit_params.training.lr) = (40, 0.002);
-    let mut handle = Handle::<GatedRecurrentUnit>::new(params, Device::Cpu)?;
+    let mut handle = Handle::<HeartLearner<K>>::new(params, Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
-    let statistics = handle.fit(&fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
+    let statistics = handle.fit(fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
     println!("{statistics}");
     let (mut roc, mut right) = (Roc::default(), 0);
     for index in 0..kept_apart.len() {

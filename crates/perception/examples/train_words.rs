@@ -1,10 +1,10 @@
-//! Trains MatchboxNet on the words of Speech Commands, and measures it on the clips of a fifth of the speakers, kept apart.
+//! Trains a learner of words on those of Speech Commands, and measures it on the clips of a fifth of the speakers, kept apart.
 //!
 //! The clips are of the test set of version 0.02, of ten words, silence and other words. It makes the zoo's
-//! `matchboxnet/commands_12`:
+//! `matchboxnet/commands_12`, `edge_speech_nets/commands_12` and `quadratic_self_onn/commands_12`:
 //!
 //! ```console
-//! $ cargo run --release -p opendr-perception --features training --example train_words -- speech_commands_v0.02_test out
+//! $ cargo run --release -p opendr-perception --features training --example train_words -- matchboxnet speech_commands_v0.02_test out
 //! ```
 
 use std::path::Path;
@@ -13,35 +13,74 @@ use opendr_datasets::{OpenOptions, Problems, open, speaker_of_clip};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset, Subset};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{Device, Error, Result, Value};
-use opendr_perception::speech_recognition::{MatchboxNet, MatchboxNetFitParams, MatchboxNetParams, Sound};
+use opendr_perception::speech_recognition::{
+    EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams, MatchboxNetFitParams,
+    MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams, QuadraticSelfOnnKind,
+    QuadraticSelfOnnParams, Sound, TrainableWords, WordFitParams, WordLearner,
+};
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [clips, output] = &arguments[..] else {
-        return Err(Error::invalid_param("give the folder of the clips and one for the model"));
+    let (learner, clips, output, epochs) = match &arguments[..] {
+        [learner, clips, output] => (learner, clips, output, 60),
+        [learner, clips, output, epochs] => {
+            let wrong = || Error::invalid_param(format!("{epochs:?} epochs; give a number"));
+            (learner, clips, output, epochs.parse().map_err(|_| wrong())?)
+        }
+        _ => {
+            return Err(Error::invalid_param(
+                "give a learner, the folder of the clips, one for the model and, if you like, the epochs (60)",
+            ));
+        }
     };
+    let words = |dropout| WordFitParams { dropout, augment: true };
+    match learner.as_str() {
+        "matchboxnet" => {
+            let fit_params = MatchboxNetFitParams { training: training(epochs, 0.003), words: words(0.1) };
+            train::<MatchboxNetKind>(MatchboxNetParams::default(), &fit_params, clips, output)
+        }
+        "edge_speech_nets" => {
+            let params = EdgeSpeechNetsParams { architecture: EdgeSpeechNet::D, ..Default::default() };
+            let fit_params = EdgeSpeechNetsFitParams { training: training(epochs, 0.003), words: words(0.1) };
+            train::<EdgeSpeechNetsKind>(params, &fit_params, clips, output)
+        }
+        "quadratic_self_onn" => {
+            let fit_params =
+                QuadraticSelfOnnFitParams { training: training(epochs, 0.002), words: words(0.2) };
+            train::<QuadraticSelfOnnKind>(QuadraticSelfOnnParams::default(), &fit_params, clips, output)
+        }
+        other => Err(Error::invalid_param(format!(
+            "no learner {other}; give matchboxnet, edge_speech_nets or quadratic_self_onn"
+        ))),
+    }
+}
+
+fn training(epochs: usize, lr: f64) -> TrainingParams {
+    TrainingParams {
+        epochs,
+        batch_size: 32,
+        lr,
+        lr_schedule: ScheduleKind::Cosine,
+        optimizer: OptimizerKind::Adamw,
+        weight_decay: 0.01,
+        ..TrainingParams::default()
+    }
+}
+
+fn train<K: TrainableWords>(
+    params: K::Params,
+    fit_params: &K::FitParams,
+    clips: &str,
+    output: &str,
+) -> Result<()> {
     let clips = ExternalDataset::new(clips, "speech_commands");
     let clips = &*open(&clips, &OpenOptions::default(), &Problems::strict())?;
     let (kept_apart, training) = (0..clips.len()).partition(|index| is_kept_apart(&clips.name(*index)));
     let (training, kept_apart) = (Subset::new(clips, training)?, Subset::new(clips, kept_apart)?);
-    let defaults = MatchboxNetFitParams::default();
-    let fit_params = MatchboxNetFitParams {
-        dropout: 0.1,
-        training: TrainingParams {
-            epochs: 60,
-            batch_size: 32,
-            lr: 0.003,
-            lr_schedule: ScheduleKind::Cosine,
-            optimizer: OptimizerKind::Adamw,
-            weight_decay: 0.01,
-            ..defaults.training
-        },
-        ..defaults
-    };
-    let mut handle = Handle::<MatchboxNet>::new(MatchboxNetParams::default(), Device::Cpu)?;
+    let mut handle = Handle::<WordLearner<K>>::new(params, Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
-    let statistics = handle.fit(&fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
+    let statistics = handle.fit(fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
     println!("{statistics}");
     let mut right = 0;
     for index in 0..kept_apart.len() {

@@ -9,14 +9,17 @@ use opendr_engine::{Error, Result};
 /// `Format` when there are no logits, or not as many as `classes` names.
 pub(crate) fn category_from_logits(category: &mut Category, logits: &[f32], classes: &Classes) -> Result<()> {
     let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    category_from_scores(category, logits.iter().map(|logit| (logit - highest).exp()), classes)
+    category.probabilities.clear();
+    category.probabilities.extend(logits.iter().map(|logit| (logit - highest).exp()));
+    shares(category);
+    highest_wins(category, classes)
 }
 
 /// Fills `category` with the class of the highest of `scores`, none below 0; its probability and those of all classes
 /// are their shares in the sum.
 ///
 /// # Errors
-/// `Format` when there are no scores, or not as many as `classes` names.
+/// As [`category_from_logits`].
 pub(crate) fn category_from_scores(
     category: &mut Category,
     scores: impl Iterator<Item = f32>,
@@ -24,17 +27,39 @@ pub(crate) fn category_from_scores(
 ) -> Result<()> {
     category.probabilities.clear();
     category.probabilities.extend(scores);
-    let count = category.probabilities.len();
-    if count == 0 || !(classes.is_empty() || classes.len() == count) {
-        let names = classes.len();
+    shares(category);
+    highest_wins(category, classes)
+}
+
+fn shares(category: &mut Category) {
+    let sum: f32 = category.probabilities.iter().sum();
+    category.probabilities.iter_mut().for_each(|probability| *probability /= sum);
+}
+
+/// Fills `category` with the class of the highest of `probabilities`, and with all of them.
+///
+/// # Errors
+/// As [`category_from_logits`].
+pub(crate) fn category_from_probabilities(
+    category: &mut Category,
+    probabilities: impl Iterator<Item = f32>,
+    classes: &Classes,
+) -> Result<()> {
+    category.probabilities.clear();
+    category.probabilities.extend(probabilities);
+    highest_wins(category, classes)
+}
+
+fn highest_wins(category: &mut Category, classes: &Classes) -> Result<()> {
+    let (scores, names) = (category.probabilities.len(), classes.len());
+    if scores == 0 || !(names == 0 || names == scores) {
         return Err(Error::format(format!(
-            "the model gives {count} scores for {names} classes; export it with the classes it was trained on"
+            "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
         )));
     }
     let highest = category.probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let class = category.probabilities.iter().position(|score| *score == highest).unwrap_or_default();
-    let sum: f32 = category.probabilities.iter().sum();
-    category.probabilities.iter_mut().for_each(|probability| *probability /= sum);
+    let class =
+        category.probabilities.iter().position(|probability| *probability == highest).unwrap_or_default();
     category.class = class as i64;
     category.confidence = category.probabilities.get(class).copied();
     category.description = classes.name(category.class).cloned();

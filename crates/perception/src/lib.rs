@@ -1,5 +1,6 @@
 //! Perception learners: one folder per task, one file per learner.
 
+pub mod beats;
 pub mod face_detection;
 pub mod face_recognition;
 pub mod facial_expression_recognition;
@@ -15,6 +16,8 @@ pub mod pose_estimation;
 pub mod regions;
 pub mod speech_recognition;
 pub mod suppression;
+pub mod voice_activity;
+pub mod voice_activity_detection;
 
 mod category_scores;
 mod face_finder;
@@ -23,10 +26,16 @@ mod frame_clock;
 mod frozen_layers;
 #[cfg(feature = "training")]
 mod labelled;
+#[cfg(feature = "training")]
+mod labelled_pictures;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod overfit;
 mod picture_network;
+#[cfg(feature = "training")]
+mod small_classifier;
+#[cfg(test)]
+mod test_models;
 #[cfg(feature = "training")]
 mod trainable_weights;
 mod turned_square;

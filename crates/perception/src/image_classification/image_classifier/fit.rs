@@ -7,10 +7,10 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
 
-use super::network::Network;
 use super::objective::Classify;
 use super::{ImageClassifier, ImageClassifierParams};
 use crate::labelled::classes_to_train;
+use crate::small_classifier::SmallClassifier;
 use crate::trainable_weights::network_from_base;
 
 /// How it is trained.
@@ -54,7 +54,7 @@ impl Fit for ImageClassifier {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, None, "classes")?;
         let device = begin(job, training)?;
-        let network = Network::new(classes.len(), fit_params.width, fit_params.dropout, &device);
+        let network = SmallClassifier::new(classes.len(), fit_params.width, fit_params.dropout, &device);
         let network = network_from_base(network, base)?;
         let ImageClassifierFitParams { side, crop, flip, label_smoothing, .. } = *fit_params;
         let objective = Classify { classes, side, crop, flip, label_smoothing };

@@ -1,12 +1,9 @@
 //! Image classifier: a small convolutional network that is trained on the user's own pictures.
 //!
-//! It also shows how a learner that trains is made: inference here, the network, what it is trained on and by, and `fit` in
-//! a file each.
+//! It also shows how a learner that trains is made: inference here, what it is trained on and by, and `fit` in a file each.
 
 #[cfg(feature = "training")]
 mod fit;
-#[cfg(feature = "training")]
-mod network;
 #[cfg(feature = "training")]
 mod objective;
 

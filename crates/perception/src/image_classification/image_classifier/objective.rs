@@ -1,19 +1,16 @@
 //! What it is trained on and by: pictures with classes, cross entropy.
 
-use burn::nn::loss::{CrossEntropyLoss, CrossEntropyLossConfig};
-use burn::tensor::{Device, Int, Tensor, TensorData};
+use burn::tensor::Device;
 use opendr_datasets::augment::{Flip, Pipeline, RandomResizedCrop};
-use opendr_datasets::loader::{Collate, ImageBatch, ImageBatches};
 use opendr_engine::Result;
-use opendr_engine::dataset::Sample;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::Classes;
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
-use super::network::Network;
 use super::{SCORES, preprocess};
-use crate::labelled::class_of;
+use crate::labelled_pictures::{LabelledPictures, PictureCollator};
+use crate::small_classifier::SmallClassifier;
 use crate::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Pictures with classes, cross entropy.
@@ -25,39 +22,12 @@ pub struct Classify {
     pub label_smoothing: f64,
 }
 
-/// Makes [`ClassifiedPictures`].
-pub struct Collator {
-    pictures: ImageBatches,
-    classes: usize,
-}
-
-/// Pictures and the number of the class of each.
-pub struct ClassifiedPictures {
-    pictures: ImageBatch,
-    classes: Vec<i64>,
-}
-
-impl Collate for Collator {
-    type Batch = ClassifiedPictures;
-
-    fn start(&self, capacity: usize) -> ClassifiedPictures {
-        ClassifiedPictures { pictures: self.pictures.start(capacity), classes: Vec::with_capacity(capacity) }
-    }
-
-    fn add(&self, batch: &mut ClassifiedPictures, sample: Sample) -> Result<()> {
-        let class = class_of(&sample, self.classes)?;
-        self.pictures.add(&mut batch.pictures, sample)?;
-        batch.classes.push(class);
-        Ok(())
-    }
-}
-
 impl Objective for Classify {
-    type Network = Network;
-    type Collate = Collator;
+    type Network = SmallClassifier;
+    type Collate = PictureCollator;
 
-    fn collate(&self) -> Result<Collator> {
-        Ok(Collator { pictures: ImageBatches::new(preprocess(self.side)), classes: self.classes.len() })
+    fn collate(&self) -> Result<PictureCollator> {
+        Ok(PictureCollator::new(preprocess(self.side), self.classes.len()))
     }
 
     fn pipeline(&self) -> Result<Pipeline> {
@@ -77,20 +47,14 @@ impl Objective for Classify {
         }
     }
 
-    fn loss(&self, network: &Network, batch: &ClassifiedPictures, device: &Device) -> Result<Loss> {
-        let ClassifiedPictures { pictures, classes } = batch;
-        let images =
-            Tensor::<4>::from_data(TensorData::new(pictures.values().to_vec(), pictures.shape()), device);
-        let wanted = Tensor::<1, Int>::from_data(TensorData::new(classes.clone(), [classes.len()]), device);
-        let loss: CrossEntropyLoss = CrossEntropyLossConfig::new()
-            .with_smoothing((self.label_smoothing > 0.0).then_some(self.label_smoothing as f32))
-            .init(device);
-        Ok(loss.forward(network.forward(images), wanted).into())
+    fn loss(&self, network: &SmallClassifier, batch: &LabelledPictures, device: &Device) -> Result<Loss> {
+        let scores = network.forward(batch.pictures(device));
+        Ok(batch.cross_entropy(scores, self.label_smoothing, device).into())
     }
 
-    fn container(&self, network: &Network) -> Result<Container> {
+    fn container(&self, network: &SmallClassifier) -> Result<Container> {
         let input = Input::new("image", [1, 3, self.side, self.side]);
-        let model = onnx(network, input, &[SCORES], Network::forward)?;
+        let model = onnx(network, input, &[SCORES], SmallClassifier::forward)?;
         let mut manifest = Manifest::new("image_classifier", "");
         manifest.classes = self.classes.clone();
         Ok(Container {

@@ -6,7 +6,8 @@ use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, Linea
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
 
-use super::front_end::COEFFICIENTS;
+use super::MatchboxNetKind;
+use crate::speech_recognition::word_learner::WordKind as _;
 
 /// Sizes of the network.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +24,7 @@ pub struct NetworkSizes {
     pub dropout: f64,
 }
 
+const COEFFICIENTS: usize = MatchboxNetKind::COEFFICIENTS;
 /// Channels before and after the blocks.
 const OUTER_CHANNELS: usize = 128;
 

@@ -5,33 +5,32 @@ use opendr_engine::{Error, Pool, Result};
 use crate::mfcc::{Mfcc, MfccOptions};
 use crate::speech_recognition::Sound;
 
-/// Coefficients of a frame.
-pub const COEFFICIENTS: usize = 64;
 /// Frames that the network is given: 1.2 s of sound; what is longer is cut, what is shorter filled up.
 pub const FRAMES: usize = 40;
 
-/// Cepstra as OpenDR's learner makes them: 64 coefficients of 40 ms every 30 ms, with librosa's recipe, brought to mean
+/// Cepstra as OpenDR's learners make them: coefficients of 40 ms every 30 ms, with librosa's recipe, brought to mean
 /// zero and deviation one over the sound. Different from OpenDR, what fills up short sound is that mean, not a value
 /// that stands for loud noise.
 pub struct FrontEnd {
     /// `None`: series are cepstra already.
     mfcc: Option<Mfcc>,
     sample_rate: u32,
+    coefficients: usize,
     cepstra: Pool<Vec<f32>>,
 }
 
 impl FrontEnd {
-    /// The front end for sound at `sample_rate`; with `mfcc` unset, for cepstra `[frames, COEFFICIENTS]` instead.
+    /// The front end for sound at `sample_rate`; with `mfcc` unset, for cepstra `[frames, coefficients]` instead.
     ///
     /// # Errors
     /// `InvalidParam` for a rate that is too low.
-    pub fn new(mfcc: bool, sample_rate: u32) -> Result<Self> {
+    pub fn new(mfcc: bool, sample_rate: u32, coefficients: usize) -> Result<Self> {
         let (window, hop) = (sample_rate as usize / 25, sample_rate as usize * 3 / 100);
-        let make = || Mfcc::new(MfccOptions::librosa(sample_rate, window, hop, COEFFICIENTS));
-        Ok(Self { mfcc: mfcc.then(make).transpose()?, sample_rate, cepstra: Pool::default() })
+        let make = || Mfcc::new(MfccOptions::librosa(sample_rate, window, hop, coefficients));
+        Ok(Self { mfcc: mfcc.then(make).transpose()?, sample_rate, coefficients, cepstra: Pool::default() })
     }
 
-    /// Replaces `input` by what the network is given, `[COEFFICIENTS, FRAMES]`.
+    /// Replaces `input` by what the network is given, `[coefficients, FRAMES]`.
     ///
     /// # Errors
     /// `InvalidInput` when it is no sound of that rate, or (without MFCC) no cepstra.
@@ -39,15 +38,15 @@ impl FrontEnd {
         let cepstra = &mut *self.cepstra.take();
         self.cepstra_into(sound, cepstra)?;
         input.clear();
-        input.resize(COEFFICIENTS * FRAMES, 0.0);
-        for (frame, cepstrum) in cepstra.chunks_exact(COEFFICIENTS).enumerate() {
+        input.resize(self.coefficients * FRAMES, 0.0);
+        for (frame, cepstrum) in cepstra.chunks_exact(self.coefficients).enumerate() {
             let places = input.iter_mut().skip(frame).step_by(FRAMES);
             places.zip(cepstrum).for_each(|(place, coefficient)| *place = *coefficient);
         }
         Ok(())
     }
 
-    /// Replaces `cepstra` by the frames, at most [`FRAMES`], with [`COEFFICIENTS`] each.
+    /// Replaces `cepstra` by the frames, at most [`FRAMES`], with as many coefficients as [`FrontEnd::new`] was told.
     ///
     /// # Errors
     /// As [`FrontEnd::input_into`].
@@ -55,19 +54,22 @@ impl FrontEnd {
         match (&self.mfcc, sound) {
             (Some(mfcc), sound) => {
                 mfcc.run_into(&sound.samples(self.sample_rate)?, cepstra);
-                cepstra.truncate(FRAMES * COEFFICIENTS);
+                cepstra.truncate(FRAMES * self.coefficients);
                 standardise(cepstra);
                 Ok(())
             }
-            (None, Sound::Series(series)) if series.shape()[1] == COEFFICIENTS => {
+            (None, Sound::Series(series)) if series.shape()[1] == self.coefficients => {
                 cepstra.clear();
-                cepstra.extend(series.as_slice().iter().take(FRAMES * COEFFICIENTS));
+                cepstra.extend(series.as_slice().iter().take(FRAMES * self.coefficients));
                 Ok(())
             }
-            (None, _) => Err(Error::invalid_input(format!(
-                "with preprocess_to_mfcc = false the learner takes a Timeseries of {COEFFICIENTS} coefficients a \
-                 frame; give that, or sound with preprocess_to_mfcc = true"
-            ))),
+            (None, _) => {
+                let coefficients = self.coefficients;
+                Err(Error::invalid_input(format!(
+                    "with preprocess_to_mfcc = false the learner takes a Timeseries of {coefficients} coefficients a \
+                     frame; give that, or sound with preprocess_to_mfcc = true"
+                )))
+            }
         }
     }
 }
@@ -87,9 +89,11 @@ mod tests {
 
     use super::*;
 
+    const COEFFICIENTS: usize = 64;
+
     #[test]
     fn short_sound_is_filled_and_long_sound_cut() {
-        let front_end = FrontEnd::new(true, 16_000).unwrap();
+        let front_end = FrontEnd::new(true, 16_000, COEFFICIENTS).unwrap();
         let noise = |samples: usize| {
             let samples: Vec<f32> = (0..samples).map(|at| ((at * at) as f32 * 0.01).sin()).collect();
             Audio::new(samples, 1, 16_000).unwrap()
@@ -108,7 +112,7 @@ mod tests {
 
     #[test]
     fn cepstra_are_taken_as_they_are() {
-        let front_end = FrontEnd::new(false, 16_000).unwrap();
+        let front_end = FrontEnd::new(false, 16_000, COEFFICIENTS).unwrap();
         let numbers: Vec<f32> = (0..2 * COEFFICIENTS).map(|at| at as f32).collect();
         let series = Timeseries::new(numbers, [2, COEFFICIENTS]).unwrap();
         let mut input = Vec::new();

@@ -3,46 +3,45 @@
 use burn::tensor::Device;
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
-use opendr_engine::learner::Learner;
 use opendr_engine::model::Manifest;
-use opendr_engine::params::Params;
+use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
-use super::network::{GatedRecurrentUnitNetwork, NetworkSizes};
-use super::{FILE, GatedRecurrentUnit, GatedRecurrentUnitParams, check_series};
+use super::fit::{HeartSizes, TrainableHeart};
+use super::{FILE, check_series};
 use crate::labelled::{LabelledBatch, class_of};
 use crate::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy, classes weighted.
-pub(super) struct HeartObjective<'a> {
-    pub sizes: NetworkSizes,
-    pub params: &'a GatedRecurrentUnitParams,
+pub(super) struct HeartObjective<'a, K: TrainableHeart> {
+    pub sizes: HeartSizes,
+    pub params: &'a K::Params,
     pub class_weight: &'a [f32],
     pub classes: Classes,
 }
 
-impl Objective for HeartObjective<'_> {
-    type Network = GatedRecurrentUnitNetwork;
+impl<K: TrainableHeart> Objective for HeartObjective<'_, K> {
+    type Network = K::Network;
     type Collate = SeriesBatches;
 
     fn collate(&self) -> Result<SeriesBatches> {
-        Ok(SeriesBatches { shape: [self.sizes.time, self.sizes.features], classes: self.sizes.classes })
+        Ok(SeriesBatches { shape: self.sizes.shape, classes: self.sizes.classes })
     }
 
     fn loss(&self, network: &Self::Network, batch: &LabelledBatch, device: &Device) -> Result<Loss> {
-        let series = batch.inputs([self.sizes.time, self.sizes.features], device);
-        Ok(batch.cross_entropy(network.forward(series), self.class_weight, device).into())
+        let series = batch.inputs(self.sizes.shape, device);
+        Ok(batch.cross_entropy(K::forward(network, series), self.class_weight, device).into())
     }
 
     fn container(&self, network: &Self::Network) -> Result<Container> {
-        let NetworkSizes { time, features, .. } = self.sizes;
+        let [time, features] = self.sizes.shape;
         let input = Input::new("series", [1, time, features]);
-        let model = export::onnx(network, input, &["logits"], GatedRecurrentUnitNetwork::forward)?;
-        let mut manifest = Manifest::new(GatedRecurrentUnit::SPEC.name, "");
-        manifest.task = Some(GatedRecurrentUnit::SPEC.task);
+        let model = export::onnx(network, input, &["logits"], K::forward)?;
+        let mut manifest = Manifest::new(K::SPEC.name, "");
+        manifest.task = Some(K::SPEC.task);
         manifest.params = self.params.to_map();
         manifest.classes.clone_from(&self.classes);
         Ok(Container {

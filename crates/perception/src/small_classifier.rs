@@ -1,4 +1,4 @@
-//! The network: blocks of convolution, batch normalisation and ReLU, halved in size by strides, then the mean over the
+//! A small classifier of pictures: blocks of convolution, batch normalisation and ReLU, halved in size by strides, then the mean over the
 //! picture.
 
 use burn::module::Module;
@@ -9,7 +9,7 @@ use burn::tensor::{Device, Tensor};
 
 /// A convolutional classifier.
 #[derive(Module, Debug)]
-pub struct Network {
+pub struct SmallClassifier {
     blocks: Vec<Block>,
     dropout: Dropout,
     head: Linear,
@@ -24,7 +24,7 @@ struct Block {
 /// Kernel and stride of each block; channels double with each stride.
 const BLOCKS: [(usize, usize); 4] = [(5, 2), (3, 1), (3, 2), (3, 1)];
 
-impl Network {
+impl SmallClassifier {
     /// A network that tells `classes` apart, `width` channels in its first block.
     pub fn new(classes: usize, width: usize, dropout: f64, device: &Device) -> Self {
         let (mut inputs, mut outputs) = (3, width);

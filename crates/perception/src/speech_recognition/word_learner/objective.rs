@@ -5,7 +5,6 @@ use opendr_datasets::augment::{AudioGain, AudioNoise, AudioShift, Augment, Other
 use opendr_datasets::loader::Collate;
 use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::dataset::Sample;
-use opendr_engine::learner::Learner;
 use opendr_engine::model::Manifest;
 use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
@@ -13,57 +12,62 @@ use opendr_engine::{Error, Random, Result, Value};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
-use super::front_end::{COEFFICIENTS, FRAMES, FrontEnd};
-use super::network::MatchboxNetNetwork;
-use super::{FILE, MatchboxNet, MatchboxNetParams};
+use super::fit::TrainableWords;
+use super::{FILE, WordParams};
 use crate::labelled::{LabelledBatch, class_of};
 use crate::speech_recognition::Sound;
+use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 use crate::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy.
-pub(super) struct SpeechObjective<'a> {
-    pub params: &'a MatchboxNetParams,
+pub(super) struct WordObjective<'a, K: TrainableWords> {
+    pub params: &'a K::Params,
     pub classes: Classes,
     /// Whether sound and cepstra are changed at random.
     pub augment: bool,
 }
 
-impl Objective for SpeechObjective<'_> {
-    type Network = MatchboxNetNetwork;
+impl<K: TrainableWords> Objective for WordObjective<'_, K> {
+    type Network = K::Network;
     type Collate = CepstraBatches;
 
     fn pipeline(&self) -> Result<Pipeline> {
-        let MatchboxNetParams { preprocess_to_mfcc, sample_rate, .. } = *self.params;
-        let masks = SpecAugment { max_time: 8, max_frequency: 8, ..SpecAugment::default() };
+        let WordParams { preprocess_to_mfcc, sample_rate, .. } = *K::words(self.params);
+        let masks = SpecAugment { max_time: 8, max_frequency: K::COEFFICIENTS / 8, ..SpecAugment::default() };
         let (changed, often) = if self.augment { (0.5, 0.8) } else { (0.0, 0.0) };
         let pipeline = Pipeline::default();
         let pipeline = match preprocess_to_mfcc {
-            true => pipeline
-                .push("sound", 1.0, Box::new(ToSound { sample_rate }))?
-                .sometimes(often, AudioShift { max_shift: 0.15 })?
-                .sometimes(changed, AudioGain::default())?
-                .sometimes(changed, AudioNoise { min_snr: 5.0, max_snr: 40.0 })?
-                .push("cepstra", 1.0, Box::new(ToCepstra(FrontEnd::new(true, sample_rate)?)))?,
+            true => {
+                let coefficients = K::COEFFICIENTS;
+                let front_end = FrontEnd::new(true, sample_rate, coefficients)?;
+                pipeline
+                    .push("sound", 1.0, Box::new(ToSound { sample_rate }))?
+                    .sometimes(often, AudioShift { max_shift: 0.15 })?
+                    .sometimes(changed, AudioGain::default())?
+                    .sometimes(changed, AudioNoise { min_snr: 5.0, max_snr: 40.0 })?
+                    .push("cepstra", 1.0, Box::new(ToCepstra { front_end, coefficients }))?
+            }
             false => pipeline,
         };
         pipeline.sometimes(often, masks)
     }
 
     fn collate(&self) -> Result<CepstraBatches> {
-        let front_end = FrontEnd::new(false, self.params.sample_rate)?;
-        Ok(CepstraBatches { front_end, classes: self.classes.len() })
+        let coefficients = K::COEFFICIENTS;
+        let front_end = FrontEnd::new(false, K::words(self.params).sample_rate, coefficients)?;
+        Ok(CepstraBatches { front_end, coefficients, classes: self.classes.len() })
     }
 
     fn loss(&self, network: &Self::Network, batch: &LabelledBatch, device: &Device) -> Result<Loss> {
-        let cepstra = batch.inputs([COEFFICIENTS, FRAMES], device);
-        Ok(batch.cross_entropy(network.forward(cepstra), &[], device).into())
+        let cepstra = batch.inputs([K::COEFFICIENTS, FRAMES], device);
+        Ok(batch.cross_entropy(K::forward(network, cepstra), &[], device).into())
     }
 
     fn container(&self, network: &Self::Network) -> Result<Container> {
-        let input = Input::new("cepstra", [1, COEFFICIENTS, FRAMES]);
-        let model = export::onnx(network, input, &["logits"], MatchboxNetNetwork::forward)?;
-        let mut manifest = Manifest::new(MatchboxNet::SPEC.name, "");
-        manifest.task = Some(MatchboxNet::SPEC.task);
+        let input = Input::new("cepstra", [1, K::COEFFICIENTS, FRAMES]);
+        let model = export::onnx(network, input, &["logits"], K::forward)?;
+        let mut manifest = Manifest::new(K::SPEC.name, "");
+        manifest.task = Some(K::SPEC.task);
         manifest.params = self.params.to_map();
         manifest.classes.clone_from(&self.classes);
         Ok(Container {
@@ -87,13 +91,16 @@ impl Augment for ToSound {
 }
 
 /// Makes sound a [`Timeseries`] of its cepstra.
-struct ToCepstra(FrontEnd);
+struct ToCepstra {
+    front_end: FrontEnd,
+    coefficients: usize,
+}
 
 impl Augment for ToCepstra {
     fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
         let mut cepstra = Vec::new();
-        self.0.cepstra_into(sound_of(sample)?, &mut cepstra)?;
-        let shape = [cepstra.len() / COEFFICIENTS, COEFFICIENTS];
+        self.front_end.cepstra_into(sound_of(sample)?, &mut cepstra)?;
+        let shape = [cepstra.len() / self.coefficients, self.coefficients];
         sample.data = vec![Value::Timeseries(Timeseries::new(cepstra, shape)?)];
         Ok(())
     }
@@ -110,6 +117,7 @@ fn sound_of(sample: &Sample) -> Result<Sound<'_>> {
 /// Cepstra as the network takes them.
 pub(super) struct CepstraBatches {
     front_end: FrontEnd,
+    coefficients: usize,
     classes: usize,
 }
 
@@ -117,7 +125,7 @@ impl Collate for CepstraBatches {
     type Batch = LabelledBatch;
 
     fn start(&self, capacity: usize) -> LabelledBatch {
-        LabelledBatch::with_capacity(capacity, COEFFICIENTS * FRAMES)
+        LabelledBatch::with_capacity(capacity, self.coefficients * FRAMES)
     }
 
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {

@@ -6,12 +6,40 @@ use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random, Value};
 use opendr_training::Objective;
 
-use super::network::{GatedRecurrentUnitNetwork, NetworkSizes};
 use super::objective::HeartObjective;
 use super::*;
+use crate::heart_anomaly_detection::{
+    AttentionNeuralBagOfFeatureFitParams, AttentionNeuralBagOfFeatureKind, AttentionNeuralBagOfFeatureParams,
+    AttentionType, GatedRecurrentUnit, GatedRecurrentUnitFitParams, GatedRecurrentUnitKind,
+    GatedRecurrentUnitParams, QuantizationType,
+};
 use crate::overfit::losses_on_one_batch;
 
-const SIZES: NetworkSizes = NetworkSizes { features: 2, time: 100, classes: 3, hidden: 16, dropout: 0.0 };
+const SIZES: HeartSizes = HeartSizes { shape: [100, 2], classes: 3, dropout: 0.0 };
+
+/// Small networks.
+fn recurrent() -> GatedRecurrentUnitParams {
+    GatedRecurrentUnitParams { recurrent_unit: 16, ..Default::default() }
+}
+
+fn bag(
+    quantization_type: QuantizationType,
+    attention_type: AttentionType,
+) -> AttentionNeuralBagOfFeatureParams {
+    AttentionNeuralBagOfFeatureParams {
+        n_codeword: 24,
+        quantization_type,
+        attention_type,
+        ..Default::default()
+    }
+}
+
+fn bags() -> impl Iterator<Item = AttentionNeuralBagOfFeatureParams> {
+    use AttentionType::*;
+    [Spatial, Temporal, Spatialsa, Temporalsa, Spatiotemporal]
+        .into_iter()
+        .flat_map(|kind| [QuantizationType::Nbof, QuantizationType::Tnbof].map(|what| bag(what, kind)))
+}
 
 /// Noise with classes that have nothing to do with it.
 struct Noise;
@@ -35,7 +63,7 @@ impl DatasetIterator for Noise {
     }
 }
 
-fn objective(params: &GatedRecurrentUnitParams) -> HeartObjective<'_> {
+fn objective<K: TrainableHeart>(params: &K::Params) -> HeartObjective<'_, K> {
     HeartObjective { sizes: SIZES, params, class_weight: &[], classes: Noise.classes() }
 }
 
@@ -59,38 +87,64 @@ fn fit(
     trained
 }
 
-#[test]
-fn learns_one_batch_by_heart() {
-    let params = GatedRecurrentUnitParams::default();
+fn learns_by_heart<K: TrainableHeart>(params: &K::Params) {
     let samples = (0..Noise.len()).map(|index| Noise.get(index).unwrap()).collect();
-    let network = |device: &Trainer| GatedRecurrentUnitNetwork::new(&SIZES, device);
-    let [before, after] = losses_on_one_batch(&objective(&params), network, samples, 0.005);
-    assert!(after < 0.05 * before, "{before} {after}");
+    let network = |device: &Trainer| K::network(params, &SIZES, device);
+    let [before, after] = losses_on_one_batch(&objective::<K>(params), network, samples, 0.005);
+    assert!(after < 0.05 * before, "{params:?}: {before} {after}");
 }
 
 #[test]
-fn infers_what_the_trainer_computes() {
+fn learn_one_batch_by_heart() {
+    learns_by_heart::<GatedRecurrentUnitKind>(&recurrent());
+    for kind in [AttentionType::Spatial, AttentionType::Spatiotemporal] {
+        learns_by_heart::<AttentionNeuralBagOfFeatureKind>(&bag(QuantizationType::Nbof, kind));
+    }
+}
+
+fn infers_what_is_computed<K: TrainableHeart>(params: &K::Params, number: usize) {
     let device = Trainer::flex();
     device.seed(5);
-    let network = GatedRecurrentUnitNetwork::new(&SIZES, &device);
-    let params = GatedRecurrentUnitParams { recurrent_unit: 16, ..Default::default() };
-    let container = objective(&params).container(&network).unwrap();
-    let folder = std::env::temp_dir().join(format!("opendr-gru-{}", std::process::id()));
+    let network = K::network(params, &SIZES, &device);
+    let container = objective::<K>(params).container(&network).unwrap();
+    let name = format!("opendr-{}-{number}-{}", K::SPEC.name, std::process::id());
+    let folder = std::env::temp_dir().join(name);
     container.write(&folder).unwrap();
-    let mut handle = Handle::<GatedRecurrentUnit>::new(Default::default(), Device::Cpu).unwrap();
+    let mut handle = Handle::<HeartLearner<K>>::new(Default::default(), Device::Cpu).unwrap();
     handle.load(&folder).unwrap();
     let Some(Value::Timeseries(series)) = Noise.get(1).unwrap().data.into_iter().next() else { panic!() };
     let category = handle.infer(&series).unwrap();
     let input = Tensor::<3>::from_data(TensorData::new(series.as_slice().to_vec(), [1, 100, 2]), &device);
-    let wanted = softmax(network.valid().forward(input), 1).into_data().try_to_vec::<f32>().unwrap();
+    let wanted = softmax(K::forward(&network.valid(), input), 1).into_data().try_to_vec::<f32>().unwrap();
     assert!(category.probabilities.iter().zip(&wanted).all(|(got, wanted)| (got - wanted).abs() < 1e-5));
     assert_eq!(category.description, Noise.classes().name(category.class).cloned());
-    assert_eq!(handle.params().recurrent_unit, 16);
+    assert_eq!(handle.params().to_map(), params.to_map());
+    std::fs::remove_dir_all(&folder).ok();
+}
+
+#[test]
+fn infer_what_the_trainer_computes() {
+    infers_what_is_computed::<GatedRecurrentUnitKind>(&recurrent(), 0);
+    for (number, params) in bags().enumerate() {
+        infers_what_is_computed::<AttentionNeuralBagOfFeatureKind>(&params, number);
+    }
+}
+
+#[test]
+fn what_does_not_fit_the_network_is_refused() {
+    let device = Trainer::flex();
+    let params = recurrent();
+    let network = GatedRecurrentUnitKind::network(&params, &SIZES, &device);
+    let folder = std::env::temp_dir().join(format!("opendr-gru-unfit-{}", std::process::id()));
+    objective::<GatedRecurrentUnitKind>(&params).container(&network).unwrap().write(&folder).unwrap();
+    let mut handle = Handle::<GatedRecurrentUnit>::new(Default::default(), Device::Cpu).unwrap();
+    handle.load(&folder).unwrap();
     let short = Timeseries::new(vec![0.0; 100], [50, 2]).unwrap();
     assert_eq!(handle.infer(&short).unwrap_err().kind(), ErrorKind::InvalidInput);
     let missing = Timeseries::new(vec![f32::NAN; 200], [100, 2]).unwrap();
     assert_eq!(handle.infer(&missing).unwrap_err().kind(), ErrorKind::InvalidInput);
-    let other = GatedRecurrentUnitParams { n_class: Some(2), ..Default::default() };
+    let mut other = GatedRecurrentUnitParams::default();
+    other.heart.n_class = Some(2);
     let mut handle = Handle::<GatedRecurrentUnit>::new(other, Device::Cpu).unwrap();
     assert_eq!(handle.load(&folder).unwrap_err().kind(), ErrorKind::InvalidParam);
     std::fs::remove_dir_all(&folder).ok();
@@ -114,9 +168,9 @@ fn what_does_not_fit_the_data_is_refused() {
         params
     };
     for (params, kind) in [
-        (sized(|params| params.n_class = Some(2)), ErrorKind::InvalidInput),
-        (sized(|params| params.in_channels = Some(1)), ErrorKind::InvalidParam),
-        (sized(|params| params.series_length = Some(99)), ErrorKind::InvalidParam),
+        (sized(|params| params.heart.n_class = Some(2)), ErrorKind::InvalidInput),
+        (sized(|params| params.heart.in_channels = Some(1)), ErrorKind::InvalidParam),
+        (sized(|params| params.heart.series_length = Some(99)), ErrorKind::InvalidParam),
     ] {
         assert_eq!(fit(&params, &fit_params, "refused").unwrap_err().kind(), kind);
     }
@@ -129,4 +183,6 @@ fn what_does_not_fit_the_data_is_refused() {
 fn defaults_of_training_are_those_of_opendr() {
     let training = GatedRecurrentUnitFitParams::default().training;
     assert_eq!((training.epochs, training.batch_size, training.lr, training.lr_min), (200, 32, 2e-4, 1e-5));
+    let training = AttentionNeuralBagOfFeatureFitParams::default().training;
+    assert_eq!((training.epochs, training.batch_size, training.lr, training.lr_min), (300, 32, 1e-3, 1e-5));
 }
