@@ -11,9 +11,10 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 23] = [
+pub const PARSERS: [(&str, Parser); 24] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
+    ("ctranslate2", ctranslate2),
     ("card_toml", card_toml),
     ("picture", picture),
     ("target_json", target_json),
@@ -52,6 +53,12 @@ fn tfjs_json(bytes: &[u8]) {
     let weights = bytes.get(end + 1..).unwrap_or_default();
     if let Ok(onnx) = opendr_import::onnx_from_tfjs(&bytes[..end], &[weights], &Default::default()) {
         assert!(!onnx.is_empty());
+    }
+}
+
+fn ctranslate2(bytes: &[u8]) {
+    if let Ok(networks) = opendr_import::whisper_from_ctranslate2(bytes) {
+        assert!(!networks.encoder.is_empty() && !networks.decoder.is_empty());
     }
 }
 

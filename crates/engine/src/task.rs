@@ -53,6 +53,8 @@ tasks! {
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.
     SpeechRecognition = "speech_recognition";
+    /// What was said.
+    SpeechTranscription = "speech_transcription";
     /// What a robot does, learnt by acting.
     ReinforcementLearning = "reinforcement_learning";
     /// Where a robot goes, from its camera to its motion.

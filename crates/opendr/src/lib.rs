@@ -48,7 +48,7 @@ pub use fit::{
 pub use opendr_engine::*;
 pub use opendr_perception::{
     face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
-    pose_estimation, speech_recognition, suppression,
+    pose_estimation, resampler, speech_recognition, speech_transcription, suppression,
 };
 pub use registry::registry;
 pub use smaller::optimize_loaded;

@@ -10,6 +10,7 @@ use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
 use opendr_perception::speech_recognition::MatchboxNet;
+use opendr_perception::speech_transcription::Whisper;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
 
@@ -30,6 +31,7 @@ pub fn registry() -> &'static Registry {
             ImageClassifier,
             GatedRecurrentUnit,
             MatchboxNet,
+            Whisper,
             PpoLearner,
             SacLearner,
             Td3Learner,

@@ -6,7 +6,9 @@ pub mod image_classification;
 pub mod mfcc;
 pub mod object_detection_2d;
 pub mod pose_estimation;
+pub mod resampler;
 pub mod speech_recognition;
+pub mod speech_transcription;
 pub mod suppression;
 
 mod category_scores;

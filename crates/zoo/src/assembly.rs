@@ -61,8 +61,10 @@ impl Assembly<'_> {
         let mut writer = ModelWriter::new(&made, self.item.manifest())?;
         if let Some(import) = &self.item.variant.import {
             self.progress.note(&format!("converting {} to ONNX", self.item));
-            let (name, bytes) = imported(import, files)?;
-            writer.add(&name, &bytes)?;
+            let names: Vec<&str> = self.item.variant.files.iter().map(|file| file.name.as_str()).collect();
+            for (name, bytes) in imported(import, &names, files)? {
+                writer.add(&name, &bytes)?;
+            }
         } else {
             for (file, bytes) in self.item.variant.files.iter().zip(files) {
                 writer.add(&file.name, bytes)?;

@@ -79,7 +79,7 @@ pub struct Variant {
     pub speed: Option<Speed>,
     /// The files to get.
     pub files: Vec<CardFile>,
-    /// How the model's one file is made from them; absent when they are the model.
+    /// How the model's files are made from them; absent when they are the model.
     #[serde(default)]
     pub import: Option<Import>,
     /// Where the files are, in the order in which to try.
@@ -112,7 +112,7 @@ pub struct CardFile {
     pub sha256: Sha256,
 }
 
-/// How files of another format become one ONNX file.
+/// How files of another format become ONNX files.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 #[serde(tag = "format", rename_all = "snake_case", deny_unknown_fields)]
 #[non_exhaustive]
@@ -129,6 +129,9 @@ pub enum Import {
         #[serde(default)]
         outputs: Vec<String>,
     },
+    /// A Whisper that CTranslate2 converted: the first of the files is its `model.bin`, of which `encoder.onnx` and
+    /// `decoder.onnx` are made; the others go into the container as they are.
+    Ctranslate2Whisper,
 }
 
 fn model_onnx() -> String {

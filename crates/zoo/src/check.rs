@@ -41,6 +41,7 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
             member_path(output)?;
             ensure(variant.files.len() >= 2, || "a TensorFlow.js model has a JSON and weights".into())?;
         }
+        Some(Import::Ctranslate2Whisper) => ensure(!variant.files.is_empty(), || "no files".into())?,
         None if kind == ItemKind::Sample => {
             ensure(variant.files.len() == 1, || "a sample is one file".into())?;
         }
