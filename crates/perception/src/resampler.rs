@@ -194,7 +194,7 @@ mod tests {
             assert!(pieces == whole, "pieces of {size}");
         }
         assert_eq!(resampled(&[0.5, 0.25], 16_000, 16_000).unwrap(), [0.5, 0.25]);
-        assert_eq!(resampled(&[], 8000, 16_000).unwrap(), []);
+        assert!(resampled(&[], 8000, 16_000).unwrap().is_empty());
     }
 
     #[test]
