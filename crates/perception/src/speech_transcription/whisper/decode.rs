@@ -31,7 +31,6 @@ pub struct DecodeOptions<'a> {
 #[derive(Debug, Clone, Default)]
 pub struct Decoded {
     pub tokens: Vec<u32>,
-    pub text: String,
     pub temperature: f32,
     /// Mean of the logarithms of the tokens' probabilities, the end's among them.
     pub avg_logprob: f32,
@@ -126,13 +125,11 @@ impl Decoding<'_> {
             },
         );
         let Candidate { tokens, sum } = best.unwrap_or_default();
-        let text = self.vocabulary.text(&tokens).trim().to_owned();
         Ok(Decoded {
             temperature,
             avg_logprob: sum / (tokens.len() + 1) as f32,
-            compression_ratio: compression_ratio(&text),
+            compression_ratio: compression_ratio(self.vocabulary.text(&tokens).trim()),
             no_speech_prob: begun.no_speech_prob,
-            text,
             tokens,
         })
     }
