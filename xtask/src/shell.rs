@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// An error is a line for the person at the terminal.
@@ -26,8 +27,23 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     command
 }
 
+/// The step to begin with; those before it are left out.
+static BEGIN: Mutex<Option<String>> = Mutex::new(None);
+
+/// Leaves out the steps before `name`: to go on where an earlier run failed.
+pub fn begin_with(name: &str) {
+    *BEGIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(name.to_owned());
+}
+
 /// Runs a step, says what it is and how long it took.
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
+    let mut begin = BEGIN.lock().unwrap_or_else(PoisonError::into_inner);
+    if begin.as_deref().is_some_and(|begin| begin != name) {
+        println!("=== {name}: left out");
+        return Ok(());
+    }
+    *begin = None;
+    drop(begin);
     println!("\n=== {name}: {}", line(command));
     let start = Instant::now();
     let status =
