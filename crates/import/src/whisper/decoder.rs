@@ -5,7 +5,7 @@ use opendr_onnx::proto::GraphProto;
 use opendr_onnx::{Kind, Operator, Wire};
 
 use super::layers::Layers;
-use super::sizes::{PLACES, Sizes};
+use super::sizes::{CONTEXT, PLACES, Sizes};
 use super::{HEAD, WhisperWeights};
 
 /// The graph of [`super::WhisperOnnx::decoder`].
@@ -31,7 +31,7 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
         }));
     }
     let embeddings = layers.weight("decoder.embed_tokens.weight", &[count, width])?;
-    let encodings = layers.weight("decoder.embed_positions.weight", &[448, width])?;
+    let encodings = layers.weight("decoder.embed_positions.weight", &[CONTEXT, width])?;
     let rows = || Operator::new("Gather").int("axis", 0);
     let mut places = layers.add("tokens", rows(), &[&embeddings, &tokens], vec![None, Some(width)])?;
     let encodings = layers.add("positions", rows(), &[&encodings, &positions], vec![None, Some(width)])?;

@@ -9,7 +9,7 @@ pub const FRAMES: usize = 3000;
 /// Places of the encoder: half as many.
 pub const PLACES: usize = FRAMES / 2;
 /// Tokens that the decoder can attend to.
-const CONTEXT: usize = 448;
+pub const CONTEXT: usize = 448;
 /// The largest there is has 32 layers of width 1280.
 const MOST_LAYERS: usize = 128;
 const MOST_WIDTH: usize = 1 << 14;
