@@ -27,16 +27,16 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     command
 }
 
-/// The step to begin with; those before it are left out.
+/// The check to begin with; those before it are left out.
 static BEGIN: Mutex<Option<String>> = Mutex::new(None);
 
-/// Leaves out the steps before `name`: to go on where an earlier run failed.
+/// Leaves out the checks before `name`: to go on where an earlier run failed. What later ones need is still made.
 pub fn begin_with(name: &str) {
     *BEGIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(name.to_owned());
 }
 
-/// Runs a step, says what it is and how long it took.
-pub fn step(name: &str, command: &mut Command) -> Result<()> {
+/// A step that nothing else needs.
+pub fn check(name: &str, command: &mut Command) -> Result<()> {
     let mut begin = BEGIN.lock().unwrap_or_else(PoisonError::into_inner);
     if begin.as_deref().is_some_and(|begin| begin != name) {
         println!("=== {name}: left out");
@@ -44,6 +44,11 @@ pub fn step(name: &str, command: &mut Command) -> Result<()> {
     }
     *begin = None;
     drop(begin);
+    step(name, command)
+}
+
+/// Runs a step, says what it is and how long it took.
+pub fn step(name: &str, command: &mut Command) -> Result<()> {
     println!("\n=== {name}: {}", line(command));
     let start = Instant::now();
     let status =
