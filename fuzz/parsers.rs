@@ -15,6 +15,7 @@ pub const PARSERS: [(&str, Parser); 24] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("tflite", tflite),
+    ("ctranslate2", ctranslate2),
     ("card_toml", card_toml),
     ("picture", picture),
     ("target_json", target_json),
@@ -59,6 +60,12 @@ fn tfjs_json(bytes: &[u8]) {
 fn tflite(bytes: &[u8]) {
     if let Ok(onnx) = opendr_import::onnx_from_tflite(bytes, &Default::default()) {
         assert!(!onnx.is_empty());
+    }
+}
+
+fn ctranslate2(bytes: &[u8]) {
+    if let Ok(networks) = opendr_import::whisper_from_ctranslate2(bytes) {
+        assert!(!networks.encoder.is_empty() && !networks.decoder.is_empty());
     }
 }
 

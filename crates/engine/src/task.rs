@@ -67,6 +67,8 @@ tasks! {
     SpeechRecognition = "speech_recognition";
     /// Whether somebody speaks.
     VoiceActivityDetection = "voice_activity_detection";
+    /// What was said.
+    SpeechTranscription = "speech_transcription";
     /// What a robot does, learnt by acting.
     ReinforcementLearning = "reinforcement_learning";
     /// Where a robot goes, from its camera to its motion.

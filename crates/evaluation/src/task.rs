@@ -19,6 +19,7 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         | Task::HeartAnomalyDetection
         | Task::SpeechRecognition
         | Task::VoiceActivityDetection => Ok("classification"),
+        Task::SpeechTranscription => Ok("transcription"),
         other => {
             Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
         }

@@ -1,16 +1,22 @@
-//! Turns TensorFlow.js graph models and TensorFlow Lite models into ONNX.
+//! Turns models of other formats into ONNX.
 //!
 //! [`onnx_from_tfjs`] takes the files of a TensorFlow.js graph model as packages carry them, [`onnx_from_tflite`] a
 //! `.tflite` file. Both give an ONNX model that runs in ONNX Runtime and in the built-in runtime: channels-first, with
 //! the transpositions, identities and shape arithmetic of the original evaluated or folded away. How images are laid
 //! out at its inputs and outputs is one rule, written there.
+//!
+//! [`onnx_from_whisper`] builds the two networks of a Whisper around weights from anywhere; those of CTranslate2 are read by
+//! [`whisper_from_ctranslate2`].
 
 mod bounded;
-mod half;
+mod ctranslate2;
 mod tensorflow;
 mod tfjs;
 mod tflite;
+mod whisper;
 
+pub use ctranslate2::whisper_from_ctranslate2;
 pub use tensorflow::ImportOptions;
 pub use tfjs::{onnx_from_tfjs, onnx_from_tfjs_file, tfjs_weight_files};
 pub use tflite::{onnx_from_tflite, onnx_from_tflite_file};
+pub use whisper::{WhisperOnnx, WhisperWeights, onnx_from_whisper};

@@ -50,8 +50,8 @@ pub use opendr_engine::*;
 pub use opendr_perception::{
     beats, face_detection, face_recognition, facial_expression_recognition, facial_landmarks, fall_detection,
     gesture_recognition, hand_pose_estimation, heart_anomaly_detection, image_classification, mfcc,
-    object_detection_2d, pose_estimation, regions, speech_recognition, suppression, voice_activity,
-    voice_activity_detection,
+    object_detection_2d, pose_estimation, regions, resampler, speech_recognition, speech_transcription,
+    suppression, voice_activity, voice_activity_detection,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

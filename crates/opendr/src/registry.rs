@@ -18,6 +18,7 @@ use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
 use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
+use opendr_perception::speech_transcription::Whisper;
 use opendr_perception::voice_activity_detection::SileroVad;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
@@ -50,6 +51,7 @@ pub fn registry() -> &'static Registry {
             MatchboxNet,
             DsCnn,
             SileroVad,
+            Whisper,
             PpoLearner,
             SacLearner,
             Td3Learner,

@@ -4,7 +4,6 @@
 //! it gives its sessions, and takes the ranges of every tensor from that, so that no learner needs a line for it.
 //! [`optimize`] does the same with recordings of the caller's own.
 
-mod half;
 mod histogram;
 mod integer_graph;
 mod learner;

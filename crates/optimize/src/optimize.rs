@@ -7,11 +7,10 @@ use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Progress, Result, ResultExt};
 use opendr_inference::Session;
 use opendr_inference::recording::Recording;
-use opendr_onnx::passes::constants_to_initializers;
+use opendr_onnx::passes::{constants_to_initializers, halve_weights};
 use opendr_onnx::proto::ModelProto;
 use opendr_onnx::{bytes_from_model, model_from_bytes};
 
-use crate::half::halve_weights;
 use crate::options::{OptimizeOptions, Precision};
 use crate::quantise::{Quantiser, check_version};
 use crate::report::{Accuracy, Report};

@@ -83,19 +83,30 @@ impl Mfcc {
 
     /// Replaces `cepstra` by those of `samples`, `[frames, coefficients]`, and tells the number of frames.
     pub fn run_into(&self, samples: &[f32], cepstra: &mut Vec<f32>) -> usize {
-        let frames = self.frames(samples.len());
         let (count, coefficients) = (self.options.bands.count, self.options.coefficients);
         let Work { frame, bands } = &mut *self.work.take();
+        let frames = self.log_mel_of(samples, frame, bands);
+        cepstra.resize(frames * coefficients, 0.0);
+        for (bands, cepstrum) in bands.chunks_exact(count).zip(cepstra.chunks_exact_mut(coefficients)) {
+            self.cosine.run(bands, cepstrum);
+        }
+        frames
+    }
+
+    /// Replaces `bands` by the logarithms of the mel bands, `[frames, bands]`, from which cepstra are made, and tells the
+    /// number of frames.
+    pub fn log_mel_into(&self, samples: &[f32], bands: &mut Vec<f32>) -> usize {
+        self.log_mel_of(samples, &mut self.work.take().frame, bands)
+    }
+
+    fn log_mel_of(&self, samples: &[f32], frame: &mut FrameWork, bands: &mut Vec<f32>) -> usize {
+        let (frames, count) = (self.frames(samples.len()), self.options.bands.count);
         bands.resize(frames * count, 0.0);
         for (index, bands) in bands.chunks_exact_mut(count).enumerate() {
             self.spectrum.fill(samples, index, frame);
             self.log_bands(frame, bands);
         }
         self.limit_range(bands);
-        cepstra.resize(frames * coefficients, 0.0);
-        for (bands, cepstrum) in bands.chunks_exact(count).zip(cepstra.chunks_exact_mut(coefficients)) {
-            self.cosine.run(bands, cepstrum);
-        }
         frames
     }
 

@@ -162,6 +162,13 @@ impl MfccOptions {
         }
     }
 
+    /// The bands of Whisper's spectrogram in decibels, from `librosa.filters.mel(sr=16000, n_fft=400, n_mels=bands)`:
+    /// 25 ms every 10 ms. Whisper takes them [before](crate::mfcc::Mfcc::log_mel_into) the cosine transform.
+    pub fn whisper(bands: usize) -> Self {
+        let librosa = Self::librosa(16_000, 400, 160, 1);
+        Self { bands: MelBands { count: bands, ..librosa.bands }, ..librosa }
+    }
+
     pub(super) fn check(&self) -> Result<()> {
         let sizes = [
             ("window", self.window),

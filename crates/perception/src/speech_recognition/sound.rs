@@ -18,6 +18,14 @@ pub enum Sound<'a> {
 const PORT: &str = ValueType::Audio.port();
 
 impl<'a> Sound<'a> {
+    /// Samples a second: those of the sound, or `of_series` where it is a series.
+    pub fn rate(self, of_series: u32) -> u32 {
+        match self {
+            Self::Audio(audio) => audio.sample_rate(),
+            Self::Series(_) => of_series,
+        }
+    }
+
     /// The samples of one channel at `sample_rate`.
     ///
     /// # Errors

@@ -1,5 +1,7 @@
 //! Elements of weights as they lie in files.
 
+use opendr_onnx::float_from_half;
+
 /// The element types that weights are stored in; integers of checkpoints are counters and no weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Element {
@@ -24,24 +26,14 @@ impl Element {
         match self {
             Self::F64 => bytes.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b) as f32).collect(),
             Self::F32 => bytes.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect(),
-            Self::F16 => bytes.as_chunks().0.iter().map(|&b| f32_from_f16(u16::from_le_bytes(b))).collect(),
+            Self::F16 => {
+                bytes.as_chunks().0.iter().map(|&b| float_from_half(u16::from_le_bytes(b))).collect()
+            }
             Self::Bf16 => {
                 let number = |&b: &[u8; 2]| f32::from_bits(u32::from(u16::from_le_bytes(b)) << 16);
                 bytes.as_chunks().0.iter().map(number).collect()
             }
         }
-    }
-}
-
-/// IEEE 754 binary16 as binary32: exact for every value.
-fn f32_from_f16(bits: u16) -> f32 {
-    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
-    let (exponent, fraction) = ((bits >> 10) & 0x1f, f32::from(bits & 0x3ff));
-    match exponent {
-        0 => sign * fraction * (-24f32).exp2(),
-        0x1f if fraction == 0.0 => sign * f32::INFINITY,
-        0x1f => f32::NAN,
-        _ => sign * (1024.0 + fraction) * (f32::from(exponent) - 25.0).exp2(),
     }
 }
 
@@ -62,6 +54,6 @@ mod tests {
         for (bits, number) in halves {
             assert_eq!(Element::F16.numbers(&u16::to_le_bytes(bits)), [number]);
         }
-        assert!(f32_from_f16(0x7e00).is_nan() && f32_from_f16(0xfc00) == f32::NEG_INFINITY);
+        assert!(float_from_half(0x7e00).is_nan() && float_from_half(0xfc00) == f32::NEG_INFINITY);
     }
 }

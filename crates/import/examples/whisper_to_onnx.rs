@@ -1,0 +1,27 @@
+//! `whisper_to_onnx model.bin FOLDER`: turns a Whisper that CTranslate2 converted into `encoder.onnx` and `decoder.onnx`.
+
+use std::process::ExitCode;
+
+use opendr_import::whisper_from_ctranslate2;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [model, folder] = arguments.as_slice() else {
+        eprintln!("usage: whisper_to_onnx model.bin FOLDER");
+        return ExitCode::from(2);
+    };
+    let folder = std::path::Path::new(folder);
+    let written = std::fs::read(model).map_err(Into::into).and_then(|model| {
+        let networks = whisper_from_ctranslate2(&model)?;
+        std::fs::write(folder.join("encoder.onnx"), networks.encoder)?;
+        std::fs::write(folder.join("decoder.onnx"), networks.decoder)?;
+        Ok(())
+    });
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err::<_, opendr_engine::Error>(error) => {
+            eprintln!("{error}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,5 @@
+//! What was said.
+
+mod whisper;
+
+pub use whisper::{Whisper, WhisperParams, WhisperStream};

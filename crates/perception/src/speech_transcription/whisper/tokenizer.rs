@@ -1,0 +1,239 @@
+//! Text as tokens: byte pair encoding over bytes, as GPT-2 has it (Radford et al. 2019; Sennrich et al. 2016).
+
+use std::collections::HashMap;
+
+use opendr_engine::{Error, Result};
+use serde::Deserialize;
+
+use super::words::words_of;
+
+/// No Whisper has nearly as many tokens.
+const MOST_TOKENS: u32 = 1 << 20;
+
+/// The largest text that is encoded, bytes: a prompt of 223 tokens has a thousand.
+const LONGEST: usize = 1 << 16;
+
+/// Tokens with the bytes that they stand for, and which two become one.
+pub struct Tokenizer {
+    bytes: Vec<Vec<u8>>,
+    of_byte: [Option<u32>; 256],
+    /// From two neighbours to the order of their join, and what they become.
+    joins: HashMap<(u32, u32), (usize, u32)>,
+    special: HashMap<String, u32>,
+}
+
+#[derive(Deserialize)]
+struct TokenizerFile {
+    #[serde(default)]
+    added_tokens: Vec<AddedToken>,
+    model: Model,
+}
+
+#[derive(Deserialize)]
+struct AddedToken {
+    id: u32,
+    content: String,
+}
+
+#[derive(Deserialize)]
+struct Model {
+    vocab: HashMap<String, u32>,
+    merges: Vec<Merge>,
+}
+
+/// Both spellings of Hugging Face's file.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Merge {
+    Text(String),
+    Pair(String, String),
+}
+
+impl Merge {
+    fn pair(&self) -> Option<(&str, &str)> {
+        match self {
+            Self::Text(text) => text.split_once(' '),
+            Self::Pair(left, right) => Some((left, right)),
+        }
+    }
+}
+
+impl Tokenizer {
+    /// Reads Hugging Face's `tokenizer.json`.
+    ///
+    /// # Errors
+    /// `Format` when it is none, or not of bytes.
+    pub fn from_json(json: &[u8]) -> Result<Self> {
+        let TokenizerFile { added_tokens, model } = serde_json::from_slice(json)
+            .map_err(|error| Error::format("tokenizer.json is damaged").with_source(error))?;
+        let ids = model.vocab.values().copied().chain(added_tokens.iter().map(|token| token.id));
+        let last = ids.max().filter(|id| *id < MOST_TOKENS).ok_or_else(|| {
+            Error::format(format!("tokenizer.json names no tokens, or more than {MOST_TOKENS}"))
+        })?;
+        let mut bytes = vec![Vec::new(); last as usize + 1];
+        let mut of_byte = [None; 256];
+        for (text, id) in &model.vocab {
+            // Special tokens may stand in the vocabulary too; they are no text.
+            let spelled: Option<Vec<u8>> = text.chars().map(byte_of).collect();
+            if let Some(&[byte]) = spelled.as_deref() {
+                of_byte[usize::from(byte)] = Some(*id);
+            }
+            if let Some(place) = bytes.get_mut(*id as usize) {
+                *place = spelled.unwrap_or_default();
+            }
+        }
+        let mut joins = HashMap::new();
+        for (order, merge) in model.merges.iter().enumerate() {
+            let found = merge.pair().and_then(|(left, right)| {
+                let id = |text: &str| model.vocab.get(text).copied();
+                Some(((id(left)?, id(right)?), id(&format!("{left}{right}"))?))
+            });
+            let Some((pair, joined)) = found else {
+                return Err(Error::format(format!("tokenizer.json: merge {order} is of no tokens")));
+            };
+            joins.entry(pair).or_insert((order, joined));
+        }
+        for token in &added_tokens {
+            if let Some(place) = bytes.get_mut(token.id as usize) {
+                place.clear();
+            }
+        }
+        let special = added_tokens.into_iter().map(|token| (token.content, token.id)).collect();
+        Ok(Self { bytes, of_byte, joins, special })
+    }
+
+    /// How many tokens there are, special ones among them.
+    pub fn len(&self) -> usize {
+        self.bytes.len()
+    }
+
+    /// A special token by its spelling, e.g. `<|endoftext|>`.
+    pub fn special(&self, spelling: &str) -> Option<u32> {
+        self.special.get(spelling).copied()
+    }
+
+    /// All special tokens.
+    pub fn specials(&self) -> impl Iterator<Item = (&str, u32)> {
+        self.special.iter().map(|(spelling, id)| (spelling.as_str(), *id))
+    }
+
+    /// Adds the bytes of a token; special ones have none.
+    pub fn extend(&self, bytes: &mut Vec<u8>, token: u32) {
+        if let Some(own) = self.bytes.get(token as usize) {
+            bytes.extend_from_slice(own);
+        }
+    }
+
+    /// The text of tokens; what is not UTF-8 becomes U+FFFD, special tokens are left out.
+    pub fn text(&self, tokens: &[u32]) -> String {
+        let mut bytes = Vec::new();
+        tokens.iter().for_each(|token| self.extend(&mut bytes, *token));
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+
+    /// The tokens of a text. Spellings of special tokens count as text.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a text of more than 65,536 bytes, `Format` when the tokenizer has not all 256 bytes.
+    pub fn tokens(&self, text: &str) -> Result<Vec<u32>> {
+        if text.len() > LONGEST {
+            return Err(Error::invalid_param(format!(
+                "a text of {} bytes to begin with; give at most {LONGEST}",
+                text.len()
+            )));
+        }
+        let mut tokens = Vec::new();
+        for word in words_of(text) {
+            let ids: Option<Vec<u32>> = word.bytes().map(|byte| self.of_byte[usize::from(byte)]).collect();
+            let ids = ids.ok_or_else(|| Error::format("tokenizer.json has no token for some byte"))?;
+            tokens.extend(self.joined(ids));
+        }
+        Ok(tokens)
+    }
+
+    /// Joins neighbours, always the pair that comes first in the list.
+    fn joined(&self, mut tokens: Vec<u32>) -> Vec<u32> {
+        loop {
+            let pairs = tokens.windows(2).enumerate().filter_map(|(at, pair)| match pair {
+                &[left, right] => self.joins.get(&(left, right)).map(|(order, joined)| (*order, at, *joined)),
+                _ => None,
+            });
+            let Some((_, at, joined)) = pairs.min() else { return tokens };
+            tokens.splice(at..at + 2, [joined]);
+        }
+    }
+}
+
+/// The byte that a character of the file stands for: printable ones for themselves, the others, in their order, from
+/// U+0100 on.
+fn byte_of(character: char) -> Option<u8> {
+    let itself = |byte: u8| matches!(byte, b'!'..=b'~' | 0xa1..=0xac | 0xae..=0xff);
+    match u8::try_from(character) {
+        Ok(byte) => Some(byte).filter(|byte| itself(*byte)),
+        Err(_) => {
+            let place = (character as usize).checked_sub(256)?;
+            (0..=255).filter(|byte| !itself(*byte)).nth(place)
+        }
+    }
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// Bytes, a few joins, and special tokens from 260 on.
+    pub fn tiny(special: &[&str]) -> Tokenizer {
+        let spelled = |byte: u8| (0..=0x143).filter_map(char::from_u32).find(|c| byte_of(*c) == Some(byte));
+        let mut vocab: serde_json::Map<String, serde_json::Value> =
+            (0..=255u8).map(|byte| (spelled(byte).unwrap().to_string(), byte.into())).collect();
+        for (id, text) in [(256, "he"), (257, "ll"), (258, "hell"), (259, "Ġhe")] {
+            vocab.insert(text.to_owned(), id.into());
+        }
+        let special: Vec<_> = special
+            .iter()
+            .zip(260..)
+            .map(|(content, id)| serde_json::json!({"id": id, "content": content}))
+            .collect();
+        let json = serde_json::json!({
+            "added_tokens": special,
+            "model": {"vocab": vocab, "merges": ["h e", ["l", "l"], "he ll", "Ġ he"]}
+        });
+        Tokenizer::from_json(json.to_string().as_bytes()).unwrap()
+    }
+
+    #[test]
+    fn bytes_have_characters() {
+        assert_eq!(byte_of('Ġ'), Some(b' '));
+        assert_eq!(byte_of('Ċ'), Some(b'\n'));
+        assert_eq!(byte_of('a'), Some(b'a'));
+        assert_eq!([byte_of(' '), byte_of('\u{144}'), byte_of('€')], [None; 3]);
+        let all: std::collections::HashSet<u8> =
+            (0..0x144).filter_map(char::from_u32).filter_map(byte_of).collect();
+        assert_eq!(all.len(), 256);
+    }
+
+    #[test]
+    fn the_first_join_comes_first() {
+        let tokenizer = tiny(&["<|end|>"]);
+        assert_eq!(tokenizer.tokens("hello he").unwrap(), [258, u32::from(b'o'), 259]);
+        assert_eq!(tokenizer.text(&[258, u32::from(b'o'), 259, 260]), "hello he");
+        let text = "naïve 5 µm\n\t'll don't";
+        assert_eq!(tokenizer.text(&tokenizer.tokens(text).unwrap()), text);
+        assert_eq!((tokenizer.len(), tokenizer.special("<|end|>")), (261, Some(260)));
+        assert!(tokenizer.tokens(&"x".repeat(LONGEST + 1)).is_err());
+    }
+
+    #[test]
+    fn damaged_files_are_refused() {
+        for json in [
+            "",
+            "{}",
+            r#"{"model": {"vocab": {}, "merges": []}}"#,
+            r#"{"model": {"vocab": {"a": 4294967295}, "merges": []}}"#,
+            r#"{"model": {"vocab": {"a": 0}, "merges": ["a b"]}}"#,
+            r#"{"model": {"vocab": {"a": 0}, "merges": ["a"]}}"#,
+        ] {
+            assert!(Tokenizer::from_json(json.as_bytes()).is_err(), "{json}");
+        }
+    }
+}

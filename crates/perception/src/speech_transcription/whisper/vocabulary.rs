@@ -1,0 +1,154 @@
+//! Tokens that mean something to Whisper.
+
+use opendr_engine::{Error, Result};
+
+use super::tokenizer::Tokenizer;
+
+/// Steps of 20 ms in a window of 30 s, both ends among them.
+const TIMES: u32 = 1501;
+
+/// From so many tokens on a Whisper knows other languages than English.
+const MULTILINGUAL: usize = 51_865;
+
+/// Signs that stand for no speech (openai/whisper's `non_speech_tokens`), and those whose first token is enough.
+const SIGNS: &str = "\" # ( ) * + / : ; < = > @ [ \\ ] ^ _ ` { | } ~ 「 」 『 』 << >> <<< >>> -- --- -( -[ (' (\" (( )) ((( ))) \
+                     [[ ]] {{ }} ♪♪ ♪♪♪";
+const NOTES: [&str; 7] = ["♩", "♪", "♫", "♬", "♭", "♮", "♯"];
+
+/// The tokenizer, and the tokens that are no words.
+pub struct Vocabulary {
+    pub tokenizer: Tokenizer,
+    /// Ends a text; all tokens before it are words.
+    pub end: u32,
+    /// Begins a transcript.
+    pub start: u32,
+    /// Begins what was said before.
+    pub previous: u32,
+    transcribe: u32,
+    /// Where nobody speaks.
+    pub no_speech: u32,
+    /// Says that no times are wanted.
+    pub no_times: u32,
+    /// The time zero; the others follow it, 20 ms each.
+    pub first_time: u32,
+    languages: Vec<(String, u32)>,
+    /// What a text does not begin with.
+    pub blank: Vec<u32>,
+    /// Signs and special tokens that no transcript has.
+    pub unspoken: Vec<u32>,
+}
+
+impl Vocabulary {
+    /// The tokens of a decoder that tells `count` apart.
+    ///
+    /// # Errors
+    /// `Format` when it is no tokenizer of Whisper, or not of that decoder.
+    pub fn new(tokenizer: Tokenizer, count: usize) -> Result<Self> {
+        let special = |name: &str| {
+            let missing =
+                || Error::format(format!("tokenizer.json has no token {name}, so it is not Whisper's"));
+            tokenizer.special(name).ok_or_else(missing)
+        };
+        let no_speech = special("<|nocaptions|>").or_else(|_| special("<|nospeech|>"))?;
+        let (end, start, no_times) =
+            (special("<|endoftext|>")?, special("<|startoftranscript|>")?, special("<|notimestamps|>")?);
+        let (transcribe, translate) = (special("<|transcribe|>")?, special("<|translate|>")?);
+        let (previous, lm) = (special("<|startofprev|>")?, special("<|startoflm|>")?);
+        let first_time = no_times + 1;
+        let last = first_time + TIMES;
+        if end > start || start > no_times || last as usize > count || tokenizer.len() > count {
+            return Err(Error::format(format!(
+                "tokenizer.json has {} tokens with times to {last}, the decoder tells {count} apart",
+                tokenizer.len()
+            )));
+        }
+        let mut languages: Vec<(String, u32)> = tokenizer
+            .specials()
+            .filter(|(_, id)| (start + 1..transcribe.min(translate)).contains(id))
+            .filter_map(|(name, id)| Some((name.strip_prefix("<|")?.strip_suffix("|>")?.to_owned(), id)))
+            .collect();
+        languages.sort_by_key(|(_, id)| *id);
+        if count < MULTILINGUAL {
+            languages.clear();
+        }
+        let mut blank = tokenizer.tokens(" ")?;
+        blank.push(end);
+        let mut unspoken = unspoken_signs(&tokenizer)?;
+        unspoken.extend([transcribe, translate, start, previous, lm, no_speech]);
+        unspoken.sort_unstable();
+        unspoken.dedup();
+        Ok(Self {
+            tokenizer,
+            end,
+            start,
+            previous,
+            transcribe,
+            no_speech,
+            no_times,
+            first_time,
+            languages,
+            blank,
+            unspoken,
+        })
+    }
+
+    /// Whether it knows other languages than English.
+    pub fn is_multilingual(&self) -> bool {
+        !self.languages.is_empty()
+    }
+
+    /// The tokens of all languages; none where there is only English.
+    pub fn languages(&self) -> impl Iterator<Item = u32> {
+        self.languages.iter().map(|(_, id)| *id)
+    }
+
+    /// The token of a language; `None` where English, the only one, needs none.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a language that it does not know.
+    pub fn language(&self, name: &str) -> Result<Option<u32>> {
+        if !self.is_multilingual() {
+            return match name {
+                "en" => Ok(None),
+                _ => Err(Error::invalid_param(format!(
+                    "language = {name:.20?}, but this Whisper knows English only; give en, or load a multilingual one"
+                ))),
+            };
+        }
+        let found = self.languages.iter().find(|(own, _)| own == name);
+        found.map(|(_, id)| Some(*id)).ok_or_else(|| {
+            let known: Vec<_> = self.languages.iter().map(|(own, _)| own.as_str()).collect();
+            Error::invalid_param(format!("language = {name:.20?}: give one of {}", known.join(", ")))
+        })
+    }
+
+    /// What a transcript begins with.
+    pub fn beginning(&self, language: Option<u32>, times: bool) -> Vec<u32> {
+        let mut tokens = vec![self.start];
+        tokens.extend(language.into_iter().flat_map(|language| [language, self.transcribe]));
+        tokens.extend((!times).then_some(self.no_times));
+        tokens
+    }
+
+    /// The text of tokens, times and special tokens left out.
+    pub fn text(&self, tokens: &[u32]) -> String {
+        let words: Vec<u32> = tokens.iter().copied().filter(|token| *token < self.end).collect();
+        self.tokenizer.text(&words)
+    }
+}
+
+fn unspoken_signs(tokenizer: &Tokenizer) -> Result<Vec<u32>> {
+    let mut unspoken = Vec::new();
+    for text in [" -", " '"] {
+        unspoken.extend(tokenizer.tokens(text)?.first());
+    }
+    for sign in SIGNS.split_whitespace().chain(NOTES) {
+        for text in [sign.to_owned(), format!(" {sign}")] {
+            let tokens = tokenizer.tokens(&text)?;
+            if tokens.len() == 1 || NOTES.contains(&sign) {
+                unspoken.extend(tokens.first());
+            }
+        }
+    }
+    Ok(unspoken)
+}
