@@ -49,6 +49,10 @@ tasks! {
     ImageClassification = "image_classification";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
+    /// What persons do, told by their moving skeletons.
+    SkeletonBasedActionRecognition = "skeleton_based_action_recognition";
+    /// What persons do in a video.
+    ActivityRecognition = "activity_recognition";
     /// Whether a heart signal is normal.
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.

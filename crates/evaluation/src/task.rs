@@ -13,6 +13,7 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::ImageClassification => Ok("classification"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         Task::HeartAnomalyDetection | Task::SpeechRecognition => Ok("classification"),
+        Task::SkeletonBasedActionRecognition | Task::ActivityRecognition => Ok("classification"),
         other => {
             Err(Error::unsupported(format!("{other} has no metric of its own yet; name one with metric")))
         }

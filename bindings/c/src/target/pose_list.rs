@@ -19,6 +19,10 @@ pub enum opendr_skeleton {
     OPENDR_OPENDR18 = 0,
     /// COCO's 17 joints of a person.
     OPENDR_COCO17 = 1,
+    /// JHMDB's 15 joints of a person.
+    OPENDR_JHMDB15 = 2,
+    /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    OPENDR_NTU25 = 3,
 }
 
 /// A point found in a picture, pixels; (-1, -1) means not found.
@@ -96,6 +100,8 @@ impl List for PoseList {
             confidence: item.confidence,
             skeleton: match item.skeleton {
                 Skeleton::Coco17 => opendr_skeleton::OPENDR_COCO17 as i32,
+                Skeleton::Jhmdb15 => opendr_skeleton::OPENDR_JHMDB15 as i32,
+                Skeleton::Ntu25 => opendr_skeleton::OPENDR_NTU25 as i32,
                 _ => opendr_skeleton::OPENDR_OPENDR18 as i32,
             },
             id: item.id.unwrap_or(-1),
@@ -106,6 +112,8 @@ impl List for PoseList {
         let skeleton = match plain.skeleton {
             0 => Skeleton::Opendr18,
             1 => Skeleton::Coco17,
+            2 => Skeleton::Jhmdb15,
+            3 => Skeleton::Ntu25,
             other => {
                 return Err(Error::invalid_input(format!(
                     "skeleton is {other}; give one of opendr_skeleton"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-#: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's.
+#: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's,
+#: ``"jhmdb15"`` JHMDB's and ``"ntu25"`` Kinect v2's.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -11,6 +12,15 @@ JOINTS: dict[str, tuple[str, ...]] = {
     "coco17": (
         *("nose", "l_eye", "r_eye", "l_ear", "r_ear", "l_sho", "r_sho", "l_elb", "r_elb", "l_wri"),
         *("r_wri", "l_hip", "r_hip", "l_knee", "r_knee", "l_ank", "r_ank"),
+    ),
+    "jhmdb15": (
+        *("neck", "belly", "face", "r_sho", "l_sho", "r_hip", "l_hip", "r_elb", "l_elb", "r_knee"),
+        *("l_knee", "r_wri", "l_wri", "r_ank", "l_ank"),
+    ),
+    "ntu25": (
+        *("pelvis", "belly", "neck", "head", "l_sho", "l_elb", "l_wri", "l_hand", "r_sho", "r_elb"),
+        *("r_wri", "r_hand", "l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank", "r_foot"),
+        *("chest", "l_tip", "l_thumb", "r_tip", "r_thumb"),
     ),
 }
 
