@@ -1,7 +1,6 @@
 //! Key points of persons in a picture.
 
-#[cfg(feature = "training")]
-mod joints;
+pub(crate) mod joints;
 mod lightweight_open_pose;
 mod movenet;
 mod one_euro;
