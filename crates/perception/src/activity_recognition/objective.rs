@@ -81,7 +81,7 @@ impl Objective for ActivityObjective {
                 let names = ["logits", "next_state"];
                 let model = export::onnx(network, inputs, &names, |network, (frame, state, is_first)| {
                     let kept = Kept { frames, state, is_first, at: 0, next: Vec::new() };
-                    let mut time = Time::Stream(kept);
+                    let mut time = Time::Stream(Box::new(kept));
                     let logits = network.forward(frame, &mut time);
                     match time {
                         Time::Stream(kept) => (logits, Tensor::cat(kept.next, 1)),

@@ -7,7 +7,7 @@ pub(super) enum Time {
     /// Clips of as many frames, one after the other.
     Clips(usize),
     /// One frame after the other.
-    Stream(Kept),
+    Stream(Box<Kept>),
     /// Counts the numbers that a stream of clips of so many frames keeps.
     Count { frames: usize, numbers: usize },
 }

@@ -129,14 +129,14 @@ impl FrameFeatures {
         let mut middle = [0.0; 3];
         let seen = last.seen.iter().filter(|seen| **seen).count() as f32;
         for joint in (0..joints).filter(|joint| last.seen[*joint]) {
-            for channel in 0..coordinates {
-                middle[channel] += last.now[joint * coordinates + channel] / seen;
+            for (channel, middle) in middle.iter_mut().enumerate().take(coordinates) {
+                *middle += last.now[joint * coordinates + channel] / seen;
             }
         }
         for joint in (0..joints).filter(|joint| !last.seen[*joint]) {
-            for channel in 0..coordinates {
-                last.now[joint * coordinates + channel] = middle[channel];
-                last.places[joint * coordinates + channel] = middle[channel];
+            for (channel, middle) in middle.iter().enumerate().take(coordinates) {
+                last.now[joint * coordinates + channel] = *middle;
+                last.places[joint * coordinates + channel] = *middle;
             }
         }
         let squares: f32 = (0..joints * coordinates)

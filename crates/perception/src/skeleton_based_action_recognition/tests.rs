@@ -1,13 +1,14 @@
 use std::path::{Path, PathBuf};
 
 use burn::tensor::Device as Trainer;
+use opendr_datasets::{OpenOptions, Problems, open};
 use opendr_engine::data::SkeletonSequence;
-use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
-use opendr_engine::learner::{FitJob, Handle, Stream};
+use opendr_engine::dataset::{Dataset, DatasetIterator, ExternalDataset, Sample};
+use opendr_engine::learner::{CheckOptions, Entry, FitJob, Handle, Learner, Probe, Stream, check_learner};
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::{Category, Classes};
-use opendr_engine::{Device, ErrorKind, Random, Result, Value};
+use opendr_engine::{Device, ErrorKind, Header, Random, Result, Value};
 use opendr_training::Objective;
 
 use super::network::ActionNetwork;
@@ -160,6 +161,28 @@ fn agree(clip_wise: &mut Handle<SpatioTemporalGcn>, stream: &mut Stream<CoStGcn>
     }
 }
 
+/// As the registry's learners are checked, with weights at random.
+fn check<L: Learner>(model: &Path, scratch: &Path, values: Vec<Value>) {
+    let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None))));
+    let port = entry.ports[0].name;
+    let calls = values.into_iter().zip(1..).map(|(mut value, stamp)| {
+        *value.header_mut() = Header::new(stamp, "sensor");
+        vec![(port, value)]
+    });
+    let calls: Vec<_> = calls.collect();
+    check_learner(entry, &CheckOptions { model, scratch, calls: &calls }).unwrap();
+}
+
+#[test]
+fn promises_are_kept() {
+    let folder = Folder::new("promises");
+    both(&folder);
+    let scratch = folder.0.join("scratch");
+    let walks = || (0..3).map(|seed| Value::SkeletonSequence(walk(seed, 9, 2))).collect();
+    check::<SpatioTemporalGcn>(&folder.0.join("clip"), &scratch, walks());
+    check::<CoStGcn>(&folder.0.join("step"), &scratch, walks());
+}
+
 #[test]
 fn learns_one_batch_by_heart() {
     let samples = (0..Walks.len()).map(|index| Walks.get(index).unwrap()).collect();
@@ -184,10 +207,9 @@ fn frame_by_frame_is_clip_by_clip() {
     }
 }
 
-#[test]
-fn trained_weights_agree_too() {
+/// The weights that `examples/train_actions.rs` made.
+fn trained(folder: &Folder) -> (Handle<SpatioTemporalGcn>, Handle<CoStGcn>) {
     let weights = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models/weights");
-    let folder = Folder::new("trained");
     let (channels, kernel) = (vec![16, 24, 32], 7);
     let clip = SpatioTemporalGcnParams {
         num_frames: 32,
@@ -197,17 +219,49 @@ fn trained_weights_agree_too() {
     };
     let step = CoStGcnParams { sequence_len: 32, channels, temporal_kernel: kernel, ..step_params() };
     let write = |learner: &str, params: ParamMap| {
-        let card = std::fs::read(weights.join(learner).join("jhmdb.onnx")).unwrap();
+        let network = std::fs::read(weights.join(learner).join("jhmdb.onnx")).unwrap();
         let mut manifest = Manifest::new(learner, "");
         manifest.params = params;
         let mut writer = ModelWriter::new(folder.0.join(learner), manifest).unwrap();
-        writer.add("model.onnx", &card).unwrap();
+        writer.add("model.onnx", &network).unwrap();
         writer.finish().unwrap();
         folder.0.join(learner)
     };
-    let (clip, step) = (write("spatio_temporal_gcn", clip.to_map()), write("co_st_gcn", step.to_map()));
-    let (mut clip_wise, continual) = load_both(&clip, &step);
+    load_both(&write("spatio_temporal_gcn", clip.to_map()), &write("co_st_gcn", step.to_map()))
+}
+
+#[test]
+fn trained_weights_agree_too() {
+    let (mut clip_wise, continual) = trained(&Folder::new("trained"));
     agree(&mut clip_wise, &mut continual.stream().unwrap(), &walk(8, 90, 1));
+}
+
+#[test]
+fn trained_weights_tell_actions_of_people_they_never_saw() {
+    let Some(shared) = std::env::var_os("OPENDR_TEST_DATA") else {
+        return println!("skipped: no OPENDR_TEST_DATA");
+    };
+    let path = Path::new(&shared).join("data/skeleton/jhmdb_GT_test_1.pkl");
+    let test =
+        open(&ExternalDataset::new(path, "jhmdb"), &OpenOptions::default(), &Problems::strict()).unwrap();
+    let (mut clip_wise, mut continual) = trained(&Folder::new("floor"));
+    let mut right = [0, 0];
+    for index in 0..test.len() {
+        let sample = test.get(index).unwrap();
+        let (Some(Value::SkeletonSequence(sequence)), Some(Value::Category(action))) =
+            (sample.data.first(), &sample.target)
+        else {
+            panic!("sample {index} is no action")
+        };
+        let clip = clip_wise.infer(sequence).unwrap();
+        continual.reset();
+        let step = continual.infer(sequence).unwrap();
+        close(&step, &clip, "of JHMDB");
+        right[0] += usize::from(clip.class == action.class);
+        right[1] += usize::from(step.class == action.class);
+    }
+    println!("of {} {right:?} are right, clip-wise and frame by frame", test.len());
+    assert!(right.iter().all(|right| right * 100 >= 60 * test.len()), "{right:?} of {}", test.len());
 }
 
 #[test]
