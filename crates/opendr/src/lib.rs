@@ -47,8 +47,8 @@ pub use fit::{
 };
 pub use opendr_engine::*;
 pub use opendr_perception::{
-    face_detection, heart_anomaly_detection, image_classification, mfcc, object_detection_2d,
-    pose_estimation, speech_recognition, suppression,
+    activity_recognition, face_detection, heart_anomaly_detection, image_classification, mfcc,
+    object_detection_2d, pose_estimation, skeleton_based_action_recognition, speech_recognition, suppression,
 };
 pub use registry::registry;
 pub use smaller::optimize_loaded;

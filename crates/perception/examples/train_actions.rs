@@ -42,12 +42,12 @@ fn main() -> Result<()> {
     };
     let defaults = SpatioTemporalGcnFitParams::default();
     let fit_params = SpatioTemporalGcnFitParams {
-        dropout: 0.05,
-        label_smoothing: 0.05,
+        dropout: 0.2,
+        label_smoothing: 0.1,
         training: TrainingParams {
-            epochs: 36,
+            epochs: 40,
             batch_size: 32,
-            lr: 0.015,
+            lr: 0.006,
             lr_schedule: ScheduleKind::Cosine,
             optimizer: OptimizerKind::Adamw,
             weight_decay: 0.02,
