@@ -55,8 +55,7 @@ def test_detections_are_those_of_the_library(ros2):
         answers = ros2.subscribe("/zipped/boxes", BOXES)
         answers.wait_for_publishers()
         message = {"header": {"stamp": {"sec": 12, "nanosec": 34}, "frame_id": "eye"}, "format": "jpeg", "data": list(photo)}
-        ros2.publish("/camera/compressed", COMPRESSED, [ros2.encode(COMPRESSED, message)])
-        [answer] = answers.wait(1)
+        [answer] = answered(ros2, "/camera/compressed", COMPRESSED, ros2.encode(COMPRESSED, message), answers)
     detections = ros2.decode(BOXES, answer.data)
     assert detections["header"] == message["header"]
     wanted = inferred(path)
@@ -239,10 +238,16 @@ def test_time_may_jump(ros2):
         latency.wait_for_publishers()
         ros2.advertise("/clock", clock)
         for sec, stamp in ((1000, 999), (5, 4), (2_000_000_000, 1_999_999_999)):
-            ros2.publish("/clock", clock, [ros2.encode(clock, {"clock": {"sec": sec}})], count=10, rate=20)
-            latency.clear()
-            answered(ros2, "/timed_raw", IMAGE, ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=stamp)), seen)
-            told = ros2.decode("std_msgs/msg/Float32", latency.messages[-1].data)["data"]
+            picture = ros2.encode(IMAGE, image_fields(32, 24, noise(32, 24), sec=stamp))
+            for attempt in range(10):
+                ros2.publish("/clock", clock, [ros2.encode(clock, {"clock": {"sec": sec}})], count=10, rate=20)
+                seen.clear()
+                latency.clear()
+                answered(ros2, "/timed_raw", IMAGE, picture, seen)
+                told = ros2.decode("std_msgs/msg/Float32", latency.wait(1)[-1].data)["data"]
+                # The node may not have found the publisher of the clock yet.
+                if abs(told - 1000) <= 1 or attempt == 9:
+                    break
             assert told == pytest.approx(1000, abs=1)
         assert node.process.poll() is None
 

@@ -17,6 +17,8 @@ const USAGE: &str = "\
 usage: cargo xtask VERB
 
   test       everything that CI checks; installs what it needs (Debian packages, a Python environment in target/)
+  test --from CHECK
+             that, beginning with the check CHECK (as the run names it), where an earlier run failed
   test --extended
              that and the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON; test-extended is
              these alone
@@ -34,6 +36,10 @@ fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["test"] => test::run(),
+        ["test", "--from", name] => {
+            shell::begin_with(name);
+            test::run()
+        }
         ["test", "--extended"] => test::run().and_then(|()| test::run_extended()),
         ["test-extended"] => test::run_extended(),
         ["test-c"] => test::run_c(),

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::python_package;
-use crate::shell::{Result, command, step, target};
+use crate::shell::{Result, check, command, step, target};
 use crate::tools::Python;
 
 /// Builds the runner of each surface and compares what they print; the C library is installed under `prefix`.
@@ -24,5 +24,5 @@ pub fn run(python: &Python, prefix: &Path, environment: impl Fn(&mut Command)) -
         .env("OPENDR_INFER_JSON", debug.join("examples/infer_json"));
     pytest.env("OPENDR_INFER_JSON_C", &runner).env("LD_LIBRARY_PATH", prefix.join("lib"));
     environment(&mut pytest);
-    step("parity of all surfaces", &mut pytest)
+    check("parity of all surfaces", &mut pytest)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 use crate::python_package;
-use crate::shell::{Result, command, step, target};
+use crate::shell::{Result, check, command, step, target};
 use crate::tools::{Python, install_debian};
 
 /// The ROS 2 distributions that are peers; each has `tests/ros/environment/NAME.txt`.
@@ -28,7 +28,7 @@ pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
     let mut ros1 = command(tests.program());
     ros1.args(["-m", "pytest", "-ra", "tests/ros1"]);
     ros1.env("OPENDR_ROS1_PROBE", target().join("debug/examples/ros1_probe"));
-    step("tests of the ROS 1 client", &mut ros1)?;
+    check("tests of the ROS 1 client", &mut ros1)?;
     let mut pytest = isolated(&tests.program());
     pytest.args(["-m", "pytest", "-ra", "tests/ros"]);
     for name in DISTRIBUTIONS {
@@ -48,7 +48,7 @@ pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
     }
     environment(&mut pytest);
     pytest.env("OPENDR_BIN", target().join("release/opendr")).env("OPENDR_PYTHON_PACKAGE", package);
-    step("tests beside real ROS peers", &mut pytest)
+    check("tests beside real ROS peers", &mut pytest)
 }
 
 /// A program in a network of its own, which has only loopback, with multicast: peers find each other and nobody else.

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// An error is a line for the person at the terminal.
@@ -24,6 +25,26 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root());
     command
+}
+
+/// The check to begin with; those before it are left out.
+static BEGIN: Mutex<Option<String>> = Mutex::new(None);
+
+/// Leaves out the checks before `name`: to go on where an earlier run failed. What later ones need is still made.
+pub fn begin_with(name: &str) {
+    *BEGIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(name.to_owned());
+}
+
+/// A step that nothing else needs.
+pub fn check(name: &str, command: &mut Command) -> Result<()> {
+    let mut begin = BEGIN.lock().unwrap_or_else(PoisonError::into_inner);
+    if begin.as_deref().is_some_and(|begin| begin != name) {
+        println!("=== {name}: left out");
+        return Ok(());
+    }
+    *begin = None;
+    drop(begin);
+    step(name, command)
 }
 
 /// Runs a step, says what it is and how long it took.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::shell::{Result, command, is_installed, root, step, target};
+use crate::shell::{Result, check, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
 use crate::{install_c, parity, python_package, ros, surfaces};
 
@@ -21,13 +21,13 @@ pub fn run() -> Result<()> {
         environment.apply(&mut cargo);
         cargo
     };
-    step("format", &mut cargo(&["fmt", "--all", "--check"]))?;
-    step(
+    check("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    check(
         "lints",
         &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]),
     )?;
-    step("without training", &mut cargo(&["check", "--package", "opendr-cli"]))?;
-    step(
+    check("without training", &mut cargo(&["check", "--package", "opendr-cli"]))?;
+    check(
         "free-threaded Python",
         cargo(&["check", "--package", "opendr-python", "--no-default-features"])
             .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
@@ -35,27 +35,27 @@ pub fn run() -> Result<()> {
     )?;
     // Burn's CUDA compiler comes through a build script that downloads LLVM, except where only documentation is built; a check
     // needs no more than that.
-    step(
+    check(
         "training on GPUs",
         cargo(&["check", "--package", "opendr-training", "--features", "cuda,wgpu"]).env("DOCS_RS", "1"),
     )?;
     if is_installed("cargo-nextest") {
-        step("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
+        check("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
     } else {
-        step("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests", TEST_LEARNER]))?;
+        check("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests", TEST_LEARNER]))?;
     }
-    step("documentation tests", &mut cargo(&["test", "--workspace", "--doc", TEST_LEARNER]))?;
-    step(
+    check("documentation tests", &mut cargo(&["test", "--workspace", "--doc", TEST_LEARNER]))?;
+    check(
         "documentation",
         cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     )?;
     step("release build", &mut cargo(&["build", "--release", TRAINING]))?;
-    step("tests from outside", &mut pytest(&outside, "tests/python", &environment))?;
+    check("tests from outside", &mut pytest(&outside, "tests/python", &environment))?;
     references(&environment)?;
     ros::run(|pytest| environment.apply(pytest))?;
     let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
     let wheel = python.install_wheel()?;
-    step(
+    check(
         "tests of the Python package",
         pytest(&python, "bindings/python/tests", &environment).env("OPENDR_WHEEL", wheel),
     )?;
@@ -86,7 +86,7 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"))
         .env("OPENDR_TRAINING_OWN_MODULE", examples.join("own_module"));
     environment.apply(&mut pytest);
-    step("tests beside the reference tools", &mut pytest)?;
+    check("tests beside the reference tools", &mut pytest)?;
     // They import from their own conftest, of which a run has one by that name.
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra", of_recordings]);
@@ -95,7 +95,7 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_BAG_DUMP", examples.join("bag_dump"))
         .env("OPENDR_BAG_COPY", examples.join("bag_copy"));
     environment.apply(&mut pytest);
-    step("tests of recordings beside their tools", &mut pytest)
+    check("tests of recordings beside their tools", &mut pytest)
 }
 
 /// What needs PyTorch, with an interpreter that has it and `tests/extended/requirements.txt`: the normal run does
@@ -134,7 +134,7 @@ pub fn run_c() -> Result<()> {
 fn c_library(outside: &Python, environment: &Environment) -> Result<PathBuf> {
     let prefix = target().join("c");
     install_c::run_for_tests(&prefix)?;
-    step("tests of C programs", pytest(outside, "tests/c", environment).env("OPENDR_C_PREFIX", &prefix))?;
+    check("tests of C programs", pytest(outside, "tests/c", environment).env("OPENDR_C_PREFIX", &prefix))?;
     Ok(prefix)
 }
 

@@ -197,7 +197,7 @@ fn an_index_that_leads_round_is_not_followed() {
 #[test]
 fn what_the_fuzzer_starts_from_is_read() {
     for format in ["bag1", "mcap"] {
-        let corpus = format!("{}/../../fuzz/corpus/{format}", env!("CARGO_MANIFEST_DIR"));
+        let corpus = std::env::var("CARGO_MANIFEST_DIR").unwrap() + "/../../fuzz/corpus/" + format;
         let files =
             fs::read_dir(corpus).unwrap().map(|file| messages(fs::read(file.unwrap().path()).unwrap()));
         let counts: Vec<_> = files.collect();

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use opendr_message_generator::{Library, Ros1Names, TypeName, rust_files};
@@ -22,6 +22,11 @@ fn names(text: &str) -> Ros1Names {
         .collect()
 }
 
+/// Asked for when the test runs: a build folder that clones share holds programs of another clone.
+fn crate_folder() -> PathBuf {
+    PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap())
+}
+
 fn formatted(files: BTreeMap<String, String>, folder: &Path) -> BTreeMap<String, String> {
     for (path, text) in &files {
         let path = folder.join(path);
@@ -30,7 +35,7 @@ fn formatted(files: BTreeMap<String, String>, folder: &Path) -> BTreeMap<String,
     }
     let rustfmt = Command::new("rustfmt")
         .args(["--edition", "2024", "--config-path"])
-        .arg(concat!(env!("CARGO_MANIFEST_DIR"), "/../../rustfmt.toml"))
+        .arg(crate_folder().join("../../rustfmt.toml"))
         .args(
             files
                 .keys()
@@ -46,7 +51,7 @@ fn formatted(files: BTreeMap<String, String>, folder: &Path) -> BTreeMap<String,
 
 #[test]
 fn the_sources_are_what_the_generator_makes() {
-    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../messages"));
+    let root = crate_folder().join("../messages");
     let ros2 = Library::open(&root.join("msg")).unwrap();
     let ros1 = ros2.with_overrides(&root.join("ros1")).unwrap();
     let names = names(&fs::read_to_string(root.join("ros1/names.txt")).unwrap());

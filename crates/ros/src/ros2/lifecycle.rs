@@ -1,5 +1,5 @@
 //! Managed nodes: others (a bring-up, Nav2's lifecycle manager) say when a node works (`lifecycle_msgs`, the states of
-//! https://design.ros2.org/articles/node_lifecycle.html).
+//! <https://design.ros2.org/articles/node_lifecycle.html>).
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
