@@ -9,6 +9,7 @@ use opendr_perception::heart_anomaly_detection::GatedRecurrentUnit;
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{LightweightOpenPose, Movenet, Posenet};
+use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
 use opendr_perception::speech_recognition::MatchboxNet;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
@@ -28,6 +29,8 @@ pub fn registry() -> &'static Registry {
             Posenet,
             LightweightOpenPose,
             ImageClassifier,
+            SpatioTemporalGcn,
+            CoStGcn,
             GatedRecurrentUnit,
             MatchboxNet,
             PpoLearner,
