@@ -61,6 +61,10 @@ tasks! {
     GestureRecognition = "gesture_recognition";
     /// Whether persons have fallen.
     FallDetection = "fall_detection";
+    /// What persons do, told by their moving skeletons.
+    SkeletonBasedActionRecognition = "skeleton_based_action_recognition";
+    /// What persons do in a video.
+    ActivityRecognition = "activity_recognition";
     /// Whether a heart signal is normal.
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.

@@ -16,7 +16,9 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::FacialLandmarks => Ok("keypoints"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         Task::GestureRecognition
+        | Task::ActivityRecognition
         | Task::HeartAnomalyDetection
+        | Task::SkeletonBasedActionRecognition
         | Task::SpeechRecognition
         | Task::VoiceActivityDetection => Ok("classification"),
         Task::SpeechTranscription => Ok("transcription"),

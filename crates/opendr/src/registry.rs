@@ -17,6 +17,7 @@ use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetec
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
+use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
 use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
 use opendr_perception::speech_transcription::Whisper;
 use opendr_perception::voice_activity_detection::SileroVad;
@@ -46,6 +47,8 @@ pub fn registry() -> &'static Registry {
             KeypointGesture,
             FallDetector,
             ImageClassifier,
+            SpatioTemporalGcn,
+            CoStGcn,
             GatedRecurrentUnit,
             AttentionNeuralBagOfFeature,
             MatchboxNet,

@@ -68,6 +68,7 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
             let (format, path) = match kind {
                 ValueType::Audio => ("speech_commands", "speech_commands_v0.02_test"),
                 ValueType::Timeseries => ("ucr", "ecg/ECG5000_TRAIN.txt"),
+                ValueType::SkeletonSequence => ("skeleton", "skeleton/jhmdb_GT_test_1.pkl"),
                 other => panic!("there are no test data of the type {}", other.name()),
             };
             let dataset = ExternalDataset::new(models.data(path), format);

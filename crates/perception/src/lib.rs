@@ -1,5 +1,6 @@
 //! Perception learners: one folder per task, one file per learner.
 
+pub mod activity_recognition;
 pub mod beats;
 pub mod face_detection;
 pub mod face_recognition;
@@ -15,6 +16,7 @@ pub mod object_detection_2d;
 pub mod pose_estimation;
 pub mod regions;
 pub mod resampler;
+pub mod skeleton_based_action_recognition;
 pub mod speech_recognition;
 pub mod speech_transcription;
 pub mod suppression;

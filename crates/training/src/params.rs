@@ -25,7 +25,7 @@ pub struct TrainingParams {
     #[param(default = 0.001, range = 0.0..=100.0, log)]
     pub lr: f64,
     /// What turns gradients into steps.
-    #[param(default = OptimizerKind::Adamw)]
+    #[param(default = OptimizerKind::Adamw, alias = "optimizer_name")]
     pub optimizer: OptimizerKind,
     /// Momentum of `sgd` and `rmsprop`.
     #[param(default = 0.9, range = 0.0..=1.0)]
@@ -45,6 +45,7 @@ pub struct TrainingParams {
     #[param(default = 0.0, range = 0.0..=100.0, alias = "lr_schedule_eta_min")]
     pub lr_min: f64,
     /// Epochs at which `step` lowers the learning rate.
+    #[param(alias = "drop_after_epoch")]
     pub lr_steps: Vec<i64>,
     /// What `step` multiplies the learning rate with.
     #[param(default = 0.1, range = 0.0..=1.0, alias = "lr_decay")]

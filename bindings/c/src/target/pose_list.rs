@@ -27,6 +27,10 @@ pub enum opendr_skeleton {
     OPENDR_RIGHT_HAND21 = 4,
     /// MediaPipe's 478 points of a face.
     OPENDR_FACE478 = 5,
+    /// JHMDB's 15 joints of a person.
+    OPENDR_JHMDB15 = 6,
+    /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    OPENDR_NTU25 = 7,
 }
 
 /// A point found in a picture, pixels; (-1, -1) means not found.
@@ -108,6 +112,8 @@ impl List for PoseList {
                 Skeleton::LeftHand21 => opendr_skeleton::OPENDR_LEFT_HAND21 as i32,
                 Skeleton::RightHand21 => opendr_skeleton::OPENDR_RIGHT_HAND21 as i32,
                 Skeleton::Face478 => opendr_skeleton::OPENDR_FACE478 as i32,
+                Skeleton::Jhmdb15 => opendr_skeleton::OPENDR_JHMDB15 as i32,
+                Skeleton::Ntu25 => opendr_skeleton::OPENDR_NTU25 as i32,
                 _ => opendr_skeleton::OPENDR_OPENDR18 as i32,
             },
             id: item.id.unwrap_or(-1),
@@ -122,6 +128,8 @@ impl List for PoseList {
             3 => Skeleton::LeftHand21,
             4 => Skeleton::RightHand21,
             5 => Skeleton::Face478,
+            6 => Skeleton::Jhmdb15,
+            7 => Skeleton::Ntu25,
             other => {
                 return Err(Error::invalid_input(format!(
                     "skeleton is {other}; give one of opendr_skeleton"

@@ -22,6 +22,10 @@ pub enum Skeleton {
     RightHand21,
     /// MediaPipe's 478 points of a face: the mesh, then five of each iris, the one on the picture's left first.
     Face478,
+    /// JHMDB's 15 joints of a person.
+    Jhmdb15,
+    /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    Ntu25,
 }
 
 /// The joints of a hand, and its bones.
@@ -81,6 +85,8 @@ impl Skeleton {
         Self::LeftHand21,
         Self::RightHand21,
         Self::Face478,
+        Self::Jhmdb15,
+        Self::Ntu25,
     ];
 
     /// Its name, as JSON and messages write it.
@@ -92,6 +98,8 @@ impl Skeleton {
             Self::LeftHand21 => "left_hand21",
             Self::RightHand21 => "right_hand21",
             Self::Face478 => "face478",
+            Self::Jhmdb15 => "jhmdb15",
+            Self::Ntu25 => "ntu25",
         }
     }
 
@@ -163,6 +171,15 @@ impl Skeleton {
             ],
             Self::LeftHand21 | Self::RightHand21 => HAND,
             Self::Face478 => face::JOINTS,
+            Self::Jhmdb15 => &[
+                "neck", "belly", "face", "r_sho", "l_sho", "r_hip", "l_hip", "r_elb", "l_elb", "r_knee",
+                "l_knee", "r_wri", "l_wri", "r_ank", "l_ank",
+            ],
+            Self::Ntu25 => &[
+                "pelvis", "belly", "neck", "head", "l_sho", "l_elb", "l_wri", "l_hand", "r_sho", "r_elb",
+                "r_wri", "r_hand", "l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank",
+                "r_foot", "chest", "l_tip", "l_thumb", "r_tip", "r_thumb",
+            ],
         }
     }
 
@@ -246,12 +263,65 @@ impl Skeleton {
             ],
             Self::LeftHand21 | Self::RightHand21 => HAND_BONES,
             Self::Face478 => face::BONES,
+            Self::Jhmdb15 => &[
+                [1, 0],
+                [0, 2],
+                [0, 3],
+                [3, 7],
+                [7, 11],
+                [0, 4],
+                [4, 8],
+                [8, 12],
+                [1, 5],
+                [5, 9],
+                [9, 13],
+                [1, 6],
+                [6, 10],
+                [10, 14],
+            ],
+            Self::Ntu25 => &[
+                [20, 1],
+                [1, 0],
+                [20, 2],
+                [2, 3],
+                [20, 4],
+                [4, 5],
+                [5, 6],
+                [6, 7],
+                [7, 22],
+                [22, 21],
+                [20, 8],
+                [8, 9],
+                [9, 10],
+                [10, 11],
+                [11, 24],
+                [24, 23],
+                [0, 12],
+                [12, 13],
+                [13, 14],
+                [14, 15],
+                [0, 16],
+                [16, 17],
+                [17, 18],
+                [18, 19],
+            ],
         }
     }
 
     /// The number of the joint called `name`.
     pub fn joint(self, name: &str) -> Option<usize> {
         self.joints().iter().position(|joint| *joint == name)
+    }
+
+    /// The joint on the other side of the body; `None` for one in the middle.
+    pub fn partner(self, joint: usize) -> Option<usize> {
+        let (side, rest) = self.joints().get(joint)?.split_once('_')?;
+        let other = match side {
+            "l" => "r",
+            "r" => "l",
+            _ => return None,
+        };
+        self.joints().iter().position(|name| name.split_once('_') == Some((other, rest)))
     }
 }
 
@@ -266,7 +336,38 @@ mod tests {
             let said: String = skeleton.name().chars().filter(char::is_ascii_digit).collect();
             assert_eq!(said, count.to_string());
             assert!(skeleton.bones().iter().flatten().all(|joint| *joint < count));
+            // Of a face, outlines are drawn, not all points.
+            if *skeleton == Skeleton::Face478 {
+                continue;
+            }
+            let joined: std::collections::BTreeSet<_> = skeleton.bones().iter().flatten().collect();
+            assert_eq!(joined.len(), count, "{}", skeleton.name());
         }
         assert_eq!(Skeleton::Opendr18.joint("l_ear"), Some(17));
+    }
+
+    #[test]
+    fn every_side_has_its_other() {
+        for skeleton in Skeleton::ALL {
+            for (joint, name) in skeleton.joints().iter().enumerate() {
+                match skeleton.partner(joint) {
+                    Some(partner) => assert!(partner != joint && skeleton.partner(partner) == Some(joint)),
+                    None => assert!(!name.starts_with("l_") && !name.starts_with("r_"), "{name}"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn bones_of_one_side_are_those_of_the_other() {
+        // The points of a face have no side in their names.
+        for skeleton in Skeleton::ALL.iter().filter(|skeleton| **skeleton != Skeleton::Face478) {
+            let other = |joint: usize| skeleton.partner(joint).unwrap_or(joint);
+            for [from, to] in skeleton.bones() {
+                let mirrored = [other(*from), other(*to)];
+                let there = |bone: &[usize; 2]| *bone == mirrored || *bone == [mirrored[1], mirrored[0]];
+                assert!(skeleton.bones().iter().any(there), "{} {from} {to}", skeleton.name());
+            }
+        }
     }
 }

@@ -1,33 +1,51 @@
 //! Joints of one skeleton as those of another.
 
-use opendr_engine::target::{Keypoint, Pose, Skeleton};
+use opendr_engine::target::{Keypoint, Pose};
 
-const NECK: &str = "neck";
 const SHOULDERS: [&str; 2] = ["l_sho", "r_sho"];
+const HIPS: [&str; 2] = ["l_hip", "r_hip"];
 
-/// OpenDR's 18 joints of a pose of any skeleton, by their names; a neck that it lacks is the middle of the shoulders,
-/// with the lower of their scores.
+/// OpenDR's 18 joints of a pose of any skeleton, as [`joint_of`] finds them.
+#[cfg(feature = "training")]
 pub(crate) fn opendr_joints(pose: &Pose) -> [Keypoint; 18] {
-    let found = |name: &str| pose.keypoint(name).copied().filter(Keypoint::is_found);
     let mut joints = [Keypoint::MISSING; 18];
-    for (joint, name) in joints.iter_mut().zip(Skeleton::Opendr18.joints()) {
-        let between = || {
-            let [left, right] = SHOULDERS.map(found);
-            let (left, right) = (left?, right?);
-            Some(Keypoint {
-                x: (left.x + right.x) / 2.0,
-                y: (left.y + right.y) / 2.0,
-                confidence: left.confidence.min(right.confidence),
-            })
-        };
-        let is_made = *name == NECK && pose.skeleton.joint(NECK).is_none();
-        *joint = if is_made { between() } else { found(name) }.unwrap_or(Keypoint::MISSING);
+    for (joint, name) in joints.iter_mut().zip(opendr_engine::target::Skeleton::Opendr18.joints()) {
+        *joint = joint_of(pose, name).unwrap_or(Keypoint::MISSING);
     }
     joints
 }
 
+/// The joint called `name`, if it was found. One that the pose's skeleton does not have is told by others: the neck is the
+/// middle of the shoulders, the pelvis that of the hips, the belly that of both, and the nose stands for face and
+/// head (and they for it). Between joints, the lower score counts.
+pub(crate) fn joint_of(pose: &Pose, name: &str) -> Option<Keypoint> {
+    let found = |name: &str| pose.keypoint(name).copied().filter(Keypoint::is_found);
+    if pose.skeleton.joint(name).is_some() {
+        return found(name);
+    }
+    let middle = |[one, other]: [&str; 2]| Some(between(found(one)?, found(other)?));
+    match name {
+        "neck" => middle(SHOULDERS),
+        "pelvis" => middle(HIPS),
+        "belly" => Some(between(middle(SHOULDERS)?, middle(HIPS)?)),
+        "face" | "head" | "nose" => ["nose", "face", "head"].into_iter().find_map(found),
+        _ => None,
+    }
+}
+
+fn between(one: Keypoint, other: Keypoint) -> Keypoint {
+    Keypoint {
+        x: (one.x + other.x) / 2.0,
+        y: (one.y + other.y) / 2.0,
+        confidence: one.confidence.min(other.confidence),
+    }
+}
+
 #[cfg(test)]
+#[cfg(feature = "training")]
 mod tests {
+    use opendr_engine::target::Skeleton;
+
     use super::*;
 
     fn pose(skeleton: Skeleton) -> Pose {
@@ -52,5 +70,14 @@ mod tests {
         assert_eq!(opendr_joints(&coco)[1], Keypoint::MISSING);
         coco.keypoints.clear();
         assert_eq!(opendr_joints(&coco), [Keypoint::MISSING; 18]);
+    }
+
+    #[test]
+    fn joints_that_a_skeleton_lacks_lie_between_others() {
+        let pose = pose(Skeleton::Coco17);
+        // COCO's shoulders are joints 5 and 6, its hips 11 and 12.
+        let x = |name: &str| joint_of(&pose, name).map(|joint| joint.x);
+        assert_eq!(["neck", "pelvis", "belly", "face"].map(x), [Some(5.5), Some(11.5), Some(8.5), Some(0.0)]);
+        assert_eq!((x("r_thumb"), x("l_wri")), (None, Some(9.0)));
     }
 }

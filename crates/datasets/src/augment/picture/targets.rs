@@ -1,6 +1,6 @@
 //! Targets under a map.
 
-use opendr_engine::target::{Heatmap, HeatmapValues, Keypoint, Pose, PoseList, Skeleton};
+use opendr_engine::target::{Heatmap, HeatmapValues, Keypoint, Pose, PoseList};
 use opendr_engine::{Error, Result, Value};
 
 use crate::augment::picture::border::Border;
@@ -71,8 +71,8 @@ fn follow_joint(joint: &mut Keypoint, map: &PictureMap) {
 
 /// What was a left hand is a right one in the mirror.
 fn swap_sides(pose: &mut Pose) {
-    for (joint, name) in pose.skeleton.joints().iter().enumerate() {
-        if let Some(partner) = partner_of(pose.skeleton, name)
+    for joint in 0..pose.skeleton.joints().len() {
+        if let Some(partner) = pose.skeleton.partner(joint)
             && joint < partner
             && partner < pose.keypoints.len()
         {
@@ -80,17 +80,6 @@ fn swap_sides(pose: &mut Pose) {
         }
     }
     pose.skeleton = pose.skeleton.mirrored();
-}
-
-/// The joint on the other side of the body.
-fn partner_of(skeleton: Skeleton, joint: &str) -> Option<usize> {
-    let (side, rest) = joint.split_once('_')?;
-    let other = match side {
-        "l" => "r",
-        "r" => "l",
-        _ => return None,
-    };
-    skeleton.joints().iter().position(|name| name.split_once('_') == Some((other, rest)))
 }
 
 fn follow_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> Result<()> {
@@ -125,27 +114,4 @@ fn each_plane<T: Copy>(values: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>
         moved.extend(nearest_plane(plane, map, fill)?);
     }
     Ok(moved)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_side_has_its_other() {
-        assert_eq!(Skeleton::LeftHand21.mirrored(), Skeleton::RightHand21);
-        for skeleton in [Skeleton::Opendr18, Skeleton::Coco17, Skeleton::Blazepose33] {
-            let mut alone = Vec::new();
-            for (joint, name) in skeleton.joints().iter().enumerate() {
-                match partner_of(skeleton, name) {
-                    Some(partner) => {
-                        assert_ne!(partner, joint);
-                        assert_eq!(partner_of(skeleton, skeleton.joints()[partner]), Some(joint));
-                    }
-                    None => alone.push(*name),
-                }
-            }
-            assert!(alone.iter().all(|name| ["nose", "neck"].contains(name)), "{alone:?}");
-        }
-    }
 }

@@ -14,7 +14,8 @@ _FACE = (
 )
 
 #: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's,
-#: ``"blazepose33"`` BlazePose's, ``"left_hand21"`` and ``"right_hand21"`` are MediaPipe's hands.
+#: ``"blazepose33"`` BlazePose's, ``"left_hand21"`` and ``"right_hand21"`` are MediaPipe's
+#: hands, ``"face478"`` is its face; ``"jhmdb15"`` is JHMDB's person and ``"ntu25"`` Kinect v2's.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -33,6 +34,15 @@ JOINTS: dict[str, tuple[str, ...]] = {
     "left_hand21": _HAND,
     "right_hand21": _HAND,
     "face478": _FACE,
+    "jhmdb15": (
+        *("neck", "belly", "face", "r_sho", "l_sho", "r_hip", "l_hip", "r_elb", "l_elb", "r_knee"),
+        *("l_knee", "r_wri", "l_wri", "r_ank", "l_ank"),
+    ),
+    "ntu25": (
+        *("pelvis", "belly", "neck", "head", "l_sho", "l_elb", "l_wri", "l_hand", "r_sho", "r_elb"),
+        *("r_wri", "r_hand", "l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank", "r_foot"),
+        *("chest", "l_tip", "l_thumb", "r_tip", "r_thumb"),
+    ),
 }
 
 

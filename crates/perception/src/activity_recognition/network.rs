@@ -1,0 +1,189 @@
+//! The network as it is trained, for clips and for one frame after the other.
+
+use burn::module::Module;
+use burn::nn::conv::{Conv2d, Conv2dConfig};
+use burn::nn::{
+    BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Initializer, Linear, LinearConfig, PaddingConfig2d,
+};
+use burn::tensor::activation::{relu, sigmoid, silu};
+use burn::tensor::{Device, Tensor};
+
+use super::Sizes;
+use super::time::Time;
+
+/// X3D (Feichtenhofer, X3D: Expanding Architectures for Efficient Video Recognition, CVPR 2020): frames
+/// `[batch * time, 3, side, side]`, clip after clip, to logits `[batch, classes]`.
+///
+/// Different from the paper, convolutions through time look back only, and squeeze and excitation is over each frame alone;
+/// before its first frame, a clip stands still. So the network runs over one frame after the other with the same result.
+#[derive(Module, Debug)]
+pub(super) struct ActivityNetwork {
+    stem: Conv2d,
+    stem_time: CausalDepthwise,
+    stem_norm: BatchNorm,
+    blocks: Vec<Block>,
+    last: Conv2d,
+    last_norm: BatchNorm,
+    hidden: Linear,
+    dropout: Dropout,
+    classifier: Linear,
+}
+
+/// A bottleneck with a convolution over space and time, channel by channel, and a way past it.
+#[derive(Module, Debug)]
+struct Block {
+    expand: Conv2d,
+    expand_norm: BatchNorm,
+    depthwise: CausalDepthwise,
+    depthwise_norm: BatchNorm,
+    excitation: Option<Excitation>,
+    project: Conv2d,
+    project_norm: BatchNorm,
+    /// Where sizes change.
+    past: Option<Conv2d>,
+    past_norm: Option<BatchNorm>,
+}
+
+/// A convolution over space and time, channel by channel: one over space for each instant, added up. That is the
+/// convolution with a kernel of three axes; it runs where there are only those with two.
+#[derive(Module, Debug)]
+struct CausalDepthwise {
+    now: Conv2d,
+    /// Of the frame before, of the one before that, and so on.
+    earlier: Vec<Conv2d>,
+}
+
+/// Weighs channels by what a frame holds as a whole (Hu et al., Squeeze-and-Excitation Networks, CVPR 2018).
+#[derive(Module, Debug)]
+struct Excitation {
+    squeeze: Linear,
+    excite: Linear,
+}
+
+/// Channels of a block's middle, as a multiple of those between blocks.
+const BOTTLENECK: f64 = 2.25;
+/// Instants that the first layer and the blocks see.
+const STEM_TAPS: usize = 5;
+const TAPS: usize = 3;
+
+impl ActivityNetwork {
+    /// A network with weights as training begins with.
+    pub fn new(sizes: &Sizes, classes: usize, dropout: f64, device: &Device) -> Self {
+        let stem = sizes.channels(24);
+        let mut inputs = stem;
+        let mut blocks = Vec::new();
+        for (stage, outputs) in [24, 48, 96, 192].map(|width| sizes.channels(width)).into_iter().enumerate() {
+            for index in 0..sizes.blocks(stage) {
+                let stride = if index == 0 { 2 } else { 1 };
+                blocks.push(Block::new([inputs, outputs], stride, index.is_multiple_of(2), device));
+                inputs = outputs;
+            }
+        }
+        let last = (inputs as f64 * BOTTLENECK) as usize;
+        let hidden = sizes.channels(2048);
+        Self {
+            stem: convolution([3, stem], 3, 2, 1, device),
+            stem_time: CausalDepthwise::new(stem, 1, 1, STEM_TAPS, device),
+            stem_norm: BatchNormConfig::new(stem).init(device),
+            blocks,
+            last: convolution([inputs, last], 1, 1, 1, device),
+            last_norm: BatchNormConfig::new(last).init(device),
+            hidden: LinearConfig::new(last, hidden).with_bias(false).init(device),
+            dropout: DropoutConfig::new(dropout).init(),
+            classifier: LinearConfig::new(hidden, classes).init(device),
+        }
+    }
+
+    /// Logits `[batch, classes]`.
+    pub fn forward(&self, frames: Tensor<4>, time: &mut Time) -> Tensor<2> {
+        let signal = self.stem_time.forward(self.stem.forward(frames), time);
+        let signal = relu(self.stem_norm.forward(signal));
+        let signal = self.blocks.iter().fold(signal, |signal, block| block.forward(signal, time));
+        let signal = relu(self.last_norm.forward(self.last.forward(signal)));
+        let pooled = time.mean(mean_of_frames(signal));
+        let hidden = relu(self.hidden.forward(pooled));
+        self.classifier.forward(self.dropout.forward(hidden))
+    }
+}
+
+impl Block {
+    fn new([inputs, outputs]: [usize; 2], stride: usize, excites: bool, device: &Device) -> Self {
+        let middle = (outputs as f64 * BOTTLENECK) as usize;
+        let norm = |channels: usize| BatchNormConfig::new(channels).init(device);
+        let changes = stride != 1 || inputs != outputs;
+        Self {
+            expand: convolution([inputs, middle], 1, 1, 1, device),
+            expand_norm: norm(middle),
+            depthwise: CausalDepthwise::new(middle, 3, stride, TAPS, device),
+            depthwise_norm: norm(middle),
+            excitation: excites.then(|| Excitation::new(middle, device)),
+            project: convolution([middle, outputs], 1, 1, 1, device),
+            project_norm: norm(outputs),
+            past: changes.then(|| convolution([inputs, outputs], 1, stride, 1, device)),
+            past_norm: changes.then(|| norm(outputs)),
+        }
+    }
+
+    fn forward(&self, signal: Tensor<4>, time: &mut Time) -> Tensor<4> {
+        let past = match (&self.past, &self.past_norm) {
+            (Some(past), Some(norm)) => norm.forward(past.forward(signal.clone())),
+            _ => signal.clone(),
+        };
+        let inner = relu(self.expand_norm.forward(self.expand.forward(signal)));
+        let inner = self.depthwise_norm.forward(self.depthwise.forward(inner, time));
+        let inner = match &self.excitation {
+            Some(excitation) => excitation.forward(inner),
+            None => inner,
+        };
+        relu(past + self.project_norm.forward(self.project.forward(silu(inner))))
+    }
+}
+
+impl CausalDepthwise {
+    fn new(channels: usize, kernel: usize, stride: usize, taps: usize, device: &Device) -> Self {
+        let tap = |_| convolution([channels; 2], kernel, stride, channels, device);
+        Self { now: tap(0), earlier: (1..taps).map(tap).collect() }
+    }
+
+    fn forward(&self, signal: Tensor<4>, time: &mut Time) -> Tensor<4> {
+        let earlier = self.earlier.iter().map(|tap| tap.forward(signal.clone())).collect();
+        time.sum(self.now.forward(signal), earlier)
+    }
+}
+
+impl Excitation {
+    fn new(channels: usize, device: &Device) -> Self {
+        let inner = (channels / 16).next_multiple_of(8);
+        Self {
+            squeeze: LinearConfig::new(channels, inner).init(device),
+            excite: LinearConfig::new(inner, channels).init(device),
+        }
+    }
+
+    fn forward(&self, signal: Tensor<4>) -> Tensor<4> {
+        let [frames, channels, ..] = signal.dims();
+        let weights = relu(self.squeeze.forward(mean_of_frames(signal.clone())));
+        let weights = sigmoid(self.excite.forward(weights));
+        signal * weights.reshape([frames, channels, 1, 1])
+    }
+}
+
+/// `[frames, channels]`, each the mean over a frame.
+fn mean_of_frames(signal: Tensor<4>) -> Tensor<2> {
+    let [frames, channels, height, width] = signal.dims();
+    signal.reshape([frames, channels, height * width]).mean_dim(2).reshape([frames, channels])
+}
+
+fn convolution(channels: [usize; 2], kernel: usize, stride: usize, groups: usize, device: &Device) -> Conv2d {
+    let pad = kernel / 2;
+    Conv2dConfig::new(channels, [kernel; 2])
+        .with_stride([stride; 2])
+        .with_groups(groups)
+        .with_padding(PaddingConfig2d::Explicit(pad, pad, pad, pad))
+        .with_bias(false)
+        .with_initializer(Initializer::KaimingNormal {
+            gain: std::f64::consts::SQRT_2,
+            fan_out_only: groups == 1,
+        })
+        .init(device)
+}
