@@ -58,20 +58,21 @@ pub fn run(
     items: impl Iterator<Item = Next>,
     mut tell: impl FnMut(Answer) -> Result<()>,
 ) -> Result<()> {
-    let items = items.map(|item| item.map(|item| (job.follow(stream, &item), item)));
+    // The job goes along, so that what an item's ports borrow from it lives as long as the item.
+    let items = items.map(|item| item.map(|item| (job, job.follow(stream, &item), item)));
     pipeline.run(
         items,
-        |item| matches!(item, Ok((true, _))),
+        |item| matches!(item, Ok((_, true, _))),
         |item| match item {
-            Ok((begins, item)) => job.ports(item, *begins),
+            Ok((job, begins, item)) => job.ports(item, *begins),
             // It is told as what it is below.
             Err(_) => Err(Error::invalid_input("unreadable")),
         },
         |item, outputs| {
             tell(match (item, outputs) {
                 (Err(failure), _) => Err(failure),
-                (Ok((_, item)), Ok(outputs)) => Ok((item, vec![outputs], Timings::default())),
-                (Ok((_, item)), Err(error)) => Err(of_item(&item, error)),
+                (Ok((_, _, item)), Ok(outputs)) => Ok((item, vec![outputs], Timings::default())),
+                (Ok((_, _, item)), Err(error)) => Err(of_item(&item, error)),
             })
         },
     )
