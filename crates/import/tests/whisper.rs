@@ -1,5 +1,7 @@
 //! A tiny Whisper, as CTranslate2 would write it, becomes two networks that fit each other; damaged files are refused.
 
+#![allow(clippy::unwrap_used)]
+
 use opendr_engine::ErrorKind;
 use opendr_import::{WhisperOnnx, whisper_from_ctranslate2};
 use rten::{Model, ValueOrView};

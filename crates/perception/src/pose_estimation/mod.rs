@@ -2,8 +2,6 @@
 
 mod blazepose;
 mod high_resolution_pose_estimation;
-#[cfg(feature = "training")]
-mod joints;
 pub(crate) mod joints;
 mod lightweight_open_pose;
 mod movenet;
