@@ -1,6 +1,7 @@
 //! Real models and pictures for tests.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(dead_code, reason = "each test file uses some")]
 
 use std::env;
 use std::path::PathBuf;
