@@ -35,6 +35,14 @@ pub fn begin_with(name: &str) {
     *BEGIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(name.to_owned());
 }
 
+/// Refuses a name to begin with that no check had: all were left out.
+pub fn begun() -> Result<()> {
+    match &*BEGIN.lock().unwrap_or_else(PoisonError::into_inner) {
+        Some(name) => Err(format!("no check is called {name:?}; the lines that begin with === name them")),
+        None => Ok(()),
+    }
+}
+
 /// A step that nothing else needs.
 pub fn check(name: &str, command: &mut Command) -> Result<()> {
     let mut begin = BEGIN.lock().unwrap_or_else(PoisonError::into_inner);

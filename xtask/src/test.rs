@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::shell::{Result, check, command, is_installed, root, step, target};
+use crate::shell::{Result, begun, check, command, is_installed, root, step, target};
 use crate::tools::{Python, install_debian};
 use crate::{install_c, parity, python_package, ros, surfaces};
 
@@ -61,6 +61,7 @@ pub fn run() -> Result<()> {
     )?;
     let prefix = c_library(&outside, &environment)?;
     parity::run(&python, &prefix, |pytest| environment.apply(pytest))?;
+    begun()?;
     println!("\nall checks passed");
     Ok(())
 }

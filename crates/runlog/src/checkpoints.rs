@@ -83,9 +83,7 @@ impl Checkpoints {
             fs::rename(temporary, path)?;
             sync_folder(path)
         };
-        rename().map_err(|error| refused(path, error))?;
-        fs::remove_dir_all(&replaced).ok();
-        Ok(())
+        rename().map_err(|error| refused(path, error))
     }
 
     /// The newest checkpoint that is whole; each file of it is checked. Broken ones are passed over and told of in
