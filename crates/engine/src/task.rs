@@ -53,6 +53,10 @@ tasks! {
     FacialExpressionRecognition = "facial_expression_recognition";
     /// The class that a whole picture belongs to.
     ImageClassification = "image_classification";
+    /// The class of every pixel.
+    SemanticSegmentation = "semantic_segmentation";
+    /// Where a gripper can take hold.
+    GraspDetection = "grasp_detection";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
     /// Key points of hands in a picture.

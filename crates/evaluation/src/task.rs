@@ -14,6 +14,7 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
             Ok("classification")
         }
         Task::FacialLandmarks => Ok("keypoints"),
+        Task::SemanticSegmentation => Ok("segmentation"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         Task::GestureRecognition
         | Task::ActivityRecognition

@@ -10,6 +10,7 @@ use opendr_perception::facial_expression_recognition::FacialEmotion;
 use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::fall_detection::FallDetector;
 use opendr_perception::gesture_recognition::KeypointGesture;
+use opendr_perception::grasp_detection::GrConvNet;
 use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
@@ -17,6 +18,7 @@ use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetec
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
+use opendr_perception::semantic_segmentation::Deeplab;
 use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
 use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
 use opendr_perception::speech_transcription::Whisper;
@@ -47,6 +49,8 @@ pub fn registry() -> &'static Registry {
             KeypointGesture,
             FallDetector,
             ImageClassifier,
+            Deeplab,
+            GrConvNet,
             SpatioTemporalGcn,
             CoStGcn,
             GatedRecurrentUnit,

@@ -8,6 +8,7 @@ pub mod facial_expression_recognition;
 pub mod facial_landmarks;
 pub mod fall_detection;
 pub mod gesture_recognition;
+pub mod grasp_detection;
 pub mod hand_pose_estimation;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
@@ -16,6 +17,7 @@ pub mod object_detection_2d;
 pub mod pose_estimation;
 pub mod regions;
 pub mod resampler;
+pub mod semantic_segmentation;
 pub mod skeleton_based_action_recognition;
 pub mod speech_recognition;
 pub mod speech_transcription;
@@ -24,6 +26,7 @@ pub mod voice_activity;
 pub mod voice_activity_detection;
 
 mod category_scores;
+mod described_input;
 mod face_finder;
 mod frame_clock;
 #[cfg(feature = "training")]

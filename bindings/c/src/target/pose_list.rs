@@ -31,7 +31,12 @@ pub enum opendr_skeleton {
     OPENDR_JHMDB15 = 6,
     /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
     OPENDR_NTU25 = 7,
+    /// Where the two jaws of a gripper go to grasp a thing.
+    OPENDR_GRASP2 = 8,
 }
+
+// The numbers are the places in `Skeleton::ALL`.
+const _: () = assert!(Skeleton::ALL.len() == opendr_skeleton::OPENDR_GRASP2 as usize + 1);
 
 /// A point found in a picture, pixels; (-1, -1) means not found.
 #[repr(C)]
@@ -106,36 +111,17 @@ impl List for PoseList {
             keypoints: item.keypoints.as_ptr().cast(),
             keypoint_count: item.keypoints.len(),
             confidence: item.confidence,
-            skeleton: match item.skeleton {
-                Skeleton::Coco17 => opendr_skeleton::OPENDR_COCO17 as i32,
-                Skeleton::Blazepose33 => opendr_skeleton::OPENDR_BLAZEPOSE33 as i32,
-                Skeleton::LeftHand21 => opendr_skeleton::OPENDR_LEFT_HAND21 as i32,
-                Skeleton::RightHand21 => opendr_skeleton::OPENDR_RIGHT_HAND21 as i32,
-                Skeleton::Face478 => opendr_skeleton::OPENDR_FACE478 as i32,
-                Skeleton::Jhmdb15 => opendr_skeleton::OPENDR_JHMDB15 as i32,
-                Skeleton::Ntu25 => opendr_skeleton::OPENDR_NTU25 as i32,
-                _ => opendr_skeleton::OPENDR_OPENDR18 as i32,
-            },
+            skeleton: Skeleton::ALL.iter().position(|known| *known == item.skeleton).unwrap_or_default()
+                as i32,
             id: item.id.unwrap_or(-1),
         }
     }
 
     unsafe fn item(plain: &opendr_pose) -> Result<Pose> {
-        let skeleton = match plain.skeleton {
-            0 => Skeleton::Opendr18,
-            1 => Skeleton::Coco17,
-            2 => Skeleton::Blazepose33,
-            3 => Skeleton::LeftHand21,
-            4 => Skeleton::RightHand21,
-            5 => Skeleton::Face478,
-            6 => Skeleton::Jhmdb15,
-            7 => Skeleton::Ntu25,
-            other => {
-                return Err(Error::invalid_input(format!(
-                    "skeleton is {other}; give one of opendr_skeleton"
-                )));
-            }
-        };
+        let known = usize::try_from(plain.skeleton).ok().and_then(|number| Skeleton::ALL.get(number));
+        let skeleton = *known.ok_or_else(|| {
+            Error::invalid_input(format!("skeleton is {}; give one of opendr_skeleton", plain.skeleton))
+        })?;
         // SAFETY: the caller's promise.
         let points = unsafe { slice(plain.keypoints, plain.keypoint_count, "the keypoints of a pose") }?;
         let joints = skeleton.joints().len();

@@ -26,6 +26,8 @@ pub enum Skeleton {
     Jhmdb15,
     /// The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
     Ntu25,
+    /// Where the two jaws of a gripper go to grasp a thing.
+    Grasp2,
 }
 
 /// The joints of a hand, and its bones.
@@ -87,6 +89,7 @@ impl Skeleton {
         Self::Face478,
         Self::Jhmdb15,
         Self::Ntu25,
+        Self::Grasp2,
     ];
 
     /// Its name, as JSON and messages write it.
@@ -100,6 +103,7 @@ impl Skeleton {
             Self::Face478 => "face478",
             Self::Jhmdb15 => "jhmdb15",
             Self::Ntu25 => "ntu25",
+            Self::Grasp2 => "grasp2",
         }
     }
 
@@ -109,6 +113,7 @@ impl Skeleton {
             Self::LeftHand21 => "left hand",
             Self::RightHand21 => "right hand",
             Self::Face478 => "face",
+            Self::Grasp2 => "grasp",
             _ => "person",
         }
     }
@@ -180,6 +185,7 @@ impl Skeleton {
                 "r_wri", "r_hand", "l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank",
                 "r_foot", "chest", "l_tip", "l_thumb", "r_tip", "r_thumb",
             ],
+            Self::Grasp2 => &["l_jaw", "r_jaw"],
         }
     }
 
@@ -279,6 +285,7 @@ impl Skeleton {
                 [6, 10],
                 [10, 14],
             ],
+            Self::Grasp2 => &[[0, 1]],
             Self::Ntu25 => &[
                 [20, 1],
                 [1, 0],

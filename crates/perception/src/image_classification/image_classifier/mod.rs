@@ -12,10 +12,12 @@ use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
-use opendr_engine::{Device, Error, Result, Task};
+use opendr_engine::{Device, Result, Task};
+#[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 
-use crate::category_scores::category_from_logits;
+use crate::category_scores::{category_from_logits, category_from_probabilities};
+use crate::described_input::described_input;
 use crate::picture_network::PictureNetwork;
 
 #[cfg(feature = "training")]
@@ -27,6 +29,9 @@ pub struct ImageClassifierParams {
     /// Whether the answer has the score of every class.
     #[param(default = true, live)]
     pub probabilities: bool,
+    /// Whether the network's answer is turned into probabilities by a softmax; false for one that ends in its own.
+    #[param(default = true)]
+    pub softmax: bool,
 }
 
 /// A loaded classifier.
@@ -37,35 +42,34 @@ pub struct ImageClassifier {
     scores: usize,
 }
 
-/// The network's output, `[1, classes]`, before the softmax.
+/// The network's output, `[1, classes]`.
 const SCORES: &str = "scores";
-/// Levels 0..=255 become -1..=1.
-const MEAN: [f32; 3] = [127.5; 3];
+/// Levels 0..=255 become -1..=1 where the model says nothing else.
+const LEVEL: f32 = 127.5;
 
-/// The pictures as the network wants them: `side` x `side`, RGB, -1..=1.
+/// The pictures as networks that were trained here want them: `side` x `side`, RGB, -1..=1.
+#[cfg(feature = "training")]
 fn preprocess(side: usize) -> Preprocess {
-    Preprocess::new(side, side).normalise(MEAN, MEAN)
+    Preprocess::new(side, side).normalise([LEVEL; 3], [LEVEL; 3])
 }
 
 impl Learner for ImageClassifier {
     const SPEC: Spec = Spec::new("image_classifier", Task::ImageClassification)
         .class("ImageClassifierLearner")
-        .about("A small network that learns the classes of a user's own pictures in minutes.");
+        .about("Tells the class of a picture; learns the classes of a user's own pictures in minutes.");
     type Params = ImageClassifierParams;
     type Input<'a> = &'a Image;
     type Target = Category;
     type State = ();
 
     fn load(model: &Model, params: ImageClassifierParams, device: Device) -> Result<Self> {
-        let mut side = 0;
-        let network = PictureNetwork::open(model, device, |input| {
-            side = input.dims.last().copied().flatten().unwrap_or_default();
-            preprocess(side)
+        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
+            described_input(model, input, LEVEL)
         })?;
-        if side == 0 {
-            return Err(Error::format("the network of an image classifier has an input of a fixed size"));
-        }
-        let scores = network.output(SCORES)?;
+        let scores = match network.outputs() {
+            [_] => 0,
+            _ => network.output(SCORES)?,
+        };
         Ok(Self { params, classes: model.classes().clone(), network, scores })
     }
 
@@ -83,7 +87,11 @@ impl Learner for ImageClassifier {
 
     fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
         self.network.run(image, |outputs, _| {
-            category_from_logits(category, outputs[self.scores].values()?, &self.classes)?;
+            let scores = outputs[self.scores].values()?;
+            match self.params.softmax {
+                true => category_from_logits(category, scores, &self.classes)?,
+                false => category_from_probabilities(category, scores.iter().copied(), &self.classes)?,
+            }
             if !self.params.probabilities {
                 category.probabilities.clear();
             }

@@ -15,7 +15,8 @@ _FACE = (
 
 #: The joints of each kind of body, in order. ``"opendr18"`` is OpenDR's (and OpenPose's) person, ``"coco17"`` COCO's,
 #: ``"blazepose33"`` BlazePose's, ``"left_hand21"`` and ``"right_hand21"`` are MediaPipe's
-#: hands, ``"face478"`` is its face; ``"jhmdb15"`` is JHMDB's person and ``"ntu25"`` Kinect v2's.
+#: hands, ``"face478"`` is its face; ``"jhmdb15"`` is JHMDB's person ``"ntu25"`` Kinect v2's;
+#: ``"grasp2"`` are the jaws of a gripper.
 JOINTS: dict[str, tuple[str, ...]] = {
     "opendr18": (
         *("nose", "neck", "r_sho", "r_elb", "r_wri", "l_sho", "l_elb", "l_wri", "r_hip", "r_knee"),
@@ -43,6 +44,7 @@ JOINTS: dict[str, tuple[str, ...]] = {
         *("r_wri", "r_hand", "l_hip", "l_knee", "l_ank", "l_foot", "r_hip", "r_knee", "r_ank", "r_foot"),
         *("chest", "l_tip", "l_thumb", "r_tip", "r_thumb"),
     ),
+    "grasp2": ("l_jaw", "r_jaw"),
 }
 
 

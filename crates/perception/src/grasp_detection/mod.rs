@@ -1,0 +1,5 @@
+//! Where a gripper can take hold.
+
+mod gr_conv_net;
+
+pub use gr_conv_net::{GrConvNet, GrConvNetInputs, GrConvNetParams};

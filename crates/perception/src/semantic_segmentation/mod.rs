@@ -1,0 +1,5 @@
+//! The class of every pixel of a picture.
+
+mod deeplab;
+
+pub use deeplab::{Deeplab, DeeplabParams};
