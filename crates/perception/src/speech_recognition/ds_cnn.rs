@@ -38,38 +38,28 @@ pub struct DsCnn {
 struct Work {
     second: Vec<f32>,
     cepstra: Vec<f32>,
-    quantised: Vec<i8>,
 }
 
-/// The network in every container: `[1, 49, 10, 1]`, 8 bits, to the probability of each class, 8 bits.
+/// The network in every container: cepstra `[1, 1, 49, 10]` to the probability of each class, in 8 bits between.
 const FILE: &str = "model.onnx";
 /// Samples a second that the network knows, and all that it hears.
 const SAMPLE_RATE: u32 = 16_000;
 /// Frames of a second, coefficients of a frame.
 const FRAMES: usize = 49;
 const COEFFICIENTS: usize = 10;
-/// How the network's input stands for a coefficient: `(number - ZERO) * SCALE`.
-const SCALE: f32 = 0.584_702_9;
-const ZERO: f32 = 83.0;
-/// How its output stands for a probability: `(number + 128) / 256`.
-const LEAST_SCORE: f32 = -128.0;
-const SCORES: f32 = 256.0;
 
 impl DsCnn {
     fn category(&self, samples: &[f32], category: &mut Category) -> Result<()> {
-        let Work { second, cepstra, quantised } = &mut *self.work.take();
+        let Work { second, cepstra } = &mut *self.work.take();
         second.clear();
         second.extend(samples.iter().take(SAMPLE_RATE as usize));
         second.resize(SAMPLE_RATE as usize, 0.0);
         normalise_peak(second);
         self.mfcc.run_into(second, cepstra);
-        quantised.clear();
-        quantised.extend(cepstra.iter().map(|coefficient| (coefficient / SCALE + ZERO).round() as i8));
-        let input = TensorView::new(&[1, FRAMES, COEFFICIENTS, 1], &quantised[..])?;
+        let input = TensorView::new(&[1, 1, FRAMES, COEFFICIENTS], &cepstra[..])?;
         self.session.run(&[input], |outputs| {
-            let scores = outputs.first().map_or(Ok(&[][..]), TensorView::values::<i8>)?;
-            let probabilities = scores.iter().map(|score| (f32::from(*score) - LEAST_SCORE) / SCORES);
-            category_from_probabilities(category, probabilities, &self.classes)
+            let probabilities = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
+            category_from_probabilities(category, probabilities.iter().copied(), &self.classes)
         })
     }
 }
@@ -88,10 +78,10 @@ impl Learner for DsCnn {
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
             return Err(Error::format(format!("{FILE} has not one input and one output")));
         };
-        let bytes = [input, output].iter().all(|tensor| tensor.element_type == ElementType::I8);
-        if !bytes || !matches!(input.dims[..], [_, Some(FRAMES), Some(COEFFICIENTS), Some(1)]) {
+        let floats = [input, output].iter().all(|tensor| tensor.element_type == ElementType::F32);
+        if !floats || !matches!(input.dims[..], [_, Some(1), Some(FRAMES), Some(COEFFICIENTS)]) {
             return Err(Error::format(format!(
-                "{FILE} turns {input} into {output}; this learner wants 49 frames of 10 cepstra and scores, in 8 bits"
+                "{FILE} turns {input} into {output}; this learner wants 49 frames of 10 cepstra, and gives probabilities"
             )));
         }
         Ok(Self {

@@ -4,16 +4,16 @@ use opendr_engine::Value;
 use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::dataset::{DatasetIterator as _, ExternalDataset};
 use opendr_engine::learner::{Handle, Stream};
+use opendr_import::{ImportOptions, onnx_from_tflite};
 
 use super::*;
-use crate::test_models::{container, test_data};
+use crate::test_models::{container_of, test_data};
 
 fn learner() -> Option<Handle<DsCnn>> {
-    let folder = container(
-        "ds_cnn",
-        "speech_commands/kws_dscnn_12.onnx",
-        include_str!("../../../../../models/classes/ds_cnn12.txt"),
-    )?;
+    let network = std::fs::read(test_data("models/speech_commands/kws_ref_model.tflite")?).unwrap();
+    let network = onnx_from_tflite(&network, &ImportOptions::default()).unwrap();
+    let classes = include_str!("../../../../../models/classes/ds_cnn12.txt");
+    let folder = container_of("ds_cnn", &network, classes);
     let mut handle = Handle::new(DsCnnParams::default(), Device::Cpu).unwrap();
     handle.load(&folder).unwrap();
     Some(handle)
