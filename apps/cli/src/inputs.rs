@@ -31,6 +31,8 @@ pub enum Inputs {
 pub struct Item {
     /// What goes into the first port.
     pub datum: Datum,
+    /// What files have for further ports, by their names.
+    pub from_files: Vec<(&'static str, Value)>,
     /// What a recording has besides.
     pub recorded: Option<Box<RecordedSet>>,
 }
@@ -110,7 +112,7 @@ impl Iterator for Inputs {
     type Item = Next;
 
     fn next(&mut self) -> Option<Next> {
-        let item = |datum| Item { datum, recorded: None };
+        let item = |datum| Item { datum, from_files: Vec::new(), recorded: None };
         match self {
             Self::Frames(source) => {
                 let frame = source.next()?;

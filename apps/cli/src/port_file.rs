@@ -1,11 +1,12 @@
-//! The file behind a further port: one target for every frame, a target a line, or what `opendr infer --json` wrote, a
-//! line a frame.
+//! The file behind a further port. Of targets: one for every frame, one a line, or what `opendr infer --json` wrote, a line a
+//! frame. Of data: one for every frame, or a folder with one for each.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use opendr::datasets::{open_value, value_files};
 use opendr::learner::Port;
-use opendr::{Error, Result, ResultExt, Value, ValueType};
+use opendr::{Error, Result, ResultExt, Value, ValueType, vision};
 use serde_json::{Map, Value as Json};
 
 /// Larger files are no list of targets.
@@ -22,14 +23,15 @@ pub struct PortFile {
 enum Values {
     Same(Box<Value>),
     PerFrame(Vec<Option<Value>>),
+    Files { port: Port, paths: Vec<PathBuf> },
 }
 
 impl PortFile {
     /// Reads the file that the user gave for `port`.
     ///
     /// # Errors
-    /// `Unsupported` when the port takes data rather than a target, `NotFound` or `Io` when the file cannot be read,
-    /// `Format` when it is neither of the two.
+    /// `NotFound` or `Io` when the file cannot be read, `Format` when it holds something else, `Unsupported` for data that is in
+    /// no file of its own.
     pub fn read(port: &Port, path: &Path) -> Result<Self> {
         let reading = || format!("reading {} for input {:?}", path.display(), port.name);
         Self::from_file(port, path).context(reading)
@@ -37,10 +39,11 @@ impl PortFile {
 
     fn from_file(port: &Port, path: &Path) -> Result<Self> {
         if !port.value_type.is_target() {
-            return Err(Error::unsupported(format!(
-                "the command line hands on targets as JSON, and this input is {}; use Rust or Python",
-                port.value_type.name()
-            )));
+            let values = match path.is_dir() {
+                true => Values::Files { port: *port, paths: value_files(port.value_type, path)? },
+                false => Values::Same(Box::new(open_data(port, path)?)),
+            };
+            return Ok(Self { name: port.name, values });
         }
         let size = fs::metadata(path)?.len();
         if size > MAX_BYTES {
@@ -66,20 +69,32 @@ impl PortFile {
     /// The value for frame number `index` of all that is read.
     ///
     /// # Errors
-    /// `InvalidInput` when the file has no value for it.
-    pub fn value(&self, index: u64) -> Result<&Value> {
+    /// `InvalidInput` when the file has no value for it; what kept a file of the folder from being read.
+    pub fn value(&self, index: u64) -> Result<Value> {
+        let at = usize::try_from(index).unwrap_or(usize::MAX);
+        let none = |what: &str, count: usize| {
+            let name = self.name;
+            Error::invalid_input(format!("input {name:?} has no value for frame {index} ({count} {what})"))
+        };
         match &self.values {
-            Values::Same(value) => Ok(value),
+            Values::Same(value) => Ok((**value).clone()),
             Values::PerFrame(values) => {
-                let value = usize::try_from(index).ok().and_then(|index| values.get(index));
-                value.and_then(Option::as_ref).ok_or_else(|| {
-                    let (name, lines) = (self.name, values.len());
-                    Error::invalid_input(format!(
-                        "the file for input {name:?} has no value for frame {index} ({lines} lines)"
-                    ))
-                })
+                let value = values.get(at).and_then(Option::as_ref);
+                value.cloned().ok_or_else(|| none("lines", values.len()))
+            }
+            Values::Files { port, paths } => {
+                let path = paths.get(at).ok_or_else(|| none("files", paths.len()))?;
+                open_data(port, path)
             }
         }
+    }
+}
+
+/// Data out of a file; depth keeps all its bits.
+fn open_data(port: &Port, path: &Path) -> Result<Value> {
+    match (port.value_type, port.name) {
+        (ValueType::Image, "depth") => vision::Decoder::default().open_depth(path).map(Value::Image),
+        (kind, _) => open_value(kind, path),
     }
 }
 

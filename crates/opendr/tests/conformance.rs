@@ -5,10 +5,11 @@ mod models;
 
 use std::path::Path;
 
+use opendr::data::{Image, Layout, PixelFormat};
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};
 use opendr::datasets::{OpenOptions, Problems, open};
 use opendr::environment::{Environment as _, ResetOptions};
-use opendr::learner::{CheckOptions, Entry, check_learner};
+use opendr::learner::{CheckOptions, Entry, Port, check_learner};
 use opendr::model::Model;
 use opendr::{Header, Value, ValueType};
 
@@ -19,11 +20,15 @@ fn every_learner_keeps_its_promises() {
     let mut checked = 0;
     for entry in learners() {
         let Some(model) = models.get(entry.spec.name) else { continue };
-        let calls = match entry.ports[0].value_type {
+        let mut calls = match entry.ports[0].value_type {
             ValueType::Observation => observations(&model),
             ValueType::Vector => vectors(&model),
             kind => calls(kind, &models),
         };
+        for call in &mut calls {
+            let further = entry.ports[1..].iter().filter(|port| !port.optional);
+            call.extend(further.map(|port| (port.name, beside(port, &call[0].1))).collect::<Vec<_>>());
+        }
         let options = CheckOptions { model: &model, scratch: &scratch, calls: &calls };
         check_learner(entry, &options).unwrap();
         checked += 1;
@@ -79,6 +84,22 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
         }
     };
     stamped(kind, values)
+}
+
+/// What a further port gets beside `first`.
+fn beside(port: &Port, first: &Value) -> Value {
+    let mut value: Value = match (port.value_type, port.name, first) {
+        (ValueType::Image, "depth", Value::Image(image)) => {
+            let metres = (0..image.width() * image.height()).map(|at| 0.5 + (at % 97) as f32 / 200.0);
+            let (width, height) = (image.width(), image.height());
+            Image::new(metres.collect::<Vec<_>>(), width, height, PixelFormat::Grey, Layout::Hwc)
+                .unwrap()
+                .into()
+        }
+        (kind, name, _) => panic!("nothing is known for a port {name} of the type {}", kind.name()),
+    };
+    *value.header_mut() = first.header().clone();
+    value
 }
 
 fn stamped(kind: ValueType, values: impl IntoIterator<Item = Value>) -> Vec<Vec<(&'static str, Value)>> {

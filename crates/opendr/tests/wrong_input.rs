@@ -17,8 +17,9 @@ use opendr::{Device, ErrorKind, Result, Value, ValueType};
 fn wrong_input_is_answered_or_refused_and_changes_nothing() {
     let Some(models) = models::Models::find() else { return };
     for entry in opendr::registry().entries() {
-        if entry.spec.name == "counter" {
-            continue; // The test learner has no model in the zoo.
+        // Tests of their own have those that take several things; the test learner, one of them, has no model in the zoo.
+        if entry.ports.iter().filter(|port| !port.optional).count() > 1 {
+            continue;
         }
         let Some(model) = models.get(entry.spec.name) else { continue };
         let mut learner = entry.make(&ParamMap::new(), Device::Cpu).unwrap();

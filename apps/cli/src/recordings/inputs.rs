@@ -143,7 +143,7 @@ impl Opened {
         let messages = messages.into_iter().flatten().collect();
         let (recording, is_last) = (self.recording.clone(), self.ahead.is_none());
         let recorded = RecordedSet { further, log_time_ns, is_last, messages, recording };
-        Ok(Item { datum, recorded: Some(Box::new(recorded)) })
+        Ok(Item { datum, from_files: Vec::new(), recorded: Some(Box::new(recorded)) })
     }
 
     /// What to say at the end of the recording.

@@ -110,7 +110,9 @@ fn seeing(
     matches: &ArgMatches,
     bar: &Bar,
 ) -> Result<(Seen, Vec<Timings>)> {
-    let further = learner_flags::port_files(entry, matches)?;
+    let files = learner_flags::port_files(entry, matches)?;
+    let further: Vec<_> =
+        files.iter().map(|file| Ok((file.name(), file.value(0)?))).collect::<Result<_>>()?;
     let (seen, values) = seen::values(spec, entry, matches, bar)?;
     let in_pieces = matches!(seen, Seen::Sound { .. }) && entry.capabilities.streaming;
     let mut calls = values.iter().cycle();
@@ -119,8 +121,8 @@ fn seeing(
             return Err(Error::invalid_input("the sound is too short for a piece of it; name a longer one"));
         };
         let mut ports = Ports::one(value);
-        for file in &further {
-            ports = ports.with(file.name(), file.value(0)?);
+        for (name, value) in &further {
+            ports = ports.with(name, value);
         }
         let ((), timings) = Timings::of(|| match in_pieces {
             true => learner.push(Some(&ports), &mut |_| ()),

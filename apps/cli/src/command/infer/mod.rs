@@ -232,7 +232,7 @@ impl Job {
         let mut left = limit;
         let items = std::iter::from_fn(|| {
             left = left.checked_sub(1).filter(|_| !interrupted())?;
-            inputs.next()
+            Some(inputs.next()?.and_then(|item| self.with_files(item)))
         });
         let tell = |answer: Answer| {
             match answer {
@@ -276,9 +276,9 @@ impl Job {
     /// What goes into the ports.
     fn ports<'a>(&'a self, item: &'a Item, begins: bool) -> Result<Ports<'a>> {
         let mut ports = Ports::default().with(self.port, item.value());
-        for file in &self.further {
-            if begins || !self.is_init(file.name()) {
-                ports = ports.with(file.name(), file.value(item.index())?);
+        for (name, value) in &item.from_files {
+            if begins || !self.is_init(name) {
+                ports = ports.with(name, value);
             }
         }
         for (name, value) in item.further() {
@@ -315,6 +315,19 @@ impl Job {
         let begins = is_begun || stream.is_none() || stream != *last;
         *last = stream;
         begins
+    }
+
+    /// The item with what the files of further ports have for it.
+    fn with_files(&self, mut item: Item) -> Next {
+        for file in &self.further {
+            match file.value(item.index()) {
+                Ok(value) => item.from_files.push((file.name(), value)),
+                // Nobody asks for it but where a stream begins.
+                Err(_) if self.is_init(file.name()) => {}
+                Err(error) => return Err((Some(item.path().to_path_buf()), error)),
+            }
+        }
+        Ok(item)
     }
 
     fn is_init(&self, name: &str) -> bool {
