@@ -118,8 +118,8 @@ impl List for PoseList {
     }
 
     unsafe fn item(plain: &opendr_pose) -> Result<Pose> {
-        let known = usize::try_from(plain.skeleton).ok().and_then(|number| Skeleton::ALL.get(number));
-        let skeleton = *known.ok_or_else(|| {
+        let skeleton = usize::try_from(plain.skeleton).ok().and_then(|number| Skeleton::ALL.get(number));
+        let skeleton = *skeleton.ok_or_else(|| {
             Error::invalid_input(format!("skeleton is {}; give one of opendr_skeleton", plain.skeleton))
         })?;
         // SAFETY: the caller's promise.

@@ -85,7 +85,7 @@ impl Maps {
     }
 
     fn neighbours(&self, side: usize, x: usize, y: usize) -> impl Iterator<Item = f32> {
-        let around = |at: usize| at.saturating_sub(1)..=(at + 1).min(side - 1);
+        let around = move |at: usize| at.saturating_sub(1)..=(at + 1).min(side - 1);
         around(y).flat_map(move |y| around(x).map(move |x| self.quality[y * side + x]))
     }
 }
