@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn other_files_are_refused() {
         for text in ["", "text", "[1,2]", r#"{"type":"Nonsense"}"#] {
-            let refused = read("other", text).and_then(|file| file.value(0).cloned());
+            let refused = read("other", text).and_then(|file| file.value(0));
             assert!(refused.is_err(), "{text:?}");
         }
     }
