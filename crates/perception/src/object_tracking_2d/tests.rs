@@ -180,7 +180,7 @@ fn a_camera_that_turns_is_made_up_for() {
 fn hostile_frames_never_panic_and_memory_is_bounded() {
     let mut random = Random::new(3);
     let mut frame = |at: usize| -> Vec<BoundingBox> {
-        let count = match at % 500 {
+        let count = match at % 1000 {
             0 => 5000,
             _ => random.below(40),
         };
@@ -200,7 +200,7 @@ fn hostile_frames_never_panic_and_memory_is_bounded() {
         };
         (0..count).map(|_| one()).collect()
     };
-    let frames: Vec<_> = (0..1500).map(&mut frame).collect();
+    let frames: Vec<_> = (0..10_000).map(&mut frame).collect();
     each!(&[], |tracker| for boxes in &frames {
         let most = boxes.len();
         let found = tracker.run(boxes.clone());
