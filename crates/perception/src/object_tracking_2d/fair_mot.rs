@@ -133,7 +133,7 @@ impl Learner for FairMot {
         let tracker = ByteTrack::with_params(ByteTrackParams {
             threshold,
             low_threshold: LOWEST,
-            new_threshold: threshold + LOWEST,
+            new_threshold: (threshold + LOWEST).min(1.0),
             track_buffer,
             ..ByteTrackParams::default()
         });
