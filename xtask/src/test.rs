@@ -81,6 +81,7 @@ fn references(environment: &Environment) -> Result<()> {
         .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
         .env("OPENDR_MFCC", examples.join("mfcc"))
+        .env("OPENDR_PERCEPTION_FOLLOW", examples.join("follow"))
         .env("OPENDR_SIMULATION_SERVE", examples.join("serve_environments"))
         .env("OPENDR_RUNLOG_LOG", examples.join("log"))
         .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"))

@@ -25,41 +25,56 @@ fn is_allowed(cost: f64) -> bool {
 /// assert_eq!(cheapest_pairs(&costs, 3), [(0, 1), (1, 0)]);
 /// ```
 pub fn cheapest_pairs(costs: &[f64], columns: usize) -> Vec<(usize, usize)> {
-    let rows = costs.len().checked_div(columns).unwrap_or(0);
-    debug_assert_eq!(costs.len(), rows * columns, "the last row is not whole");
-    let allowed = costs.iter().filter(|cost| is_allowed(**cost)).map(|cost| cost.abs());
-    let Some(largest) = allowed.reduce(f64::max) else { return Vec::new() };
+    let mut assignment = Assignment::default();
+    assignment.cheapest_pairs(costs, columns);
+    assignment.pairs
+}
 
-    // One forbidden pair costs more than any set of allowed ones can save.
-    let (short, long) = (rows.min(columns), rows.max(columns));
-    let forbidden = 2.0 * short as f64 * (largest + 1.0) + 1.0;
-    let is_tall = rows > columns;
-    let position = |row: usize, column: usize| match is_tall {
-        true => column * columns + row,
-        false => row * columns + column,
-    };
-    let mut dense = Vec::with_capacity(costs.len());
-    for row in 0..short {
-        dense.extend((0..long).map(|column| match costs[position(row, column)] {
-            cost if is_allowed(cost) => cost,
-            _ => forbidden,
-        }));
+/// [`cheapest_pairs`] with memory that is used again: after the first calls nothing is allocated.
+#[derive(Debug, Clone, Default)]
+pub struct Assignment {
+    paths: AugmentingPaths,
+    pairs: Vec<(usize, usize)>,
+}
+
+impl Assignment {
+    /// As the function of this name.
+    pub fn cheapest_pairs(&mut self, costs: &[f64], columns: usize) -> &[(usize, usize)] {
+        let Self { paths, pairs } = self;
+        pairs.clear();
+        let rows = costs.len().checked_div(columns).unwrap_or(0);
+        debug_assert_eq!(costs.len(), rows * columns, "the last row is not whole");
+        let allowed = costs.iter().filter(|cost| is_allowed(**cost)).map(|cost| cost.abs());
+        let Some(largest) = allowed.reduce(f64::max) else { return pairs };
+
+        // One forbidden pair costs more than any set of allowed ones can save.
+        let (short, long) = (rows.min(columns), rows.max(columns));
+        let forbidden = 2.0 * short as f64 * (largest + 1.0) + 1.0;
+        let is_tall = rows > columns;
+        let position = |row: usize, column: usize| match is_tall {
+            true => column * columns + row,
+            false => row * columns + column,
+        };
+        paths.begin(short, long);
+        for row in 0..short {
+            paths.costs.extend((0..long).map(|column| match costs[position(row, column)] {
+                cost if is_allowed(cost) => cost,
+                _ => forbidden,
+            }));
+        }
+        (0..short).for_each(|row| paths.add(row));
+        let found = (0..short).filter_map(|row| Some((row, paths.column_of[row]?)));
+        let found = found.filter(|&(row, column)| is_allowed(costs[position(row, column)]));
+        pairs.extend(found.map(|(row, column)| if is_tall { (column, row) } else { (row, column) }));
+        pairs.sort_unstable();
+        pairs
     }
-
-    let mut paths = AugmentingPaths::new(&dense, short, long);
-    (0..short).for_each(|row| paths.add(row));
-    let mut pairs: Vec<_> = (0..short)
-        .filter_map(|row| Some((row, paths.column_of[row]?)))
-        .filter(|&(row, column)| is_allowed(costs[position(row, column)]))
-        .map(|(row, column)| if is_tall { (column, row) } else { (row, column) })
-        .collect();
-    pairs.sort_unstable();
-    pairs
 }
 
 /// A cheapest pairing of the rows added so far, with the prices (dual variables) that prove it.
-struct AugmentingPaths<'a> {
-    costs: &'a [f64],
+#[derive(Debug, Clone, Default)]
+struct AugmentingPaths {
+    costs: Vec<f64>,
     columns: usize,
     row_price: Vec<f64>,
     column_price: Vec<f64>,
@@ -75,21 +90,21 @@ struct AugmentingPaths<'a> {
     reached: Vec<usize>,
 }
 
-impl<'a> AugmentingPaths<'a> {
-    fn new(costs: &'a [f64], rows: usize, columns: usize) -> Self {
-        Self {
-            costs,
-            columns,
-            row_price: vec![0.0; rows],
-            column_price: vec![0.0; columns],
-            column_of: vec![None; rows],
-            row_of: vec![None; columns],
-            distance: vec![0.0; columns],
-            before: vec![0; columns],
-            open: Vec::with_capacity(columns),
-            settled: Vec::with_capacity(columns),
-            reached: Vec::with_capacity(rows),
+impl AugmentingPaths {
+    /// Forgets all rows; the costs are yet to come.
+    fn begin(&mut self, rows: usize, columns: usize) {
+        fn fill<T: Copy>(list: &mut Vec<T>, length: usize, value: T) {
+            list.clear();
+            list.resize(length, value);
         }
+        self.costs.clear();
+        self.columns = columns;
+        fill(&mut self.row_price, rows, 0.0);
+        fill(&mut self.column_price, columns, 0.0);
+        fill(&mut self.column_of, rows, None);
+        fill(&mut self.row_of, columns, None);
+        fill(&mut self.distance, columns, 0.0);
+        fill(&mut self.before, columns, 0);
     }
 
     /// Pairs one more row, moving earlier ones along the shortest path to a free column.

@@ -25,6 +25,7 @@ pub mod dataset;
 pub mod environment;
 pub mod learner;
 pub mod model;
+pub mod overlap;
 pub mod params;
 pub mod target;
 

@@ -43,6 +43,10 @@ impl Task {
 tasks! {
     /// Boxes with classes in a picture.
     ObjectDetection2d = "object_detection_2d";
+    /// Objects that keep their number from frame to frame.
+    ObjectTracking2d = "object_tracking_2d";
+    /// Objects that keep their number from moment to moment, in space.
+    ObjectTracking3d = "object_tracking_3d";
     /// Boxes of faces in a picture.
     FaceDetection = "face_detection";
     /// Whose faces are in a picture.

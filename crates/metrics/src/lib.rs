@@ -16,7 +16,6 @@ mod edit_distance;
 mod generated;
 mod hota;
 mod identity;
-mod image_overlap;
 mod keypoints;
 mod kitti;
 mod metric;
@@ -29,7 +28,6 @@ mod regression;
 mod reidentification;
 mod report;
 mod roc;
-mod rotated_overlap;
 mod segmentation;
 mod success;
 mod tracking_frame;
@@ -46,12 +44,12 @@ pub use depth::{Depth, DepthErrors, DepthParams, DepthQuantity, DisparityErrors}
 pub use edit_distance::EditCounts;
 pub use hota::{Hota, HotaCounts, HotaParams, HotaScores};
 pub use identity::{Identity, IdentityCounts};
-pub use image_overlap::{image_cover, image_overlap};
 pub use keypoints::{Keypoints, KeypointsParams, PoseSize};
 pub use kitti::{Kitti, KittiClass, KittiDifficulty, KittiObject, KittiOverlap, KittiScore};
 pub use metric::Metric;
 pub use mot_challenge::MotRules;
 pub use numbers::undocumented;
+pub use opendr_engine::overlap::{RotatedRectangle, StandingBox, image_cover, image_overlap};
 pub use panoptic::{LABEL_DIVISOR, Panoptic, PanopticCounts, PanopticMap, PanopticParams, PanopticSegment};
 pub use precision_recall::{ClassCounts, ClassScore, ClassScores, PrecisionRecall, ZeroDivision};
 pub use registry::{find, metrics};
@@ -59,7 +57,6 @@ pub use regression::{Regression, Residuals};
 pub use reidentification::{Reidentification, ReidentificationParams, Retrieval, Subject, VectorDistance};
 pub use report::{Bars, Curves, Figure, Line, Matrix, Report, Table};
 pub use roc::{Roc, RocCurve, RocParams, RocPoint};
-pub use rotated_overlap::{RotatedRectangle, StandingBox};
 pub use segmentation::{ClassPixels, Segmentation, SegmentationParams, SegmentationScores};
 pub use success::{
     Episode, Interval, Success, SuccessParams, bootstrap_interval, interquartile_mean, wilson_interval,

@@ -2,10 +2,9 @@
 
 use std::collections::HashSet;
 
+use opendr_engine::overlap::image_overlap;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Error, Result};
-
-use crate::image_overlap::image_overlap;
 
 /// Pairs of one picture, so that a hostile list cannot ask for all memory.
 const MOST_PAIRS: usize = 1 << 22;

@@ -15,6 +15,8 @@ use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
+use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
+use opendr_perception::object_tracking_3d::Ab3dmot;
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
@@ -35,6 +37,12 @@ pub fn registry() -> &'static Registry {
             CenterNet,
             Nanodet,
             SingleShotDetector,
+            Sort,
+            ByteTrack,
+            OcSort,
+            DeepSort,
+            FairMot,
+            Ab3dmot,
             UltraLightFace,
             Yunet,
             FaceRecognition,

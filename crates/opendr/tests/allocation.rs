@@ -11,7 +11,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use opendr::data::Image;
 use opendr::inference::{Session, TensorView};
 use opendr::learner::{Handle, Inputs, Learner};
+use opendr::object_tracking_2d::{ByteTrack, OcSort, Sort, TrackerInputs};
 use opendr::params::{ParamMap, Params};
+use opendr::target::{BoundingBox, BoundingBoxList, TrackingAnnotationList};
 use opendr::{Device, Model};
 
 struct Counting;
@@ -74,6 +76,39 @@ where
     let bare = fewest(|| session.run(&input, |_| Ok(())).unwrap());
     println!("{name}: {whole} allocations a call, {bare} of them in the session's run");
     assert!(whole <= bare, "{name} allocates {whole} times a call, its bare session {bare} times");
+}
+
+/// Crowds that walk, for a tracker that has seen them for a while.
+fn check_tracker<L>(make: impl FnOnce(L::Params) -> L)
+where
+    L: for<'a> Learner<Input<'a> = TrackerInputs<'a>, Target = TrackingAnnotationList>,
+{
+    let tracker = make(L::Params::from_map(&ParamMap::new()).unwrap());
+    let (mut state, mut answer) = (L::State::default(), TrackingAnnotationList::default());
+    let mut frames = (0..200).map(|frame| {
+        // Some cross, and each is hidden now and then.
+        let walkers = (0..25).filter(|walker| (frame + 7 * walker) % 20 != 0).map(|walker| {
+            let left = (walker * 60 + frame * (walker % 3)) as f32;
+            BoundingBox::new(0, left, (walker % 5) as f32 * 10.0, 50.0, 120.0, 0.9)
+        });
+        BoundingBoxList::from(walkers.collect::<Vec<_>>())
+    });
+    let mut call = |frame: &BoundingBoxList| {
+        let input = TrackerInputs { detections: frame, image: None };
+        tracker.infer_into(&mut state, input, &mut answer).unwrap();
+    };
+    frames.by_ref().take(180).for_each(|frame| call(&frame));
+    let rest: Vec<_> = frames.collect();
+    let mut rest = rest.iter();
+    assert_eq!(fewest(|| call(rest.next().unwrap())), 0, "{}", L::SPEC.name);
+    assert!(answer.annotations.len() > 15);
+}
+
+#[test]
+fn trackers_allocate_nothing() {
+    check_tracker(Sort::with_params);
+    check_tracker(ByteTrack::with_params);
+    check_tracker(OcSort::with_params);
 }
 
 #[test]

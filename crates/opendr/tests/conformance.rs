@@ -11,6 +11,7 @@ use opendr::datasets::{OpenOptions, Problems, open};
 use opendr::environment::{Environment as _, ResetOptions};
 use opendr::learner::{CheckOptions, Entry, Port, check_learner};
 use opendr::model::Model;
+use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList};
 use opendr::{Header, Value, ValueType};
 
 #[test]
@@ -20,15 +21,12 @@ fn every_learner_keeps_its_promises() {
     let mut checked = 0;
     for entry in learners() {
         let Some(model) = models.get(entry.spec.name) else { continue };
-        let mut calls = match entry.ports[0].value_type {
+        let calls = match entry.ports[0].value_type {
             ValueType::Observation => observations(&model),
             ValueType::Vector => vectors(&model),
             kind => calls(kind, &models),
         };
-        for call in &mut calls {
-            let further = entry.ports[1..].iter().filter(|port| !port.optional);
-            call.extend(further.map(|port| (port.name, beside(port, &call[0].1))).collect::<Vec<_>>());
-        }
+        let calls = with_further_ports(entry, calls);
         let options = CheckOptions { model: &model, scratch: &scratch, calls: &calls };
         check_learner(entry, &options).unwrap();
         checked += 1;
@@ -69,6 +67,8 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
         ValueType::Image => ["photos/zidane.jpg", "photos/t1.jpg", "photos/chelsea.png"]
             .map(|name| opendr::vision::open(models.data(name)).unwrap().into())
             .into(),
+        ValueType::BoundingBoxList => [0.0, 4.0, 8.0].map(|shift| boxes(shift).into()).into(),
+        ValueType::BoundingBox3DList => [0.0, 0.4, 0.8].map(|shift| cars(shift).into()).into(),
         kind => {
             let (format, path) = match kind {
                 ValueType::Audio => ("speech_commands", "speech_commands_v0.02_test"),
@@ -86,20 +86,60 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
     stamped(kind, values)
 }
 
+/// The calls under the name of the first port, with detections and pictures for further ports.
+fn with_further_ports(
+    entry: &Entry,
+    mut calls: Vec<Vec<(&'static str, Value)>>,
+) -> Vec<Vec<(&'static str, Value)>> {
+    let [first, further @ ..] = entry.ports else { return calls };
+    for (call, shift) in calls.iter_mut().zip([0.0, 4.0, 8.0]) {
+        call.iter_mut().for_each(|(name, _)| *name = first.name);
+        let beside: Vec<_> = further.iter().map(|port| (port.name, beside(port, &call[0].1, shift))).collect();
+        call.extend(beside);
+    }
+    calls
+}
+
 /// What a further port gets beside `first`.
-fn beside(port: &Port, first: &Value) -> Value {
-    let mut value: Value = match (port.value_type, port.name, first) {
+fn beside(port: &Port, first: &Value, shift: f32) -> Value {
+    match (port.value_type, port.name, first) {
+        (ValueType::BoundingBoxList, ..) => boxes(shift).into(),
         (ValueType::Image, "depth", Value::Image(image)) => {
-            let metres = (0..image.width() * image.height()).map(|at| 0.5 + (at % 97) as f32 / 200.0);
             let (width, height) = (image.width(), image.height());
-            Image::new(metres.collect::<Vec<_>>(), width, height, PixelFormat::Grey, Layout::Hwc)
-                .unwrap()
-                .into()
+            let metres: Vec<_> = (0..width * height).map(|at| 0.5 + (at % 97) as f32 / 200.0).collect();
+            Image::new(metres, width, height, PixelFormat::Grey, Layout::Hwc).unwrap().into()
         }
-        (kind, name, _) => panic!("nothing is known for a port {name} of the type {}", kind.name()),
+        (ValueType::Image, ..) => checkered(shift as usize).into(),
+        (other, ..) => panic!("there are no test data of the type {}", other.name()),
+    }
+}
+
+/// Squares of many greys, moved to the right.
+fn checkered(shift: usize) -> Image {
+    let grey = |at: usize| {
+        let (x, y) = ((at % 400 + 64 - shift) / 16, at / 400 / 16);
+        (x * 37 + y * 91) as u8
     };
-    *value.header_mut() = first.header().clone();
-    value
+    let samples = (0..400 * 300).flat_map(|at| [grey(at); 3]).collect();
+    Image::from_rgb8(samples, 400, 300).unwrap()
+}
+
+/// Three persons, moved to the right.
+fn boxes(shift: f32) -> BoundingBoxList {
+    let person = |left: f32| BoundingBox::new(0, left + shift, 50.0, 60.0, 150.0, 0.9);
+    [10.0, 200.0, 300.0].map(person).to_vec().into()
+}
+
+/// Two cars, moved ahead.
+fn cars(shift: f32) -> BoundingBox3DList {
+    let car = |x: f32| BoundingBox3D {
+        name: "Car".into(),
+        dimensions: [4.0, 1.5, 1.8],
+        location: [x, 1.6, 20.0 + shift],
+        confidence: 0.9,
+        ..BoundingBox3D::default()
+    };
+    [-5.0, 5.0].map(car).to_vec().into()
 }
 
 fn stamped(kind: ValueType, values: impl IntoIterator<Item = Value>) -> Vec<Vec<(&'static str, Value)>> {

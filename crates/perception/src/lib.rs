@@ -14,6 +14,8 @@ pub mod heart_anomaly_detection;
 pub mod image_classification;
 pub mod mfcc;
 pub mod object_detection_2d;
+pub mod object_tracking_2d;
+pub mod object_tracking_3d;
 pub mod pose_estimation;
 pub mod regions;
 pub mod resampler;
@@ -22,6 +24,7 @@ pub mod skeleton_based_action_recognition;
 pub mod speech_recognition;
 pub mod speech_transcription;
 pub mod suppression;
+pub mod tracking;
 pub mod voice_activity;
 pub mod voice_activity_detection;
 

@@ -79,7 +79,8 @@ pub struct Variant {
     /// What `opendr bench` measured.
     #[serde(default)]
     pub speed: Option<Speed>,
-    /// The files to get.
+    /// The files to get; none for a rule, which has no weights.
+    #[serde(default)]
     pub files: Vec<CardFile>,
     /// Models of the zoo that it carries as parts (`Model::part`): the name of the part, and the item.
     #[serde(default)]
@@ -87,7 +88,8 @@ pub struct Variant {
     /// How the model's files are made from them, one network each; empty when they are the model.
     #[serde(default, deserialize_with = "one_or_several")]
     pub import: Vec<Import>,
-    /// Where the files are, in the order in which to try.
+    /// Where the files are, in the order in which to try; none where there are no files.
+    #[serde(default)]
     pub sources: Vec<Source>,
 }
 

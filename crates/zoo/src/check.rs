@@ -46,7 +46,11 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
     check_imports(variant)?;
     match kind {
         ItemKind::Sample => ensure(variant.files.len() == 1, || "a sample is one file".into())?,
-        ItemKind::Model => ensure(!variant.files.is_empty(), || "no files".into())?,
+        // A rule has no weights, and an item may be made of its parts alone.
+        ItemKind::Model if variant.files.is_empty() => {
+            return ensure(variant.sources.is_empty(), || "sources, but no files".into());
+        }
+        ItemKind::Model => {}
     }
     ensure(!variant.sources.is_empty(), || "no sources".into())?;
     variant.sources.iter().try_for_each(|source| {

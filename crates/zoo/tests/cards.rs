@@ -4,7 +4,7 @@
 
 mod place;
 
-use opendr_engine::{ErrorKind, Task};
+use opendr_engine::{ErrorKind, Model, Silent, Task};
 use opendr_zoo::{Card, ItemKind, Source, Zoo, embedded_cards};
 use place::{Place, card};
 
@@ -49,6 +49,23 @@ fn items_are_found_by_learner_and_variant() {
     for absent in ["", "/", "centrenet", "centernet/", "centernet/coco_512/x", "../centernet"] {
         assert_eq!(zoo.find(absent).unwrap_err().kind(), ErrorKind::NotFound, "{absent:?}");
     }
+}
+
+/// A rule has no weights: nothing is fetched, even where there is no network.
+#[test]
+fn a_card_without_files_needs_no_source() {
+    let text = "learner = \"rule\"\ntask = \"object_tracking_2d\"\ndescription = \"x\"\n[[variants]]\nname = \"default\"\n\
+                default = true\nlicence = {}\n";
+    let place = Place::new();
+    let mut options = place.options();
+    options.offline = true;
+    let zoo = Zoo::with_cards(options, vec![Card::from_toml(text).unwrap()]);
+    assert!(zoo.cached("rule").is_none());
+    let model = Model::open(zoo.get("rule", &Silent).unwrap()).unwrap();
+    assert_eq!((model.manifest().learner.as_str(), model.manifest().files.len()), ("rule", 0));
+    assert!(zoo.cached("rule").is_some());
+    assert_eq!(zoo.download("rule", None, &Silent).unwrap(), model.path());
+    assert!(Card::from_toml(&format!("{text}{URL}")).is_err());
 }
 
 #[test]

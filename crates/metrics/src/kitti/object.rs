@@ -4,7 +4,7 @@ use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Name};
 use opendr_engine::{Error, Result};
 
 use super::rules::ObjectKind;
-use crate::{RotatedRectangle, StandingBox};
+use crate::StandingBox;
 
 /// An object of truth or answer.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,12 +30,9 @@ pub struct KittiObject {
 }
 
 impl KittiObject {
-    /// The box in space: x and z of the camera's frame are the plane, and height counts up.
+    /// The box in space.
     pub fn standing_box(&self) -> StandingBox {
-        let ([length, height, width], [x, y, z]) = (self.dimensions, self.location);
-        // Turning about y, which points down, goes from z to x.
-        let floor = RotatedRectangle { center: [x, z], size: [length, width], angle: -self.rotation_y };
-        StandingBox { floor, vertical: [-y, height - y] }
+        StandingBox::in_camera(self.dimensions, self.location, self.rotation_y)
     }
 
     pub(super) fn kind(&self) -> ObjectKind {

@@ -71,6 +71,15 @@ pub struct StandingBox {
 }
 
 impl StandingBox {
+    /// A box in the camera frame of KITTI (x right, y down, z ahead), as [`BoundingBox3D`](crate::target::BoundingBox3D)
+    /// has it: length, height and width, the middle of the floor, the turn about y. x and z are the plane, and height
+    /// counts up.
+    pub fn in_camera([length, height, width]: [f64; 3], [x, y, z]: [f64; 3], rotation_y: f64) -> Self {
+        // Turning about y, which points down, goes from z to x.
+        let floor = RotatedRectangle { center: [x, z], size: [length, width], angle: -rotation_y };
+        Self { floor, vertical: [-y, height - y] }
+    }
+
     /// Area of the floor times height; 0 when a side is not positive.
     pub fn volume(&self) -> f64 {
         self.floor.area() * (self.vertical[1] - self.vertical[0]).max(0.0)

@@ -1,0 +1,232 @@
+//! What every tracker of detections must do.
+
+use opendr_engine::Random;
+use opendr_engine::data::Image;
+use opendr_engine::learner::Learner;
+use opendr_engine::params::{ParamMap, Params};
+use opendr_engine::target::{BoundingBox, BoundingBoxList, TrackingAnnotation, TrackingAnnotationList};
+
+use super::*;
+
+/// A tracker with its state.
+struct Stream<L: Learner> {
+    learner: L,
+    state: L::State,
+    answer: TrackingAnnotationList,
+}
+
+impl<L> Stream<L>
+where
+    L: for<'a> Learner<Input<'a> = TrackerInputs<'a>, Target = TrackingAnnotationList>,
+{
+    fn new(make: impl FnOnce(L::Params) -> L, params: &[(&str, f64)]) -> Self {
+        let map: ParamMap =
+            params.iter().map(|(name, value)| ((*name).to_owned(), (*value).into())).collect();
+        let learner = make(L::Params::from_map(&map).unwrap());
+        Self { learner, state: L::State::default(), answer: TrackingAnnotationList::default() }
+    }
+
+    fn run(&mut self, boxes: Vec<BoundingBox>) -> &[TrackingAnnotation] {
+        self.see(None, boxes)
+    }
+
+    fn see(&mut self, image: Option<&Image>, boxes: Vec<BoundingBox>) -> &[TrackingAnnotation] {
+        let detections = BoundingBoxList::from(boxes);
+        let input = TrackerInputs { detections: &detections, image };
+        self.learner.infer_into(&mut self.state, input, &mut self.answer).unwrap();
+        &self.answer.annotations
+    }
+}
+
+fn sort(params: &[(&str, f64)]) -> Stream<Sort> {
+    Stream::new(Sort::with_params, params)
+}
+
+fn byte_track(params: &[(&str, f64)]) -> Stream<ByteTrack> {
+    Stream::new(ByteTrack::with_params, params)
+}
+
+fn oc_sort(params: &[(&str, f64)]) -> Stream<OcSort> {
+    Stream::new(OcSort::with_params, params)
+}
+
+fn person(x: f32, y: f32, confidence: f32) -> BoundingBox {
+    BoundingBox::new(1, x, y, 40.0, 100.0, confidence)
+}
+
+/// Runs the same check on each tracker.
+macro_rules! each {
+    ($params:expr, |$tracker:ident| $check:expr) => {{
+        let mut $tracker = sort($params);
+        $check;
+        let mut $tracker = byte_track($params);
+        $check;
+        let mut $tracker = oc_sort($params);
+        $check;
+    }};
+}
+
+#[test]
+fn two_persons_who_walk_keep_their_numbers() {
+    each!(&[], |tracker| for frame in 0..40 {
+        let at = frame as f32 * 3.0;
+        let mut boxes = vec![person(at, 50.0, 0.9), person(300.0 - at, 120.0, 0.9)];
+        if frame % 2 == 1 {
+            boxes.reverse();
+        }
+        let wanted = boxes.clone();
+        let found = tracker.run(boxes);
+        let mut ids: Vec<_> = found.iter().map(|track| track.id).collect();
+        ids.sort_unstable();
+        assert_eq!(ids, [1, 2], "frame {frame}");
+        for track in found {
+            assert_eq!(track.frame, Some(frame + 1));
+            let height = if track.id == 1 { 50.0 } else { 120.0 };
+            let first = found.iter().find(|other| other.id == 1).unwrap();
+            assert_eq!(first.bounding_box.top == 50.0, track.bounding_box.top == height);
+            assert!(wanted.contains(&track.bounding_box));
+        }
+    });
+}
+
+#[test]
+fn who_is_hidden_comes_back_with_the_same_number() {
+    let hidden = |frame: i64| (15..22).contains(&frame);
+    let walk = |frame: i64| {
+        if hidden(frame) { Vec::new() } else { vec![person(frame as f32 * 4.0, 50.0, 0.9)] }
+    };
+    for frame in 0..40 {
+        assert!(byte_track(&[]).run(walk(frame)).len() <= 1);
+    }
+    let (mut byte_track, mut oc_sort) = (byte_track(&[]), oc_sort(&[]));
+    for frame in 0..40 {
+        for found in [byte_track.run(walk(frame)), oc_sort.run(walk(frame))] {
+            let ids: Vec<_> = found.iter().map(|track| track.id).collect();
+            assert_eq!(ids, if hidden(frame) { vec![] } else { vec![1] }, "frame {frame}");
+        }
+    }
+}
+
+#[test]
+fn a_false_alarm_is_not_told() {
+    each!(&[("min_hits", 3.0)], |tracker| for frame in 0..30 {
+        let mut boxes = vec![person(50.0, 50.0, 0.9)];
+        if frame == 12 {
+            boxes.push(person(400.0, 50.0, 0.9));
+        }
+        assert_eq!(tracker.run(boxes).len(), 1, "frame {frame}");
+    });
+}
+
+#[test]
+fn low_confidence_goes_on_but_does_not_begin() {
+    let mut tracker = byte_track(&[]);
+    for frame in 0..20 {
+        let confidence = if frame < 5 { 0.9 } else { 0.3 };
+        let found = tracker.run(vec![person(50.0, 50.0, confidence), person(300.0, 50.0, 0.3)]);
+        assert_eq!(found.len(), 1, "frame {frame}");
+        assert_eq!(found[0].id, 1);
+    }
+}
+
+#[test]
+fn classes_do_not_mix_unless_they_may() {
+    let walk = |frame: i64| BoundingBox { name: (frame % 2).into(), ..person(50.0, 50.0, 0.9) };
+    let (mut strict, mut free) = (oc_sort(&[("min_hits", 1.0)]), oc_sort(&[("min_hits", 1.0)]));
+    free.learner.params_mut().per_class = false;
+    for frame in 0..4 {
+        assert_eq!(strict.run(vec![walk(frame)])[0].id, 1 + frame % 2);
+        assert_eq!(free.run(vec![walk(frame)])[0].id, 1);
+    }
+}
+
+/// Smooth noise of a fixed seed, coarse and fine, that the camera sees from `shift` pixels further right.
+fn scene(shift: usize) -> Image {
+    let noise = |x: usize, y: usize, cell: usize| {
+        let corner = |across: usize, down: usize| {
+            let place = [cell as u64, (x / cell + across) as u64, (y / cell + down) as u64];
+            Random::at(place).unit()
+        };
+        let [across, down] = [x, y].map(|at| (at % cell) as f64 / cell as f64);
+        let row = |down| corner(0, down) + across * (corner(1, down) - corner(0, down));
+        row(0) + down * (row(1) - row(0))
+    };
+    let grey = |at: usize| {
+        let (x, y) = (at % 640 + shift, at / 640);
+        (150.0 * noise(x, y, 60) + 100.0 * noise(x, y, 12)) as u8
+    };
+    let samples = (0..640 * 480).flat_map(|at| [grey(at); 3]).collect();
+    Image::from_rgb8(samples, 640, 480).unwrap()
+}
+
+/// The camera turns so fast that no box overlaps the one before.
+#[test]
+fn a_camera_that_turns_is_made_up_for() {
+    let shift = |frame: usize| 48 * frame.saturating_sub(2);
+    let still = |frame: usize| vec![person(500.0 - shift(frame) as f32, 200.0, 0.9)];
+    let scenes: Vec<_> = (0..5).map(|frame| scene(shift(frame))).collect();
+    each!(&[("min_hits", 1.0)], |tracker| {
+        for (frame, scene) in scenes.iter().enumerate() {
+            let found = tracker.see(Some(scene), still(frame));
+            assert_eq!(found.iter().map(|track| track.id).collect::<Vec<_>>(), [1], "frame {frame}");
+        }
+    });
+    let mut blind = byte_track(&[("min_hits", 1.0)]);
+    let last = (0..5).map(|frame| blind.run(still(frame))[0].id).last();
+    assert_ne!(last, Some(1));
+}
+
+#[test]
+fn hostile_frames_never_panic_and_memory_is_bounded() {
+    let mut random = Random::new(3);
+    let mut frame = |at: usize| -> Vec<BoundingBox> {
+        let count = match at % 1000 {
+            0 => 5000,
+            _ => random.below(40),
+        };
+        let strange = |random: &mut Random| match random.below(16) {
+            0 => f32::NAN,
+            1 => f32::INFINITY,
+            2 => -1e38,
+            3 => 1e38,
+            4 => 0.0,
+            5 => -20.0,
+            _ => random.uniform(0.0, 500.0),
+        };
+        let mut one = || {
+            let [left, top, width, height] = [0; 4].map(|_| strange(&mut random));
+            let confidence = if random.chance(0.05) { f32::NAN } else { random.uniform(-0.5, 1.5) };
+            BoundingBox::new(random.below(3) as i64, left, top, width, height, confidence)
+        };
+        (0..count).map(|_| one()).collect()
+    };
+    let frames: Vec<_> = (0..10_000).map(&mut frame).collect();
+    each!(&[], |tracker| for boxes in &frames {
+        let most = boxes.len();
+        let found = tracker.run(boxes.clone());
+        assert!(found.len() <= most.min(crate::tracking::MOST_BOXES));
+        let mut ids: Vec<_> = found.iter().map(|track| track.id).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        assert_eq!(ids.len(), found.len(), "no number twice");
+        assert!(found.iter().all(|track| track.id > 0 && track.bounding_box.corners().iter().all(|edge| edge.is_finite())));
+    });
+}
+
+#[test]
+fn the_same_frames_give_the_same_answers() {
+    each!(&[], |tracker| {
+        let mut random = Random::new(5);
+        let frames: Vec<Vec<_>> = (0..60)
+            .map(|_| {
+                (0..12).map(|_| person(random.uniform(0.0, 300.0), random.uniform(0.0, 200.0), 0.9)).collect()
+            })
+            .collect();
+        let answers = [0, 1].map(|_| {
+            tracker.state = Default::default();
+            frames.iter().map(|frame| tracker.run(frame.clone()).to_vec()).collect::<Vec<_>>()
+        });
+        assert_eq!(answers[0], answers[1]);
+        assert!(answers[0].iter().flatten().count() > 30);
+    });
+}
