@@ -9,7 +9,7 @@ use opendr_perception::face_recognition::FaceRecognition;
 use opendr_perception::facial_expression_recognition::FacialEmotion;
 use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::fall_detection::FallDetector;
-use opendr_perception::gesture_recognition::KeypointGesture;
+use opendr_perception::gesture_recognition::{HandGesture, KeypointGesture};
 use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
@@ -45,6 +45,7 @@ pub fn registry() -> &'static Registry {
             BlazePose,
             HandPose,
             KeypointGesture,
+            HandGesture,
             FallDetector,
             ImageClassifier,
             SpatioTemporalGcn,
