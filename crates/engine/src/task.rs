@@ -53,6 +53,8 @@ tasks! {
     FacialExpressionRecognition = "facial_expression_recognition";
     /// The class that a whole picture belongs to.
     ImageClassification = "image_classification";
+    /// The class of a picture that was measured with few numbers.
+    CompressiveLearning = "compressive_learning";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
     /// Key points of hands in a picture.
@@ -65,6 +67,8 @@ tasks! {
     SkeletonBasedActionRecognition = "skeleton_based_action_recognition";
     /// What persons do in a video.
     ActivityRecognition = "activity_recognition";
+    /// What persons feel or say, told by two senses at a time.
+    MultimodalHumanCentric = "multimodal_human_centric";
     /// Whether a heart signal is normal.
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.

@@ -4,15 +4,17 @@ use std::sync::OnceLock;
 
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
+use opendr_perception::compressive_learning::MultilinearCompressive;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::face_recognition::FaceRecognition;
-use opendr_perception::facial_expression_recognition::FacialEmotion;
+use opendr_perception::facial_expression_recognition::{FacialEmotion, ProgressiveSpatioTemporalBln};
 use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::fall_detection::FallDetector;
 use opendr_perception::gesture_recognition::{HandGesture, KeypointGesture};
 use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
+use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
@@ -38,6 +40,7 @@ pub fn registry() -> &'static Registry {
             FaceRecognition,
             FaceMesh,
             FacialEmotion,
+            ProgressiveSpatioTemporalBln,
             Movenet,
             Posenet,
             LightweightOpenPose,
@@ -48,8 +51,11 @@ pub fn registry() -> &'static Registry {
             HandGesture,
             FallDetector,
             ImageClassifier,
+            MultilinearCompressive,
             SpatioTemporalGcn,
             CoStGcn,
+            AudiovisualEmotion,
+            RgbdHandGesture,
             GatedRecurrentUnit,
             AttentionNeuralBagOfFeature,
             MatchboxNet,
