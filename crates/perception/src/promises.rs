@@ -9,7 +9,7 @@ use opendr_engine::{Header, Value};
 /// port, in order.
 pub(crate) fn check<L: Learner>(model: &Path, scratch: &Path, calls: Vec<Vec<Value>>) {
     let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None))));
-    let stamped = |(values, stamp): (Vec<Value>, u64)| {
+    let stamped = |(values, stamp): (Vec<Value>, i64)| {
         let stamped = entry.ports.iter().zip(values).map(|(port, mut value)| {
             *value.header_mut() = Header::new(stamp, "sensor");
             (port.name, value)

@@ -40,15 +40,16 @@ impl Objective for AudiovisualObjective<'_> {
         let [count, ..] = both.dims();
         let audio = both.clone().narrow(2, 0, sound).reshape([count, Sizes::COEFFICIENTS, instants]);
         let video = both.narrow(2, sound, faces).reshape([count * frames, 3, side, side]);
-        let loss = |audio: &Tensor<3>, video: &Tensor<4>| {
-            batch.cross_entropy(network.forward(audio.clone(), video.clone()), &[], device)
-        };
-        let whole = loss(&audio, &video);
         if self.mod_drop == ModalityDrop::None {
-            return Ok(whole.into());
+            return Ok(batch.cross_entropy(network.forward(audio, video), &[], device).into());
         }
-        let (silence, nobody) = (audio.zeros_like(), video.zeros_like());
-        Ok(((whole + loss(&silence, &video) + loss(&audio, &nobody)) / 3.0).into())
+        // One batch, so that the statistics of its normalisations are those of all three, as they are when it infers.
+        let audio = Tensor::cat(vec![audio.clone(), audio.zeros_like(), audio], 0);
+        let video = Tensor::cat(vec![video.clone(), video.clone(), video.zeros_like()], 0);
+        let logits = network.forward(audio, video);
+        let loss =
+            |part: usize| batch.cross_entropy(logits.clone().narrow(0, part * count, count), &[], device);
+        Ok(((loss(0) + loss(1) + loss(2)) / 3.0).into())
     }
 
     fn container(&self, network: &AudiovisualNetwork) -> Result<Container> {

@@ -1,6 +1,7 @@
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_training::OptimizerKind;
 
 use super::network::AudiovisualNetwork;
 use super::objective::AudiovisualObjective;
@@ -14,7 +15,7 @@ fn params() -> AudiovisualEmotionParams {
     AudiovisualEmotionParams { seq_length: 3, sample_rate: RATE, seconds: 1.0, ..Default::default() }
 }
 
-/// Noise: the voice's is rising, falling or even, the face is red, green or blue.
+/// Noise: the voice's trembles, rises or falls, the face is red, green or blue.
 struct Persons;
 
 impl Dataset for Persons {}
@@ -37,7 +38,7 @@ impl DatasetIterator for Persons {
 fn voice(index: usize) -> Audio {
     let mut random = Random::new(index as u64);
     let loudness = |at: usize| match index % 3 {
-        0 => 0.5,
+        0 => (at as f32 / RATE as f32 * 25.0).sin().abs(),
         1 => at as f32 / RATE as f32,
         _ => 1.0 - at as f32 / RATE as f32,
     };
@@ -81,7 +82,8 @@ fn one_sense_is_enough_after_training() {
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params =
         AudiovisualEmotionFitParams { side: 16, width: 4, dropout: 0.0, ..Default::default() };
-    (fit_params.training.epochs, fit_params.training.batch_size, fit_params.training.lr) = (60, 9, 0.02);
+    (fit_params.training.epochs, fit_params.training.batch_size, fit_params.training.lr) = (80, 9, 0.003);
+    (fit_params.training.optimizer, fit_params.training.lr_steps) = (OptimizerKind::Adam, Vec::new());
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
     let mut handle = Handle::<AudiovisualEmotion>::new(params(), Device::Cpu).unwrap();
     let dataset = DatasetRef::from(&Persons as &dyn DatasetIterator);

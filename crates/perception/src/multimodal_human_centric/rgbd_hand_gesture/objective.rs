@@ -37,13 +37,16 @@ impl Objective for RgbdObjective<'_> {
         let pictures = batch.inputs([CHANNELS, side * side], device);
         let [count, ..] = pictures.dims();
         let pictures = pictures.reshape([count, CHANNELS, side, side]);
-        let loss = |pictures: Tensor<4>| batch.cross_entropy(network.forward(pictures), &[], device);
         if !self.drop_depth {
-            return Ok(loss(pictures).into());
+            return Ok(batch.cross_entropy(network.forward(pictures), &[], device).into());
         }
+        // One batch, so that the statistics of its normalisations are those of both, as they are when it infers.
         let colour = pictures.clone().narrow(1, 0, CHANNELS - 1);
         let unknown = Tensor::zeros([count, 1, side, side], device);
-        Ok(((loss(pictures) + loss(Tensor::cat(vec![colour, unknown], 1))) / 2.0).into())
+        let logits = network.forward(Tensor::cat(vec![pictures, Tensor::cat(vec![colour, unknown], 1)], 0));
+        let loss =
+            |part: usize| batch.cross_entropy(logits.clone().narrow(0, part * count, count), &[], device);
+        Ok(((loss(0) + loss(1)) / 2.0).into())
     }
 
     fn container(&self, network: &SmallClassifier) -> Result<Container> {

@@ -9,7 +9,7 @@ use crate::overfit::losses_on_one_batch;
 use crate::promises::check;
 use crate::small_classifier::SmallClassifier;
 
-/// Noise in colour; the depth says the class: what is near is above, below, or nowhere.
+/// Colours that hardly differ; the depth says the class: what is near is above, below, or nowhere.
 struct Hands;
 
 impl Dataset for Hands {}
@@ -32,7 +32,7 @@ impl DatasetIterator for Hands {
 
 fn pictures(index: usize) -> (Image, Image) {
     let mut random = Random::new(index as u64);
-    let levels: Vec<u8> = (0..20 * 20 * 3).map(|_| random.below(256) as u8).collect();
+    let levels: Vec<u8> = (0..20 * 20 * 3).map(|_| 124 + random.below(8) as u8).collect();
     let metres = |at: usize| match (index % 3, at / 160) {
         (0, 0) | (1, 1) => 0.5,
         _ => 0.9,
