@@ -61,6 +61,8 @@ tasks! {
     SemanticSegmentation = "semantic_segmentation";
     /// Where a gripper can take hold.
     GraspDetection = "grasp_detection";
+    /// The class of a picture that was measured with few numbers.
+    CompressiveLearning = "compressive_learning";
     /// Key points of persons in a picture.
     PoseEstimation = "pose_estimation";
     /// Key points of hands in a picture.
@@ -73,6 +75,8 @@ tasks! {
     SkeletonBasedActionRecognition = "skeleton_based_action_recognition";
     /// What persons do in a video.
     ActivityRecognition = "activity_recognition";
+    /// What persons feel or say, told by two senses at a time.
+    MultimodalHumanCentric = "multimodal_human_centric";
     /// Whether a heart signal is normal.
     HeartAnomalyDetection = "heart_anomaly_detection";
     /// Which word was spoken.

@@ -11,14 +11,16 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::ObjectDetection2d => Ok("coco_detection"),
         Task::ObjectTracking2d => Ok("hota"),
         Task::FaceDetection => Ok("voc_detection"),
-        Task::ImageClassification | Task::FaceRecognition | Task::FacialExpressionRecognition => {
-            Ok("classification")
-        }
+        Task::ImageClassification
+        | Task::CompressiveLearning
+        | Task::FaceRecognition
+        | Task::FacialExpressionRecognition => Ok("classification"),
         Task::FacialLandmarks => Ok("keypoints"),
         Task::SemanticSegmentation => Ok("segmentation"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         Task::GestureRecognition
         | Task::ActivityRecognition
+        | Task::MultimodalHumanCentric
         | Task::HeartAnomalyDetection
         | Task::SkeletonBasedActionRecognition
         | Task::SpeechRecognition

@@ -4,16 +4,18 @@ use std::sync::OnceLock;
 
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
+use opendr_perception::compressive_learning::MultilinearCompressive;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::face_recognition::FaceRecognition;
-use opendr_perception::facial_expression_recognition::FacialEmotion;
+use opendr_perception::facial_expression_recognition::{FacialEmotion, ProgressiveSpatioTemporalBln};
 use opendr_perception::facial_landmarks::FaceMesh;
 use opendr_perception::fall_detection::FallDetector;
-use opendr_perception::gesture_recognition::KeypointGesture;
+use opendr_perception::gesture_recognition::{HandGesture, KeypointGesture};
 use opendr_perception::grasp_detection::GrConvNet;
 use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
+use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
@@ -48,6 +50,7 @@ pub fn registry() -> &'static Registry {
             FaceRecognition,
             FaceMesh,
             FacialEmotion,
+            ProgressiveSpatioTemporalBln,
             Movenet,
             Posenet,
             LightweightOpenPose,
@@ -55,12 +58,16 @@ pub fn registry() -> &'static Registry {
             BlazePose,
             HandPose,
             KeypointGesture,
+            HandGesture,
             FallDetector,
             ImageClassifier,
             Deeplab,
             GrConvNet,
+            MultilinearCompressive,
             SpatioTemporalGcn,
             CoStGcn,
+            AudiovisualEmotion,
+            RgbdHandGesture,
             GatedRecurrentUnit,
             AttentionNeuralBagOfFeature,
             MatchboxNet,

@@ -2,6 +2,7 @@
 
 pub mod activity_recognition;
 pub mod beats;
+pub mod compressive_learning;
 pub mod face_detection;
 pub mod face_recognition;
 pub mod facial_expression_recognition;
@@ -13,6 +14,7 @@ pub mod hand_pose_estimation;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
 pub mod mfcc;
+pub mod multimodal_human_centric;
 pub mod object_detection_2d;
 pub mod object_tracking_2d;
 pub mod object_tracking_3d;
@@ -29,6 +31,7 @@ pub mod voice_activity;
 pub mod voice_activity_detection;
 
 mod category_scores;
+mod clip_frames;
 mod described_input;
 mod face_finder;
 mod frame_clock;
@@ -42,6 +45,11 @@ mod labelled_pictures;
 #[cfg(feature = "training")]
 mod overfit;
 mod picture_network;
+#[cfg(test)]
+#[cfg(feature = "training")]
+mod promises;
+#[cfg(feature = "training")]
+mod small_backbone;
 #[cfg(feature = "training")]
 mod small_classifier;
 #[cfg(test)]

@@ -1,66 +1,29 @@
-//! A small classifier of pictures: blocks of convolution, batch normalisation and ReLU, halved in size by strides, then the mean over the
-//! picture.
+//! A small classifier of pictures.
 
 use burn::module::Module;
-use burn::nn::conv::{Conv2d, Conv2dConfig};
-use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig2d};
-use burn::tensor::activation::relu;
+use burn::nn::{Dropout, DropoutConfig, Linear, LinearConfig};
 use burn::tensor::{Device, Tensor};
+
+use crate::small_backbone::SmallBackbone;
 
 /// A convolutional classifier.
 #[derive(Module, Debug)]
 pub struct SmallClassifier {
-    blocks: Vec<Block>,
+    backbone: SmallBackbone,
     dropout: Dropout,
     head: Linear,
 }
 
-#[derive(Module, Debug)]
-struct Block {
-    conv: Conv2d,
-    norm: BatchNorm,
-}
-
-/// Kernel and stride of each block; channels double with each stride.
-const BLOCKS: [(usize, usize); 4] = [(5, 2), (3, 1), (3, 2), (3, 1)];
-
 impl SmallClassifier {
-    /// A network that tells `classes` apart, `width` channels in its first block.
-    pub fn new(classes: usize, width: usize, dropout: f64, device: &Device) -> Self {
-        let (mut inputs, mut outputs) = (3, width);
-        let blocks = BLOCKS.iter().enumerate().map(|(index, (kernel, stride))| {
-            if index > 0 && *stride == 2 {
-                outputs *= 2;
-            }
-            let block = Block::new(inputs, outputs, *kernel, *stride, device);
-            inputs = outputs;
-            block
-        });
-        let blocks = blocks.collect();
-        let head = LinearConfig::new(inputs, classes).init(device);
-        Self { blocks, dropout: DropoutConfig::new(dropout).init(), head }
+    /// A network for pictures of so many channels that tells `classes` apart, `width` channels in its first block.
+    pub fn new(channels: usize, classes: usize, width: usize, dropout: f64, device: &Device) -> Self {
+        let backbone = SmallBackbone::new(channels, width, device);
+        let head = LinearConfig::new(backbone.features(), classes).init(device);
+        Self { backbone, dropout: DropoutConfig::new(dropout).init(), head }
     }
 
-    /// `[batch, 3, height, width]` to scores `[batch, classes]`.
+    /// `[batch, channels, height, width]` to scores `[batch, classes]`.
     pub fn forward(&self, images: Tensor<4>) -> Tensor<2> {
-        let features = self.blocks.iter().fold(images, |features, block| block.forward(features));
-        let [batch, channels, height, width] = features.dims();
-        let means = features.reshape([batch, channels, height * width]).mean_dim(2).squeeze_dim(2);
-        self.head.forward(self.dropout.forward(means))
-    }
-}
-
-impl Block {
-    fn new(inputs: usize, outputs: usize, kernel: usize, stride: usize, device: &Device) -> Self {
-        let padding = kernel / 2;
-        let conv = Conv2dConfig::new([inputs, outputs], [kernel; 2])
-            .with_stride([stride; 2])
-            .with_padding(PaddingConfig2d::Explicit(padding, padding, padding, padding))
-            .with_bias(false);
-        Self { conv: conv.init(device), norm: BatchNormConfig::new(outputs).init(device) }
-    }
-
-    fn forward(&self, features: Tensor<4>) -> Tensor<4> {
-        relu(self.norm.forward(self.conv.forward(features)))
+        self.head.forward(self.dropout.forward(self.backbone.forward(images)))
     }
 }

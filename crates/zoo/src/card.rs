@@ -26,7 +26,8 @@ pub struct Card {
     pub task: Option<Task>,
     /// The learner in one line.
     pub description: String,
-    /// The variants, of which one is the default.
+    /// The variants, of which one is the default; none where nobody gives weights away and users train their own.
+    #[serde(default)]
     pub variants: Vec<Variant>,
 }
 
@@ -217,6 +218,12 @@ impl Card {
     /// # Errors
     /// `NotFound`, naming those there are.
     pub fn variant(&self, name: Option<&str>) -> Result<&Variant> {
+        if self.variants.is_empty() {
+            return Err(Error::not_found(format!(
+                "nobody gives weights of {0} away: train it on your own data (opendr fit {0})",
+                self.learner
+            )));
+        }
         let wanted = |variant: &&Variant| name.map_or(variant.default, |name| variant.name == name);
         self.variants.iter().find(wanted).ok_or_else(|| {
             let names: Vec<_> = self.variants.iter().map(|variant| variant.name.as_str()).collect();

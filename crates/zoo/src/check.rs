@@ -21,7 +21,8 @@ pub(crate) fn check_card(card: &Card) -> Result<()> {
         check_variant(card.kind, variant).context(|| format!("variant {:?}", variant.name))?;
     }
     let defaults = card.variants.iter().filter(|variant| variant.default).count();
-    ensure(defaults == 1, || format!("{defaults} variants are marked as default: mark one"))
+    let untrained = card.kind == ItemKind::Model && card.variants.is_empty();
+    ensure(untrained || defaults == 1, || format!("{defaults} variants are marked as default: mark one"))
 }
 
 fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
@@ -52,7 +53,7 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
         }
         ItemKind::Model => {}
     }
-    ensure(!variant.sources.is_empty(), || "no sources".into())?;
+    ensure(variant.files.is_empty() || !variant.sources.is_empty(), || "no sources".into())?;
     variant.sources.iter().try_for_each(|source| {
         let complete = source.files().len() == variant.files.len()
             && variant.files.iter().all(|file| source.files().contains_key(&file.name));

@@ -61,6 +61,22 @@ fn part_is_fetched_and_carried() {
 }
 
 #[test]
+fn whole_can_be_nothing_but_parts() {
+    let (place, server, bytes) = (Place::new(), Server::new(), noise(1000));
+    let mut cards = cards(&server, &bytes);
+    cards[0].variants[0].files.clear();
+    cards[0].variants[0].sources.clear();
+    let path = Zoo::with_cards(place.options(), cards.clone()).get("whole", &Silent).unwrap();
+    assert_eq!(detector_of(&path), bytes);
+    assert_eq!(Zoo::with_cards(place.options(), cards).cached("whole"), Some(path));
+    let text = "learner = \"whole\"\ntask = \"face_detection\"\ndescription = \"\"\n[[variants]]\nname = \"one\"\n\
+                default = true\nlicence = {}\n";
+    let error = Card::from_toml(text).unwrap_err();
+    assert!(error.to_string().contains("no parts to be made of"), "{error}");
+    Card::from_toml(&format!("{text}parts = {{ detector = \"test/one\" }}\n")).unwrap();
+}
+
+#[test]
 fn copy_with_its_parts_is_a_repository() {
     let (place, server, bytes) = (Place::new(), Server::new(), noise(1000));
     let out = place.0.join("out");

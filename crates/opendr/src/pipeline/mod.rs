@@ -1,14 +1,19 @@
 //! Learners one after the other: a detector, a tracker, what looks at the tracks.
 
+mod adapter;
+mod each_box;
+mod skeletons;
+mod stage;
 mod wiring;
 
 use std::collections::BTreeMap;
 
 use opendr_engine::learner::{AnyLearner, Entry, Output, Outputs, Port, Ports};
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Device, Error, Progress, Result, Silent, assembly_line};
+use opendr_engine::{Device, Error, Progress, Result, Silent, Value, ValueType, assembly_line};
 
 use crate::{learner_with, registry};
+use stage::Stage;
 use wiring::{Wire, wires};
 
 /// Learners that each take what those before them answer.
@@ -16,6 +21,14 @@ use wiring::{Wire, wires};
 /// A port takes the newest answer of its type; what no learner before answers is an input of the pipeline, shared by all
 /// that take it. So a detector, a tracker over `image` and `detections`, and a recogniser need no wiring by hand. The
 /// answers of all are the answer of the pipeline; where two are of one type, the later one.
+///
+/// Where no answer is of a port's type, one that can be turned into it is taken: poses become moving skeletons, as
+/// many frames and persons of them as the model looks at, so that `"movenet/multipose + spatio_temporal_gcn"` tells actions in
+/// a video. A learner that has nothing to look at, since nobody is in sight, answers nothing.
+///
+/// `each` before a learner shows it the boxes found before, one by one, in place of the picture:
+/// `"yunet + each facial_emotion"` names every face by its expression. What it answers of a box lies in the whole picture; a
+/// category becomes the box's name.
 ///
 /// ```no_run
 /// # fn main() -> opendr::Result<()> {
@@ -31,14 +44,11 @@ pub struct Pipeline {
     ports: Vec<Port>,
 }
 
-struct Stage {
-    entry: &'static Entry,
-    learner: Box<dyn AnyLearner>,
-    wires: Vec<Wire>,
-}
+/// The word before a learner that looks at each box.
+const EACH: &str = "each ";
 
 impl Pipeline {
-    /// The learners that `specs` names, with their pretrained models: `"nanodet + yunet/320"`.
+    /// The learners that `specs` names, with their pretrained models: `"nanodet + yunet/320 + each facial_emotion"`.
     ///
     /// # Errors
     /// As [`crate::learner()`] and [`Pipeline::then`].
@@ -52,9 +62,12 @@ impl Pipeline {
     /// As [`Pipeline::open`].
     pub fn open_with(specs: &str, device: Device, progress: &dyn Progress) -> Result<Self> {
         let mut pipeline = Self::default();
-        for spec in specs.split('+').map(str::trim) {
+        for text in specs.split('+').map(str::trim) {
+            let (spec, each) =
+                text.strip_prefix(EACH).map_or((text, false), |spec| (spec.trim_start(), true));
             let entry = registry().find(spec.split('/').next().unwrap_or(spec))?;
-            pipeline = pipeline.then(entry, learner_with(spec, &ParamMap::new(), device, progress)?)?;
+            let learner = learner_with(spec, &ParamMap::new(), device, progress)?;
+            pipeline = if each { pipeline.then_each(entry, learner) } else { pipeline.then(entry, learner) }?;
         }
         Ok(pipeline)
     }
@@ -64,24 +77,63 @@ impl Pipeline {
     /// # Errors
     /// `InvalidParam` for one that takes nothing of what those before it answer.
     pub fn then(mut self, entry: &'static Entry, learner: Box<dyn AnyLearner>) -> Result<Self> {
-        let answered = self.stages.iter().map(|stage| stage.entry.outputs).collect::<Vec<_>>();
+        let answered = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
         let wires = wires(entry.ports, &answered, &mut self.ports);
-        let feeds = |wire: &Wire| matches!(wire, Wire::Answer { .. });
+        let feeds = |wire: &Wire| !matches!(wire, Wire::Input);
         let is_beside =
             entry.ports.iter().all(|port| self.stages.iter().any(|stage| takes(stage.entry, port)));
         if !self.stages.is_empty() && !wires.iter().any(feeds) && !is_beside {
-            let wanted: Vec<_> = entry.ports.iter().map(|port| port.value_type.name()).collect();
-            let there: Vec<_> = answered.iter().flat_map(|outputs| outputs.iter()).collect();
-            let there: Vec<_> = there.iter().map(|output| output.value_type.name()).collect();
-            return Err(Error::invalid_param(format!(
-                "{} takes {}, and those before it answer {}; put one before it that answers what it takes",
-                entry.spec.class,
-                wanted.join(", "),
-                there.join(", ")
-            )));
+            return Err(self.feeds_not(entry, entry.ports));
         }
-        self.stages.push(Stage { entry, learner, wires });
+        let adapters = wires.iter().map(|wire| match (wire, learner.model()) {
+            (Wire::Adapted { make, .. }, Some(model)) => {
+                make(model).map(Some).map_err(|error| error.context(entry.spec.class))
+            }
+            (Wire::Adapted { .. }, None) => {
+                Err(Error::not_found(format!("{} has no model; load one first", entry.spec.class)))
+            }
+            _ => Ok(None),
+        });
+        let adapters = adapters.collect::<Result<_>>()?;
+        self.stages.push(Stage { entry, learner, wires, adapters, boxes: None });
         Ok(self)
+    }
+
+    /// Adds a loaded learner of pictures at the end that looks at each of the boxes found before it.
+    ///
+    /// # Errors
+    /// `InvalidParam` where none before it finds boxes, and for a learner that takes more than a picture, or answers what
+    /// has no place in one.
+    pub fn then_each(mut self, entry: &'static Entry, learner: Box<dyn AnyLearner>) -> Result<Self> {
+        const BOXES: Port = Port {
+            name: ValueType::BoundingBoxList.port(),
+            doc: "",
+            value_type: ValueType::BoundingBoxList,
+            optional: false,
+            init: false,
+        };
+        each_box::check(entry)?;
+        let answered = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
+        let boxes = wires(&[BOXES], &answered, &mut Vec::new()).into_iter().next();
+        if !matches!(boxes, Some(Wire::Answer { .. })) {
+            return Err(self.feeds_not(entry, &[BOXES]));
+        }
+        let wires = wires(entry.ports, &[], &mut self.ports);
+        self.stages.push(Stage { entry, learner, wires, adapters: Vec::new(), boxes });
+        Ok(self)
+    }
+
+    /// That nothing before a learner answers what it takes.
+    fn feeds_not(&self, entry: &Entry, ports: &[Port]) -> Error {
+        let wanted: Vec<_> = ports.iter().map(|port| port.value_type.name()).collect();
+        let there = self.stages.iter().flat_map(|stage| stage.outputs());
+        let there: Vec<_> = there.map(|output| output.value_type.name()).collect();
+        Error::invalid_param(format!(
+            "{} takes {}, and those before it answer {}; put one before it that answers what it takes",
+            entry.spec.class,
+            wanted.join(", "),
+            there.join(", ")
+        ))
     }
 
     /// What it takes.
@@ -92,8 +144,8 @@ impl Pipeline {
     /// What it answers.
     pub fn outputs(&self) -> Vec<Output> {
         let mut by_type = BTreeMap::new();
-        for output in self.stages.iter().flat_map(|stage| stage.entry.outputs) {
-            by_type.insert(output.value_type.name(), *output);
+        for output in self.stages.iter().flat_map(Stage::outputs) {
+            by_type.insert(output.value_type.name(), output);
         }
         by_type.into_values().collect()
     }
@@ -105,7 +157,7 @@ impl Pipeline {
 
     /// Forgets what the streams of all learners remember.
     pub fn reset(&mut self) {
-        self.stages.iter_mut().for_each(|stage| stage.learner.reset());
+        self.stages.iter_mut().for_each(Stage::reset);
     }
 
     /// Answers one set of inputs, stage after stage.
@@ -138,7 +190,7 @@ impl Pipeline {
         let begun = items.into_iter().map(|item| (begins(&item), item, Ok(Vec::new())));
         let work = |stage: &mut Stage, (begins, item, answers): &mut (bool, T, Result<Vec<Outputs>>)| {
             if *begins {
-                stage.learner.reset();
+                stage.reset();
             }
             let Ok(before) = answers else { return };
             match ports(item).and_then(|ports| stage.infer(&ports, before)) {
@@ -150,32 +202,13 @@ impl Pipeline {
     }
 }
 
-impl Stage {
-    fn infer(&mut self, given: &Ports<'_>, before: &[Outputs]) -> Result<Outputs> {
-        let mut ports = Ports::default();
-        for (port, wire) in self.entry.ports.iter().zip(&self.wires) {
-            let value = match wire {
-                Wire::Answer { stage, output } => before
-                    .get(*stage)
-                    .and_then(|outputs| outputs.get(output))
-                    .map(opendr_engine::Value::as_value_ref),
-                Wire::Input => given.get(port.name),
-            };
-            if let Some(value) = value {
-                ports = ports.with(port.name, value);
-            }
-        }
-        self.learner.infer(&ports).map_err(|error| error.context(self.entry.spec.class))
-    }
-}
-
 fn takes(entry: &Entry, port: &Port) -> bool {
     entry.ports.iter().any(|other| other.value_type == port.value_type)
 }
 
 /// The answers of all, the later where two are of one type.
 fn merged(answers: Vec<Outputs>) -> Outputs {
-    let mut merged: Vec<(&'static str, opendr_engine::Value)> = Vec::new();
+    let mut merged: Vec<(&'static str, Value)> = Vec::new();
     for (name, value) in answers.into_iter().flatten() {
         merged
             .retain(|(_, earlier)| earlier.as_value_ref().value_type() != value.as_value_ref().value_type());

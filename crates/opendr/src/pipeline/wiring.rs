@@ -2,26 +2,37 @@
 
 use opendr_engine::learner::{Output, Port};
 
+use super::adapter::{Make, adapter};
+
 /// Where a port's value comes from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub(super) enum Wire {
     /// An answer of an earlier stage.
     Answer { stage: usize, output: &'static str },
+    /// What is made of such an answer.
+    Adapted { stage: usize, output: &'static str, make: Make },
     /// The pipeline's own input of the port's name.
     Input,
 }
 
 /// The wires of a learner's ports behind stages that answer `answered`; what nobody answers becomes an input of the
 /// pipeline.
-pub(super) fn wires(ports: &[Port], answered: &[&'static [Output]], inputs: &mut Vec<Port>) -> Vec<Wire> {
+pub(super) fn wires(ports: &[Port], answered: &[Vec<Output>], inputs: &mut Vec<Port>) -> Vec<Wire> {
     let wire = |port: &Port| {
-        let newest = answered.iter().enumerate().rev().find_map(|(stage, outputs)| {
-            let fits = |output: &&Output| output.value_type == port.value_type;
-            // What begins a stream is the user's to give.
-            let output = outputs.iter().find(fits).filter(|_| !port.init)?;
+        // What begins a stream is the user's to give.
+        let newest_first = || answered.iter().enumerate().rev().filter(|_| !port.init);
+        let newest = newest_first().find_map(|(stage, outputs)| {
+            let output = outputs.iter().find(|output| output.value_type == port.value_type)?;
             Some(Wire::Answer { stage, output: output.name })
         });
-        newest.unwrap_or_else(|| {
+        let made = || {
+            newest_first().find_map(|(stage, outputs)| {
+                let of = |output: &Output| Some((output.name, adapter(output.value_type, port.value_type)?));
+                let (output, make) = outputs.iter().find_map(of)?;
+                Some(Wire::Adapted { stage, output, make })
+            })
+        };
+        newest.or_else(made).unwrap_or_else(|| {
             if !inputs.iter().any(|input| input.name == port.name) {
                 inputs.push(*port);
             }
@@ -47,19 +58,22 @@ mod tests {
 
     #[test]
     fn the_newest_answer_of_a_type_is_taken() {
-        const DETECTOR: &[Output] = &[output("detections", ValueType::BoundingBoxList)];
-        const FILTER: &[Output] =
-            &[output("poses", ValueType::PoseList), output("kept", ValueType::BoundingBoxList)];
+        let detector = vec![output("detections", ValueType::BoundingBoxList)];
+        let filter = vec![output("poses", ValueType::PoseList), output("kept", ValueType::BoundingBoxList)];
         let mut inputs = vec![port("image", ValueType::Image, false)];
         let ports = [
             port("image", ValueType::Image, false),
             port("boxes", ValueType::BoundingBoxList, false),
             port("first", ValueType::BoundingBoxList, true),
             port("depth", ValueType::Heatmap, false),
+            port("skeletons", ValueType::SkeletonSequence, false),
         ];
-        let found = wires(&ports, &[DETECTOR, FILTER], &mut inputs);
-        let answer = Wire::Answer { stage: 1, output: "kept" };
-        assert_eq!(found, [Wire::Input, answer, Wire::Input, Wire::Input]);
+        let found = wires(&ports, &[detector, filter], &mut inputs);
+        let [Wire::Input, boxes, Wire::Input, Wire::Input, skeletons] = &found[..] else {
+            panic!("{found:?}")
+        };
+        assert!(matches!(boxes, Wire::Answer { stage: 1, output: "kept" }), "{boxes:?}");
+        assert!(matches!(skeletons, Wire::Adapted { stage: 1, output: "poses", .. }), "{skeletons:?}");
         let names: Vec<_> = inputs.iter().map(|input| input.name).collect();
         assert_eq!(names, ["image", "first", "depth"]);
     }

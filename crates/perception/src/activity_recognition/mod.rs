@@ -3,7 +3,6 @@
 //! [`X3d`] looks at clips, [`CoX3d`] at one picture after the other, with the same weights and the same answers.
 
 mod co_x3d;
-mod frames;
 #[cfg(feature = "training")]
 mod network;
 #[cfg(feature = "training")]

@@ -13,9 +13,9 @@ use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
 use super::Sizes;
-use super::frames::Frames;
 use super::network::ActivityNetwork;
 use super::time::{Kept, Time};
+use crate::clip_frames::ClipFrames;
 use crate::labelled::{LabelledBatch, class_of};
 use crate::trainable_weights::{TRAINABLE, bytes_from_network};
 
@@ -52,7 +52,7 @@ impl Objective for ActivityObjective {
     fn collate(&self) -> Result<VideoBatches> {
         let Sizes { frames, side, .. } = self.sizes;
         let size = frames * 3 * side * side;
-        Ok(VideoBatches { frames: Frames::new(side, frames), size, classes: self.classes.len() })
+        Ok(VideoBatches { frames: ClipFrames::new(side, frames), size, classes: self.classes.len() })
     }
 
     fn loss(&self, network: &Self::Network, batch: &LabelledBatch, device: &Device) -> Result<Loss> {
@@ -140,7 +140,7 @@ fn video_of(sample: &Sample) -> Result<&Video> {
 
 /// Clips as the network takes them.
 pub(super) struct VideoBatches {
-    frames: Frames,
+    frames: ClipFrames,
     size: usize,
     classes: usize,
 }

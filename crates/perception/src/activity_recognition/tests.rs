@@ -1,19 +1,20 @@
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use burn::tensor::Device as Trainer;
 use opendr_engine::data::{Image, Video};
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
-use opendr_engine::learner::{CheckOptions, Entry, FitJob, Handle, Learner, Probe, check_learner};
+use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
-use opendr_engine::{Device, ErrorKind, Header, Random, Result, Value};
+use opendr_engine::{Device, ErrorKind, Random, Result, Value};
 use opendr_training::Objective;
 
 use super::network::ActivityNetwork;
 use super::objective::{ActivityObjective, Form};
 use super::*;
 use crate::overfit::losses_on_one_batch;
+use crate::promises::check;
 
 const SIDE: usize = 32;
 const FRAMES: usize = 4;
@@ -105,26 +106,14 @@ fn both(folder: &Folder) -> (Handle<X3d>, Handle<CoX3d>) {
     (clip_wise, continual)
 }
 
-/// As the registry's learners are checked, with weights at random.
-fn check<L: Learner>(model: &Path, scratch: &Path, values: Vec<Value>) {
-    let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None))));
-    let port = entry.ports[0].name;
-    let calls = values.into_iter().zip(1..).map(|(mut value, stamp)| {
-        *value.header_mut() = Header::new(stamp, "sensor");
-        vec![(port, value)]
-    });
-    let calls: Vec<_> = calls.collect();
-    check_learner(entry, &CheckOptions { model, scratch, calls: &calls }).unwrap();
-}
-
 #[test]
 fn promises_are_kept() {
     let folder = Folder::new("promises");
     both(&folder);
     let scratch = folder.0.join("scratch");
-    let clips = (0..3).map(|seed| Value::Video(video(&pictures(seed, FRAMES)))).collect();
+    let clips = (0..3).map(|seed| vec![Value::Video(video(&pictures(seed, FRAMES)))]).collect();
     check::<X3d>(&folder.0.join("clip"), &scratch, clips);
-    let pictures = (0..3).map(|seed| Value::Image(image(&pictures(seed, 1)[0]))).collect();
+    let pictures = (0..3).map(|seed| vec![Value::Image(image(&pictures(seed, 1)[0]))]).collect();
     check::<CoX3d>(&folder.0.join("step"), &scratch, pictures);
 }
 

@@ -16,14 +16,15 @@ use super::GraphType;
 /// A joint is missing where its score is not above 0 or, without scores, where all its coordinates are 0, as NTU RGB+D and
 /// Kinetics-Skeleton fill up. It stays where it was last seen; before it is seen at all, it is in the middle of the others.
 #[derive(Debug, Clone)]
-pub(super) struct FrameFeatures {
+pub(crate) struct FrameFeatures {
     parents: Vec<usize>,
     coordinates: usize,
+    kinds: usize,
 }
 
 /// What is kept of a person from frame to frame.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct LastFrame {
+pub(crate) struct LastFrame {
     /// Where the joints were, `[joints, coordinates]`; empty before the person is seen.
     places: Vec<f32>,
     /// Which joints were ever seen.
@@ -46,18 +47,23 @@ impl LastFrame {
 }
 
 /// Features of a coordinate: place, motion, bone.
-pub(super) const KINDS: usize = 3;
+pub(crate) const KINDS: usize = 3;
 /// Bodies smaller than this have no size to divide by.
 const SMALLEST: f32 = 1e-6;
 
 impl FrameFeatures {
     pub fn new(graph: GraphType, coordinates: usize) -> Self {
-        Self { parents: graph.parents(), coordinates }
+        Self { parents: graph.parents(), coordinates, kinds: KINDS }
+    }
+
+    /// Place and motion only, of points that no bones join.
+    pub fn without_bones(points: usize, coordinates: usize) -> Self {
+        Self { parents: (0..points).collect(), coordinates, kinds: KINDS - 1 }
     }
 
     /// Numbers of a frame.
     pub fn len(&self) -> usize {
-        KINDS * self.coordinates * self.parents.len()
+        self.kinds * self.coordinates * self.parents.len()
     }
 
     /// Refuses sequences of another shape, and numbers that are none.
@@ -84,7 +90,7 @@ impl FrameFeatures {
         }
     }
 
-    /// Writes the features `[KINDS * coordinates, joints]` of one frame of one person of a sequence that
+    /// Writes the features `[kinds * coordinates, joints]` of one frame of one person of a sequence that
     /// [`FrameFeatures::check`] let pass to `features`. `false`, with nothing written, when no joint is there and none was.
     pub fn write(
         &self,
@@ -153,7 +159,7 @@ impl FrameFeatures {
                     now - last.places[joint * coordinates + channel],
                     now - last.now[parent * coordinates + channel],
                 ];
-                for (kind, number) in kinds.into_iter().enumerate() {
+                for (kind, number) in kinds.into_iter().enumerate().take(self.kinds) {
                     features[(kind * coordinates + channel) * joints + joint] = number * scale;
                 }
             }
@@ -162,7 +168,7 @@ impl FrameFeatures {
         true
     }
 
-    /// Replaces `work.clip` by the features `[KINDS * coordinates, frames, joints]` of the last `frames` frames of a person;
+    /// Replaces `work.clip` by the features `[kinds * coordinates, frames, joints]` of the last `frames` frames of a person;
     /// where there are fewer, the person has stood still before the first. `false` when the person is never there.
     ///
     /// Frames before the person is there count as standing still too.
@@ -203,7 +209,7 @@ impl FrameFeatures {
 
 /// Memory to make clips in.
 #[derive(Debug, Default)]
-pub(super) struct ClipWork {
+pub(crate) struct ClipWork {
     last: LastFrame,
     frame: Vec<f32>,
     /// The features that were made.

@@ -6,7 +6,7 @@
 #[cfg(feature = "training")]
 mod augment;
 mod co_st_gcn;
-mod frame_features;
+pub(crate) mod frame_features;
 mod graph;
 #[cfg(feature = "training")]
 mod network;

@@ -97,11 +97,28 @@ impl Objective for ActionObjective {
         let mut manifest = Manifest::new(name, "");
         manifest.task = Some(Task::SkeletonBasedActionRecognition);
         manifest.params.clone_from(&self.params);
+        manifest.inputs = self.inputs();
         manifest.classes.clone_from(&self.classes);
         Ok(Container {
             manifest,
             files: vec![(FILE.into(), model), (TRAINABLE.into(), bytes_from_network(network)?)],
         })
+    }
+}
+
+impl ActionObjective {
+    /// Which skeletons the learner looks at, for whoever makes them of poses.
+    fn inputs(&self) -> serde_json::Map<String, serde_json::Value> {
+        let NetworkSizes { graph, coordinates, frames, .. } = self.sizes;
+        let frames = if self.form == Form::Clip { frames } else { 1 };
+        let sequence = serde_json::json!({
+            "layout": "NCTVM",
+            "skeleton": graph.skeleton().name(),
+            "channels": coordinates,
+            "frames": frames,
+            "persons": self.params.get("num_person"),
+        });
+        [("skeleton_sequence".to_owned(), sequence)].into_iter().collect()
     }
 }
 

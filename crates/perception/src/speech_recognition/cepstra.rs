@@ -75,7 +75,7 @@ impl FrontEnd {
 }
 
 /// Brings numbers to mean zero and deviation one; equal numbers become zero.
-fn standardise(numbers: &mut [f32]) {
+pub(crate) fn standardise(numbers: &mut [f32]) {
     let count = numbers.len() as f64;
     let mean = numbers.iter().map(|number| f64::from(*number)).sum::<f64>() / count;
     let squares = numbers.iter().map(|number| (f64::from(*number) - mean).powi(2)).sum::<f64>();

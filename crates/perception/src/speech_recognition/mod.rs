@@ -9,6 +9,7 @@ mod sound;
 mod word_learner;
 mod word_stream;
 
+pub(crate) use cepstra::standardise;
 pub use ds_cnn::{DsCnn, DsCnnParams};
 pub use edge_speech_nets::{EdgeSpeechNet, EdgeSpeechNets, EdgeSpeechNetsKind, EdgeSpeechNetsParams};
 pub use matchboxnet::{MatchboxNet, MatchboxNetKind, MatchboxNetParams};

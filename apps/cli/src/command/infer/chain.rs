@@ -28,6 +28,9 @@ pub fn check(matches: &ArgMatches, recorded: bool) -> Result<()> {
     Ok(())
 }
 
+/// The word before a learner that looks at each box found before it.
+const EACH: &str = "each";
+
 /// The learner of the command with those of `--then` behind it.
 ///
 /// # Errors
@@ -40,12 +43,14 @@ pub fn pipeline(
 ) -> Result<Pipeline> {
     let mut pipeline = Pipeline::default().then(entry, first)?;
     for text in matches.get_many::<String>("then").into_iter().flatten() {
-        let mut words = text.split_whitespace();
+        let mut words = text.split_whitespace().peekable();
+        let each = words.next_if_eq(&EACH).is_some();
         let spec = words.next().ok_or_else(|| Error::invalid_param("--then names no learner"))?;
         let entry = loading::entry(spec)?;
         let params = words.map(|word| named_value::parse("then", word, entry.spec.class, entry.params));
         let params = params.collect::<Result<ParamMap>>()?;
-        pipeline = pipeline.then(entry, loading::load_pretrained(spec, &params, matches, progress)?)?;
+        let learner = loading::load_pretrained(spec, &params, matches, progress)?;
+        pipeline = if each { pipeline.then_each(entry, learner) } else { pipeline.then(entry, learner) }?;
     }
     Ok(pipeline)
 }

@@ -31,6 +31,7 @@ Examples:
   opendr infer matchboxnet yes.wav no.wav                sounds, series (.csv), point clouds
   opendr infer LEARNER drive.bag --topic /camera/image_raw --out answers.mcap
   opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out seen.mp4   one behind the other, in parallel
+  opendr infer yunet crowd.mp4 --then 'each facial_emotion input=face'          ... which looks at each box found
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
@@ -61,8 +62,8 @@ pub fn grammar() -> Command {
             Arg::new("then")
                 .long("then")
                 .action(ArgAction::Append)
-                .value_name("LEARNER[/VARIANT] [NAME=VALUE]...")
-                .help("A learner behind it, which takes what those before it answer; again for one more"),
+                .value_name("[each] LEARNER[/VARIANT] [NAME=VALUE]...")
+                .help("A learner behind it, which takes what those before it answer (after the word each: each box that they found, one by one); again for one more"),
             Arg::new("limit")
                 .long("limit")
                 .value_parser(value_parser!(u64).range(1..))

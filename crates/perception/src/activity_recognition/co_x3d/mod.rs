@@ -24,20 +24,20 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::{Session, TensorView};
 
-use super::frames::Frames;
 use super::x3d::check_classes;
 use super::{Backbone, Sizes};
 use crate::category_scores::category_from_logits;
+use crate::clip_frames::ClipFrames;
 
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct CoX3dParams {
-    /// Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+    /// ClipFrames of a clip, pixels of a frame and depth of the network, where nothing else is given.
     pub backbone: Backbone,
     /// Classes. None: as many as the data name.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// Frames that an answer is averaged over. None: as the backbone has.
+    /// ClipFrames that an answer is averaged over. None: as the backbone has.
     #[param(range = 1..=256)]
     pub temporal_window_size: Option<usize>,
     /// Pixels of a side of a frame. None: as the backbone has.
@@ -61,7 +61,7 @@ impl CoX3dParams {
 pub struct CoX3d {
     params: CoX3dParams,
     classes: Classes,
-    frames: Frames,
+    frames: ClipFrames,
     session: Session,
     side: usize,
     /// Numbers of a state.
@@ -116,7 +116,7 @@ impl Learner for CoX3d {
         }
         check_classes(params.num_classes, classes)?;
         Ok(Self {
-            frames: Frames::new(side, frames),
+            frames: ClipFrames::new(side, frames),
             classes: model.manifest().classes.clone(),
             state: numbers,
             params,

@@ -18,19 +18,19 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 
-use super::frames::Frames;
 use super::{Backbone, Sizes};
 use crate::category_scores::category_from_logits;
+use crate::clip_frames::ClipFrames;
 
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct X3dParams {
-    /// Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+    /// ClipFrames of a clip, pixels of a frame and depth of the network, where nothing else is given.
     pub backbone: Backbone,
     /// Classes. None: as many as the data name.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// Frames of a clip, taken evenly from it. None: as the backbone has.
+    /// ClipFrames of a clip, taken evenly from it. None: as the backbone has.
     #[param(range = 1..=256)]
     pub frames: Option<usize>,
     /// Pixels of a side of a frame. None: as the backbone has.
@@ -54,7 +54,7 @@ impl X3dParams {
 pub struct X3d {
     params: X3dParams,
     classes: Classes,
-    frames: Frames,
+    frames: ClipFrames,
     session: Session,
     sizes: Sizes,
     inputs: Pool<Vec<f32>>,
@@ -95,7 +95,7 @@ impl Learner for X3d {
         }
         check_classes(params.num_classes, classes)?;
         Ok(Self {
-            frames: Frames::new(sizes.side, sizes.frames),
+            frames: ClipFrames::new(sizes.side, sizes.frames),
             classes: model.manifest().classes.clone(),
             inputs: Pool::default(),
             sizes,

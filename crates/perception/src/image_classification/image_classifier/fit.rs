@@ -54,7 +54,7 @@ impl Fit for ImageClassifier {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, None, "classes")?;
         let device = begin(job, training)?;
-        let network = SmallClassifier::new(classes.len(), fit_params.width, fit_params.dropout, &device);
+        let network = SmallClassifier::new(3, classes.len(), fit_params.width, fit_params.dropout, &device);
         let network = network_from_base(network, base)?;
         let ImageClassifierFitParams { side, crop, flip, label_smoothing, .. } = *fit_params;
         let objective = Classify { classes, side, crop, flip, label_smoothing };

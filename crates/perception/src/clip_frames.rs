@@ -1,12 +1,12 @@
 //! From the frames of a video to what the networks are given.
 
-use opendr_engine::data::{Image, Layout, PixelFormat, Video};
+use opendr_engine::data::{Image, Layout, PixelFormat, Pixels, Video};
 use opendr_engine::{Error, Result};
 use opendr_vision::Preprocess;
 
 /// Frames as the networks take them: stretched to a square, levels brought to the mean and deviation of Kinetics.
 #[derive(Debug, Clone)]
-pub(super) struct Frames {
+pub(crate) struct ClipFrames {
     preprocess: Preprocess,
     frames: usize,
 }
@@ -15,7 +15,7 @@ pub(super) struct Frames {
 const MEAN: f32 = 0.45 * 255.0;
 const DEVIATION: f32 = 0.225 * 255.0;
 
-impl Frames {
+impl ClipFrames {
     /// Clips of `frames` frames of `side` x `side` pixels.
     pub fn new(side: usize, frames: usize) -> Self {
         Self { preprocess: Preprocess::new(side, side).normalise([MEAN; 3], [DEVIATION; 3]), frames }
@@ -53,16 +53,16 @@ impl Frames {
                 video.as_slice()[at]
             )));
         }
+        // The planes of each channel lie below each other: the clip is a picture of all frames, and a frame is a part of it.
+        let levels = Pixels::F32(video.array().clone().into_data());
+        let strip = Image::new(levels, width, given * height, PixelFormat::Rgb, Layout::Chw)?;
         input.resize(self.frames * self.len(), 0.0);
         for (index, part) in input.chunks_exact_mut(self.len()).enumerate() {
             let last = (self.frames - 1).max(1);
             let from = (index * (given - 1) + last / 2) / last;
-            let size = width * height;
-            let planes = video.as_slice().chunks_exact(given * size);
-            let frame: Vec<f32> =
-                planes.flat_map(|plane| &plane[from * size..(from + 1) * size]).copied().collect();
-            let frame = Image::new(frame, width, height, PixelFormat::Rgb, Layout::Chw)?;
-            self.preprocess.run_into(frame.view(), part)?;
+            if let Some(frame) = strip.view().crop(0, from * height, width, height) {
+                self.preprocess.run_into(frame, part)?;
+            }
         }
         Ok(())
     }
@@ -78,7 +78,7 @@ mod tests {
         let levels: Vec<f32> = (0..3).flat_map(|_| (0..10).flat_map(|at| [at as f32 / 10.0; 6])).collect();
         let video = Video::new(levels, [3, 10, 2, 3]).unwrap();
         for (frames, wanted) in [(4, vec![0, 3, 6, 9]), (1, vec![0]), (2, vec![0, 9])] {
-            let (taken, mut input) = (Frames::new(32, frames), Vec::new());
+            let (taken, mut input) = (ClipFrames::new(32, frames), Vec::new());
             taken.clip_into(&video, &mut input).unwrap();
             let level = |at: &usize| (*at as f32 / 10.0 - 0.45) / 0.225;
             for (part, at) in input.chunks_exact(taken.len()).zip(&wanted) {
@@ -87,8 +87,8 @@ mod tests {
         }
         let mut input = Vec::new();
         let grey = Video::new(vec![0.5; 4], [1, 1, 2, 2]).unwrap();
-        assert!(Frames::new(32, 2).clip_into(&grey, &mut input).is_err());
+        assert!(ClipFrames::new(32, 2).clip_into(&grey, &mut input).is_err());
         let broken = Video::new(vec![f32::NAN; 3], [3, 1, 1, 1]).unwrap();
-        assert!(Frames::new(32, 2).clip_into(&broken, &mut input).is_err());
+        assert!(ClipFrames::new(32, 2).clip_into(&broken, &mut input).is_err());
     }
 }

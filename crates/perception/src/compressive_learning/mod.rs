@@ -1,0 +1,9 @@
+//! The class of what was measured with few numbers.
+
+mod multilinear_compressive;
+
+#[cfg(feature = "training")]
+pub use multilinear_compressive::MultilinearCompressiveFitParams;
+pub use multilinear_compressive::{
+    CompressiveBackbone, MultilinearCompressive, MultilinearCompressiveParams,
+};

@@ -1,0 +1,106 @@
+//! The network as it is trained.
+
+use burn::module::{Initializer, Module, Param};
+use burn::nn::conv::{Conv2d, Conv2dConfig};
+use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig2d};
+use burn::tensor::activation::relu;
+use burn::tensor::{Device, Tensor};
+
+/// Frames that a layer sees.
+const KERNEL: usize = 9;
+
+/// Sizes of the network.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct NetworkSizes {
+    /// Features of a landmark.
+    pub features: usize,
+    /// Frames of a clip.
+    pub frames: usize,
+    /// Landmarks.
+    pub points: usize,
+    /// Channels of each layer.
+    pub channels: Vec<usize>,
+}
+
+/// `[batch, features, frames, landmarks]` to logits `[batch, classes]`.
+#[derive(Module, Debug)]
+pub(super) struct BilinearNetwork {
+    scale: BatchNorm,
+    layers: Vec<Bilinear>,
+    dropout: Dropout,
+    classifier: Linear,
+}
+
+/// All landmarks mixed in each frame, a convolution through time at each landmark, and a way past both.
+#[derive(Module, Debug)]
+struct Bilinear {
+    landmarks: Param<Tensor<2>>,
+    channels: Conv2d,
+    channels_norm: BatchNorm,
+    time: Conv2d,
+    time_norm: BatchNorm,
+    past: Conv2d,
+    dropout: Dropout,
+}
+
+impl BilinearNetwork {
+    /// A network with weights as training begins with.
+    pub fn new(sizes: &NetworkSizes, classes: usize, dropout: f64, device: &Device) -> Self {
+        let mut inputs = sizes.features;
+        let layers = sizes.channels.iter().map(|channels| {
+            let layer = Bilinear::new([inputs, *channels], sizes.points, dropout, device);
+            inputs = *channels;
+            layer
+        });
+        let layers = layers.collect();
+        Self {
+            scale: BatchNormConfig::new(sizes.features).init(device),
+            layers,
+            dropout: DropoutConfig::new(dropout).init(),
+            classifier: LinearConfig::new(inputs, classes).init(device),
+        }
+    }
+
+    /// Logits `[batch, classes]` of clips `[batch, features, frames, landmarks]`.
+    pub fn forward(&self, clips: Tensor<4>) -> Tensor<2> {
+        let signal = self.scale.forward(clips);
+        let signal = self.layers.iter().fold(signal, |signal, layer| layer.forward(signal));
+        let [batch, channels, frames, points] = signal.dims();
+        let pooled =
+            signal.reshape([batch, channels, frames * points]).mean_dim(2).reshape([batch, channels]);
+        self.classifier.forward(self.dropout.forward(pooled))
+    }
+}
+
+impl Bilinear {
+    fn new([inputs, outputs]: [usize; 2], points: usize, dropout: f64, device: &Device) -> Self {
+        let convolution = |inputs: usize, kernel: usize| {
+            Conv2dConfig::new([inputs, outputs], [kernel, 1])
+                .with_padding(PaddingConfig2d::Explicit(kernel / 2, 0, kernel / 2, 0))
+                .with_bias(false)
+                .init(device)
+        };
+        let norm = || BatchNormConfig::new(outputs).init(device);
+        // Each landmark begins with itself, and a little of all others.
+        let others = Initializer::Constant { value: 0.1 / points as f64 }.init([points, points], device);
+        let landmarks = others.map(|others: Tensor<2>| others + Tensor::eye(points, device));
+        Self {
+            landmarks,
+            channels: convolution(inputs, 1),
+            channels_norm: norm(),
+            time: convolution(outputs, KERNEL),
+            time_norm: norm(),
+            past: convolution(inputs, 1),
+            dropout: DropoutConfig::new(dropout).init(),
+        }
+    }
+
+    fn forward(&self, signal: Tensor<4>) -> Tensor<4> {
+        let [batch, channels, frames, points] = signal.dims();
+        let rows = signal.clone().reshape([batch * channels * frames, points]);
+        let mixed = rows.matmul(self.landmarks.val()).reshape([batch, channels, frames, points]);
+        let mixed = relu(self.channels_norm.forward(self.channels.forward(mixed)));
+        let moved = self.time_norm.forward(self.time.forward(mixed));
+        relu(self.dropout.forward(moved) + self.past.forward(signal))
+    }
+}

@@ -1,0 +1,13 @@
+//! What persons feel or say, told by two senses at a time.
+
+mod audiovisual_emotion;
+mod rgbd_hand_gesture;
+
+#[cfg(feature = "training")]
+pub use audiovisual_emotion::AudiovisualEmotionFitParams;
+pub use audiovisual_emotion::{
+    AudiovisualEmotion, AudiovisualEmotionParams, AudiovisualFusion, AudiovisualInputs, ModalityDrop,
+};
+#[cfg(feature = "training")]
+pub use rgbd_hand_gesture::RgbdHandGestureFitParams;
+pub use rgbd_hand_gesture::{RgbdArchitecture, RgbdHandGesture, RgbdHandGestureParams, RgbdInputs};
