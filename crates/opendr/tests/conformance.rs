@@ -99,7 +99,8 @@ fn with_further_ports(
     let [first, further @ ..] = entry.ports else { return calls };
     for (call, shift) in calls.iter_mut().zip([0.0, 4.0, 8.0]) {
         call.iter_mut().for_each(|(name, _)| *name = first.name);
-        let beside: Vec<_> = further.iter().map(|port| (port.name, beside(port, &call[0].1, shift))).collect();
+        let beside: Vec<_> =
+            further.iter().map(|port| (port.name, beside(port, &call[0].1, shift))).collect();
         call.extend(beside);
     }
     calls
@@ -145,6 +146,8 @@ fn cars(shift: f32) -> BoundingBox3DList {
         ..BoundingBox3D::default()
     };
     [-5.0, 5.0].map(car).to_vec().into()
+}
+
 /// A square that crosses a clip of so many frames.
 fn clip(frames: usize) -> opendr::data::Video {
     let (side, mut levels) = (48, Vec::new());

@@ -53,7 +53,7 @@ fn check_variant(kind: ItemKind, variant: &Variant) -> Result<()> {
         }
         ItemKind::Model => {}
     }
-    ensure(variant.files.is_empty() || !variant.sources.is_empty(), || "no sources".into())?;
+    ensure(!variant.sources.is_empty(), || "no sources".into())?;
     variant.sources.iter().try_for_each(|source| {
         let complete = source.files().len() == variant.files.len()
             && variant.files.iter().all(|file| source.files().contains_key(&file.name));

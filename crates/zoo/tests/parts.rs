@@ -71,8 +71,9 @@ fn whole_can_be_nothing_but_parts() {
     assert_eq!(Zoo::with_cards(place.options(), cards).cached("whole"), Some(path));
     let text = "learner = \"whole\"\ntask = \"face_detection\"\ndescription = \"\"\n[[variants]]\nname = \"one\"\n\
                 default = true\nlicence = {}\n";
-    let error = Card::from_toml(text).unwrap_err();
-    assert!(error.to_string().contains("no parts to be made of"), "{error}");
+    let sources = "[[variants.sources]]\nkind = \"repository\"\nfiles = {}\n";
+    let error = Card::from_toml(&format!("{text}{sources}")).unwrap_err();
+    assert!(error.to_string().contains("sources, but no files"), "{error}");
     Card::from_toml(&format!("{text}parts = {{ detector = \"test/one\" }}\n")).unwrap();
 }
 
