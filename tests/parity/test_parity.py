@@ -6,6 +6,7 @@ import shlex
 import subprocess
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 try:
@@ -23,7 +24,11 @@ INPUTS = {
     "Image": ["data/photos/zidane.jpg", "data/photos/t1.jpg"],
     "Audio": [f"{CLIPS}/yes/0bac8a71_nohash_0.wav", f"{CLIPS}/_silence_/1024.wav"],
     "Timeseries": ["data/ecg/ECG5000_TRAIN.txt:0", "data/ecg/ECG5000_TRAIN.txt:499"],
+    "Vector": ["wave:42:0.3", "wave:42:1.1"],
+    "SkeletonSequence": ["wave:32x15x2:0.05", "wave:32x15x2:0.7"],
 }
+#: What answers say of how sure they are, of which one case at least must have something.
+SURE = ("confidence", "no_speech_prob")
 
 
 def cases():
@@ -38,8 +43,16 @@ def cases():
 
 
 def file_of(name, test_data, folder):
-    """The file `name` of the test data; `FILE:N` is the series in line N, its class left out, a number a line."""
+    """The file `name` of the test data; `FILE:N` is the series in line N, its class left out, a number a line;
+    `wave:SIZES:STEP` are sines."""
     name, _, line = name.partition(":")
+    if name == "wave":
+        sizes, _, step = line.partition(":")
+        sizes = [int(size) for size in sizes.split("x")]
+        numbers = np.sin(np.arange(np.prod(sizes)) * float(step)).astype(np.float32).reshape(sizes)
+        file = folder / f"wave-{step}.npy"
+        np.save(file, numbers)
+        return str(file)
     if not line:
         return str(test_data / name)
     series = folder / f"series-{line}.csv"
@@ -169,7 +182,7 @@ def by_python(case):
 def test_every_surface_says_the_same(name, test_data, tmp_path):
     case = Case(CASES[name], test_data, tmp_path)
     wanted = by_rust(case)
-    assert len(wanted) == len(case.inputs) and any("confidence" in line for line in wanted)
+    assert len(wanted) == len(case.inputs) and any(word in line for line in wanted for word in SURE)
     assert by_command(case) == wanted
     assert by_python(case) == wanted
     assert by_c(case) == wanted

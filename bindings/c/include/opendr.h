@@ -119,6 +119,10 @@ typedef enum opendr_skeleton {
     OPENDR_RIGHT_HAND21 = 4,
     // MediaPipe's 478 points of a face.
     OPENDR_FACE478 = 5,
+    // JHMDB's 15 joints of a person.
+    OPENDR_JHMDB15 = 6,
+    // The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
+    OPENDR_NTU25 = 7,
 } opendr_skeleton;
 
 // A world to act in; threads take turns.
@@ -1112,6 +1116,111 @@ static inline opendr_status opendr_infer_yunet(const opendr_learner *learner,
 }
 
 /*
+ * FaceRecognitionLearner: MobileFace tells whose faces a frame shows, after a few reference pictures of each person.
+ *
+ * Parameters:
+ *   threshold (a float -1..=1, may change while it runs, default 0.38): Faces whose cosine with every picture of a known person is below this are unknown.
+ *   face_threshold (a float 0..=1, default 0.6): What the detector scores below this is no face.
+ *   picture (a str, one of frame, face, may change while it runs, default frame): What pictures show.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_face_recognition(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("face_recognition", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_face_recognition(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * FaceMeshLearner: MediaPipe's face mesh: 468 points of a face and its irises, followed from frame to frame.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.5): Faces of which the mesh is surer than this are answered.
+ *   face_threshold (a float 0..=1, default 0.6): What the detector scores below this is no face.
+ *   max_faces (an int 1..=50, may change while it runs, default 1): At most this many faces a picture; the detector runs on frames that show fewer.
+ *   track (a bool, may change while it runs, default true): Whether faces are followed from frame to frame; else each frame is looked at anew.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_face_mesh(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("face_mesh", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_face_mesh(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * FacialEmotionLearner: mini-XCEPTION tells which of seven emotions the largest face in a frame shows.
+ *
+ * Parameters:
+ *   face_threshold (a float 0..=1, default 0.6): What the detector scores below this is no face.
+ *   picture (a str, one of frame, face, may change while it runs, default frame): What pictures show.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_facial_emotion(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("facial_emotion", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_facial_emotion(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * MovenetLearner: MoveNet finds 18 joints of one person (lightning) or of up to six (multipose).
  *
  * Parameters:
@@ -1222,6 +1331,200 @@ static inline opendr_status opendr_infer_lightweight_open_pose(const opendr_lear
 }
 
 /*
+ * HighResolutionPoseEstimationLearner: Looks at large pictures twice: coarsely, then closer where persons may be.
+ *
+ * Parameters:
+ *   first_pass_height (an int 64..=2048 px, may change while it runs, default 360): Height of the network's input for the whole picture.
+ *   second_pass_height (an int 64..=2048 px, may change while it runs, default 540): Height of the network's input for a part of it, at most; small parts are magnified four times.
+ *   method (a str, one of adaptive, primary, may change while it runs, default adaptive): How parts of the picture are chosen.
+ *   percentage_around_crop (a float 0..=2, may change while it runs, default 0.3): What is added around a part on each side, as a share of its longer side.
+ *   heatmap_threshold (a float 0.01..=1, may change while it runs, default 0.1): Where the coarse heat maps are above this, a closer look is worth it.
+ *   detail_threshold (a float 1..=256, may change while it runs, default 32): Where brightness differs by more than this within 8 pixels of the coarse picture, a closer look is worth it too, 0..=255; 256 switches it off.
+ *   max_regions (an int 1..=64, may change while it runs, default 4): At most this many parts are looked at in one picture; the others follow in the next frames.
+ *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
+ *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
+ *   upsample_ratio (an int 1..=8, may change while it runs, default 4): Steps between the cells of the heat maps in which joints are looked for.
+ *   track (a bool, may change while it runs, default true): Whether persons keep their identity from frame to frame.
+ *   smooth (a bool, may change while it runs, default true): Whether joints are smoothed over frames; needs `track`.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_high_resolution_pose_estimation(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("high_resolution_pose_estimation", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_high_resolution_pose_estimation(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * BlazePoseLearner: BlazePose finds 33 points of one person and follows them; hands, feet and face among them.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.5): A person below this score is dropped, and followed no longer.
+ *   keypoint_threshold (a float 0..=1, may change while it runs, default 0.1): Points that are visible with less than this probability are missing.
+ *   looks (an int 1..=4, may change while it runs, default 2): How often a person who is not followed yet is looked at: each look starts from where the one before saw the person.
+ *   track (a bool, may change while it runs, default true): Whether the person is followed from frame to frame. Switch it off for single pictures.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_blazepose(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("blazepose", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_blazepose(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * HandPoseEstimationLearner: Finds 21 joints of each hand and follows hands through a video.
+ *
+ * Parameters:
+ *   max_hands (an int 1..=16, may change while it runs, default 2): At most this many hands a picture.
+ *   threshold (a float 0..=1, may change while it runs, default 0.5): Hands below this score are dropped, and followed no longer.
+ *   palm_threshold (a float 0..=1, may change while it runs, default 0.2): Palms below this score are not looked at. Lower than MediaPipe's 0.5: a closer look drops what is no hand.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.3): Palms that overlap more than this (intersection over union) are one palm.
+ *   track (a bool, may change while it runs, default true): Whether hands are followed from frame to frame, each with a number. Switch it off for single pictures.
+ *   mirrored (a bool, may change while it runs, default false): Whether pictures are mirrored, as those of a selfie are: what looks like a left hand is a right one then.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_hand_pose(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("hand_pose", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_hand_pose(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * KeypointGestureLearner: Tells gestures by the key points of a hand or the path of a finger tip; trains in seconds.
+ *
+ * Parameters:
+ *   hidden (an int 2..=1024, default 32): Features of the first layer; the second has half as many.
+ *   dropout (a float 0..=0.9, default 0.1): Share of features that are left out at random in each training step.
+ *
+ * Inputs:
+ *   vector (Vector)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_keypoint_gesture(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("keypoint_gesture", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_keypoint_gesture(const opendr_learner *learner,
+    const opendr_vector *vector,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "vector";
+    inputs_[0].value = (const opendr_value *)vector;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * FallDetectorLearner: Tells which persons have fallen, by a rule on their poses over time.
+ *
+ * Parameters:
+ *   hold (a float 0..=60 s, may change while it runs, default 0.5): A posture takes the place of another when it was seen for so long.
+ *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
+ *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
+ *   base_height (an int 64..=2048 px, may change while it runs, default 368): Height of the pose network's input. Larger finds smaller persons.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   falls (BoundingBoxList): A box around each person: class 0 where nothing can be told, 1 for a fall, 2 for none.
+ *   poses (PoseList): The persons, in the order of the boxes.
+ */
+static inline opendr_status opendr_load_fall_detector(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("fall_detector", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_fall_detector(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **falls,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "falls";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "poses";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
+    if (falls != NULL) *falls = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
  * ImageClassifierLearner: A small network that learns the classes of a user's own pictures in minutes.
  *
  * Parameters:
@@ -1255,14 +1558,97 @@ static inline opendr_status opendr_infer_image_classifier(const opendr_learner *
 }
 
 /*
+ * SpatioTemporalGCNLearner: ST-GCN tells what a person does from a clip of its moving skeleton; it trains.
+ *
+ * Parameters:
+ *   num_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   num_point (an int 2..=1000, default none): Joints. None: as many as the graph has.
+ *   num_person (an int 1..=64, default 2): Persons of a recording that are looked at, the first ones; the answer is the mean over those that are there.
+ *   in_channels (an int 2..=3, default 3): Coordinates of a joint: 2 (a third channel, where there is one, holds scores) or 3.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Joints and bones.
+ *   method_name (a str, one of stgcn, default stgcn): The network.
+ *   num_frames (an int 1..=10000, default 300): Frames of a clip: the last of a longer recording; in a shorter one, the person stands still before it.
+ *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Channels of each block.
+ *   temporal_kernel (an int 3..=101, default 9): Frames that a block sees; odd.
+ *
+ * Inputs:
+ *   skeleton_sequence (SkeletonSequence)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_spatio_temporal_gcn(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("spatio_temporal_gcn", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_spatio_temporal_gcn(const opendr_learner *learner,
+    const opendr_skeleton_sequence *skeleton_sequence,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "skeleton_sequence";
+    inputs_[0].value = (const opendr_value *)skeleton_sequence;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * CoSTGCNLearner: CoST-GCN tells after every frame what a person does by its moving skeleton; it trains.
+ *
+ * Parameters:
+ *   num_classes (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   num_point (an int 2..=1000, default none): Joints. None: as many as the graph has.
+ *   num_person (an int 1..=64, default 2): Persons of a recording that are looked at, the first ones; the answer is the mean over those seen so far.
+ *   in_channels (an int 2..=3, default 3): Coordinates of a joint: 2 (a third channel, where there is one, holds scores) or 3.
+ *   graph_type (a str, one of ntu, kinetics, coco, jhmdb, default ntu): Joints and bones.
+ *   backbone (a str, one of costgcn, default costgcn): The network.
+ *   sequence_len (an int 1..=10000, default 300): Frames that an answer speaks of.
+ *   channels (a list 1..=4096, default 64,64,64,64,128,128,128,256,256,256): Channels of each block.
+ *   temporal_kernel (an int 3..=101, default 9): Frames that a block sees; odd.
+ *
+ * Inputs:
+ *   skeleton_sequence (SkeletonSequence)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_co_st_gcn(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("co_st_gcn", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_co_st_gcn(const opendr_learner *learner,
+    const opendr_skeleton_sequence *skeleton_sequence,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "skeleton_sequence";
+    inputs_[0].value = (const opendr_value *)skeleton_sequence;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * GatedRecurrentUnitLearner: A gated recurrent unit tells abnormal heart beats from normal ones.
  *
  * Parameters:
  *   in_channels (an int 1..=1024, default none): Features of a series (leads of a recording). None: as the data have.
  *   series_length (an int 1..=1000000, default none): Instants of a series. None: as the data have.
  *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   dropout (a float 0..=0.99, default 0.2): Share of features that are left out at random in each training step.
+ *   sample_rate (a float 50..=10000 Hz, default none): Instants a second of a stream, in which beats are found. None: each piece of a stream is a whole series.
  *   recurrent_unit (an int 1..=4096, default 512): Features of the recurrent unit's state.
- *   dropout (a float 0..=0.99, default 0.2): Share of the state's features that are left out at random in each training step.
  *
  * Inputs:
  *   timeseries (Timeseries)
@@ -1292,6 +1678,46 @@ static inline opendr_status opendr_infer_gated_recurrent_unit(const opendr_learn
 }
 
 /*
+ * AttentionNeuralBagOfFeatureLearner: A bag of learnt features with attention tells abnormal heart beats from normal ones.
+ *
+ * Parameters:
+ *   in_channels (an int 1..=1024, default none): Features of a series (leads of a recording). None: as the data have.
+ *   series_length (an int 1..=1000000, default none): Instants of a series. None: as the data have.
+ *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   dropout (a float 0..=0.99, default 0.2): Share of features that are left out at random in each training step.
+ *   sample_rate (a float 50..=10000 Hz, default none): Instants a second of a stream, in which beats are found. None: each piece of a stream is a whole series.
+ *   n_codeword (an int 1..=4096, default 256): Learnt features.
+ *   quantization_type (a str, one of nbof, tnbof, default nbof): What is put into the bag.
+ *   attention_type (a str, one of spatial, temporal, spatialsa, temporalsa, spatiotemporal, default spatial): Over what attention is spread.
+ *
+ * Inputs:
+ *   timeseries (Timeseries)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_attention_neural_bag_of_feature(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("attention_neural_bag_of_feature", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_attention_neural_bag_of_feature(const opendr_learner *learner,
+    const opendr_timeseries *timeseries,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "timeseries";
+    inputs_[0].value = (const opendr_value *)timeseries;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * MatchboxNetLearner: MatchboxNet tells which of a few words was spoken; small and quick.
  *
  * Parameters:
@@ -1299,8 +1725,9 @@ static inline opendr_status opendr_infer_gated_recurrent_unit(const opendr_learn
  *   number_of_subblocks (an int 1..=64, default 1): Convolutions in a block (R in the paper).
  *   number_of_channels (an int 1..=4096, default 64): Channels of the blocks (C in the paper).
  *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
- *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, 64 a frame.
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, as many a frame as the network takes.
  *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
+ *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
  *
  * Inputs:
  *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
@@ -1325,6 +1752,124 @@ static inline opendr_status opendr_infer_matchboxnet(const opendr_learner *learn
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
     if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * DsCnnLearner: DS-CNN tells twelve words apart, in 52 kB and 8 bits.
+ *
+ * Parameters:
+ *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *
+ * Inputs:
+ *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_ds_cnn(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("ds_cnn", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_ds_cnn(const opendr_learner *learner,
+    const opendr_audio *audio,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * SileroVadLearner: Silero VAD tells whether somebody speaks, 32 ms at a time.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.5): The least probability that speech begins with; it is quiet again 0.15 below.
+ *   min_silence_duration_ms (an int 0..=60000 ms, may change while it runs, default 100): How long it must be quiet until speech is over.
+ *
+ * Inputs:
+ *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_silero_vad(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("silero_vad", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_silero_vad(const opendr_learner *learner,
+    const opendr_audio *audio,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * WhisperLearner: Whisper writes down what was said, with times.
+ *
+ * Parameters:
+ *   temperature (a list 0..=10, may change while it runs, default 0,0.2,0.4,0.6,0.8,1): How random tokens are drawn; the next is tried where the answer to the one before stammers or is unlikely. 0 takes the likeliest.
+ *   compression_ratio_threshold (a float 0..=1000, may change while it runs, default 2.4): Text that packs better than this stammers. None: no text does.
+ *   logprob_threshold (a float -1000..=0, may change while it runs, default -0.8): Tokens whose logarithms of probabilities have a smaller mean are unlikely. None: none are.
+ *   no_speech_threshold (a float 0..=1, may change while it runs, default 0.6): A window that is silent with a higher probability, and whose text is unlikely, has none. None: all have.
+ *   condition_on_previous_text (a bool, may change while it runs, default false): Whether the text of a window is what the next begins with: connected, but errors go on too.
+ *   language (a str, may change while it runs, default en): What is spoken, e.g. `en`. None: multilingual models find out in the first 30 s.
+ *   sample_len (an int 1..=448, may change while it runs, default none): The most tokens of a window. None: 224.
+ *   best_of (an int 1..=64, may change while it runs, default none): Texts that are drawn at each temperature above 0, of which the likeliest is taken. None: one.
+ *   beam_size (an int 1..=64, may change while it runs, default none): Texts that are followed at temperature 0. None: one, always the likeliest token.
+ *   patience (a float 0..=64, may change while it runs, default none): So many times as many texts are finished before such a search ends. None: 1.
+ *   length_penalty (a float 0..=1, may change while it runs, default none): How longer texts are preferred (Google's GNMT), 0 to 1. None: by the mean of their tokens.
+ *   initial_prompt (a str, may change while it runs, default none): Text that the first window begins behind: names and spellings to be expected.
+ *   prefix (a str, may change while it runs, default none): Text that every window begins with.
+ *   suppress_tokens (a str, may change while it runs, default -1): Numbers of tokens that are never written, separated by commas; -1 stands for signs that nobody speaks. None: all may be.
+ *   suppress_blank (a bool, may change while it runs, default true): Whether no window begins with a space or its end.
+ *   without_timestamps (a bool, may change while it runs, default false): Whether segments have no times; then there is one for each window.
+ *   max_initial_timestamp (a float 0..=30 s, may change while it runs, default 1): The latest begin of a window's first segment. None: anywhere.
+ *   partial_interval (a float 0.5..=30 s, may change while it runs, default 3): How often a stream tells what it understood of a phrase that goes on. None: only phrases that are over.
+ *   silence_level (a float 0..=1, may change while it runs, default 0.002): Sound in a stream whose root mean square is lower is silence.
+ *
+ * Inputs:
+ *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *
+ * Outputs:
+ *   transcription (WhisperTranscription)
+ */
+static inline opendr_status opendr_load_whisper(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("whisper", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_whisper(const opendr_learner *learner,
+    const opendr_audio *audio,
+    opendr_whisper_transcription **transcription) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
+    outputs_[0].name = "transcription";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (transcription != NULL) *transcription = (opendr_whisper_transcription *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
 }

@@ -12,7 +12,7 @@ import pytest
 from opendr.engine.data import Image
 from opendr.engine.datasets import DatasetIterator, ExternalDataset
 from opendr.engine.learners import Learner
-from opendr.engine.target import BoundingBox, BoundingBoxList, Category
+from opendr.engine.target import BoundingBox, BoundingBoxList, Category, Heatmap
 from opendr.metrics import Metric, names, tables
 
 
@@ -46,7 +46,7 @@ def test_wrong_use_is_refused():
         Metric("classification", nonsense=3)
     metric = Metric("classification")
     with pytest.raises(opendr.InvalidInput, match="Category"):
-        metric.update(BoundingBoxList([]), Category(1))
+        metric.update(Heatmap(np.zeros((2, 2))), Category(1))
     with pytest.raises(opendr.InvalidInput):
         metric.merge(metric)
     with pytest.raises(opendr.InvalidInput):

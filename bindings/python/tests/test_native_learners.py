@@ -11,7 +11,7 @@ import opendr
 import pytest
 from opendr import Source, _opendr
 from opendr._native_learner import _value, native_class
-from opendr.engine.data import Audio, Image, Timeseries, Vector
+from opendr.engine.data import Audio, Image, SkeletonSequence, Timeseries, Vector
 from opendr.engine.learners import BaseLearner, Init, Learner, LearnerRL
 from opendr.engine.target import BoundingBoxList, Heatmap
 from opendr.perception.object_detection_2d import (
@@ -44,8 +44,21 @@ def test_class(entry):
 def datum(entry, photo):
     """Something of the type that a learner takes."""
     noise = np.random.default_rng(0).uniform(-1, 1, 16000)
-    kinds = {"Image": photo, "Audio": Audio(noise, 16000), "Timeseries": Timeseries(noise[:140, None])}
+    kinds = {
+        "Image": photo,
+        "Audio": Audio(noise, 16000),
+        "Timeseries": Timeseries(noise[:140, None]),
+        "Vector": Vector(noise[:42]),
+        "SkeletonSequence": SkeletonSequence(noise[:960].reshape(1, 2, 32, 15, 1)),
+    }
     return kinds[entry["ports"][0]["type"]]
+
+
+def json_of(entry, answer):
+    """The JSON of each output, which are of the types that the entry names."""
+    answers = answer if len(entry["outputs"]) > 1 else (answer,)
+    assert [type(target).__name__ for target in answers] == [output["type"] for output in entry["outputs"]]
+    return [target.to_json() for target in answers]
 
 
 @pytest.mark.parametrize("entry", [entry for entry in NATIVE if not entry["fit_in"]], ids=lambda entry: entry["name"])
@@ -58,14 +71,13 @@ def test_life_cycle(entry, zoo, photo, tmp_path):
         learner.infer(given)
     folder = learner.download(str(tmp_path / "models"), verbose=False)
     assert learner.load(folder) is True and learner.is_ready
-    answer = learner.infer(given)
-    assert type(answer).__name__ == entry["outputs"][0]["type"] and answer.to_json()
+    answer = json_of(entry, learner.infer(given))
     assert learner.save(str(tmp_path / "saved")) is True
     again = cls(device="cpu")
     again.load(tmp_path / "saved")
-    assert again.infer(given).to_json() == answer.to_json()
+    assert json_of(entry, again.infer(given)) == answer
     learner.reset()
-    assert learner.stream().infer(given).to_json() == answer.to_json()
+    assert json_of(entry, learner.stream().infer(given)) == answer
     with pytest.raises(TypeError, match="ExternalDataset"):
         learner.eval(None)
     refused = (TypeError, "dataset should be") if entry["fit"] else (NotImplementedError, entry["class_name"])

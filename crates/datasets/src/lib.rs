@@ -74,7 +74,7 @@ pub use skeleton::{NtuFile, Skeletons, open_ntu, skeleton_from_ntu};
 pub use speech_commands::{SpeechCommands, SpeechSplit, speaker_of_clip, split_of_clip};
 pub use stats::{ClassCount, DatasetStats, Spread};
 pub use ucr::{TsHeader, Ucr, series_from_line, series_from_ts_line};
-pub use value_file::{open_value, timeseries_from_table, value_files};
+pub use value_file::{open_value, timeseries_from_table, value_extensions, value_files};
 pub use voc::Voc;
 pub use wav::{WavEncoding, audio_from_wav, open_wav, wav_from_audio};
 pub use wfdb::{

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use opendr_engine::data::{Observation, Timeseries};
+use opendr_engine::data::{Observation, SkeletonSequence, Timeseries, Vector};
 use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 
 use crate::folder::{has_extension, names_in, read_bytes};
@@ -12,11 +12,12 @@ use crate::{array_from_npy, open_velodyne, open_wav};
 const MAX_BYTES: u64 = 256 << 20;
 
 /// What the extension of a file of the type is; none for a type that is in no file of its own.
-const fn extensions(kind: ValueType) -> &'static [&'static str] {
+pub const fn value_extensions(kind: ValueType) -> &'static [&'static str] {
     match kind {
         ValueType::Image => &["jpg", "jpeg", "png", "bmp", "webp"],
         ValueType::Audio => &["wav"],
-        ValueType::Timeseries | ValueType::Observation => &["csv", "tsv", "txt", "npy"],
+        ValueType::Timeseries | ValueType::Observation | ValueType::Vector => &["csv", "tsv", "txt", "npy"],
+        ValueType::SkeletonSequence => &["npy"],
         ValueType::PointCloud => &["bin"],
         kind if kind.is_target() => &["json"],
         _ => &[],
@@ -29,7 +30,8 @@ const fn extensions(kind: ValueType) -> &'static [&'static str] {
 /// * `Audio`: WAVE;
 /// * `Timeseries`: a table of numbers, a line a moment and a column a feature, with commas, semicolons, tabs or blanks
 ///   between them and perhaps a line of names above, or a `.npy` of one or two axes;
-/// * `Observation`: such a table, one number after the other;
+/// * `Observation` and `Vector`: such a table, one number after the other;
+/// * `SkeletonSequence`: a `.npy` of five axes, or of three: frames, joints and channels of one person;
 /// * `PointCloud`: scans as KITTI has them;
 /// * targets: their JSON.
 ///
@@ -46,10 +48,13 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
         ValueType::Timeseries => {
             timeseries_from_table(&read_bytes(path, MAX_BYTES)?).map(Value::Timeseries).context(opening)
         }
-        ValueType::Observation => timeseries_from_table(&read_bytes(path, MAX_BYTES)?)
-            .and_then(|table| Observation::from_data(table.as_slice().to_vec()))
-            .map(Value::Observation)
-            .context(opening),
+        ValueType::Observation => {
+            numbers(path).and_then(Observation::from_data).map(Value::Observation).context(opening)
+        }
+        ValueType::Vector => numbers(path).and_then(Vector::from_data).map(Value::Vector).context(opening),
+        ValueType::SkeletonSequence => {
+            skeletons_from_npy(&read_bytes(path, MAX_BYTES)?).map(Value::SkeletonSequence).context(opening)
+        }
         kind if kind.is_target() => {
             let value: Value = serde_json::from_slice(&read_bytes(path, MAX_BYTES)?)
                 .map_err(|error| Error::format(format!("no JSON of a target: {error}")).context(opening()))?;
@@ -82,12 +87,43 @@ pub fn value_files(kind: ValueType, path: &Path) -> Result<Vec<PathBuf>> {
         };
     }
     let mut names = names_in(path)?;
-    names.retain(|name| has_extension(name, extensions(kind)));
+    names.retain(|name| has_extension(name, value_extensions(kind)));
     if names.is_empty() {
-        let endings = extensions(kind).join(", .");
+        let endings = value_extensions(kind).join(", .");
         return Err(Error::not_found(format!("no file .{endings} in the folder {}", path.display())));
     }
     Ok(names.iter().map(|name| path.join(name)).collect())
+}
+
+/// All numbers of a table, line by line.
+fn numbers(path: &Path) -> Result<Vec<f32>> {
+    let table = timeseries_from_table(&read_bytes(path, MAX_BYTES)?)?;
+    Ok(table.as_slice().to_vec())
+}
+
+/// The moving skeletons that the bytes of an `.npy` file hold: `[samples, channels, frames, joints, persons]`, or
+/// `[frames, joints, channels]` of one person.
+///
+/// # Errors
+/// `Format` for other axes or numbers that no array has.
+fn skeletons_from_npy(bytes: &[u8]) -> Result<SkeletonSequence> {
+    let (shape, numbers) = array_from_npy(bytes)?;
+    let numbers: Vec<_> = numbers.into_iter().map(|number| number as f32).collect();
+    match shape[..] {
+        [samples, channels, frames, joints, persons] => {
+            SkeletonSequence::new(numbers, [samples, channels, frames, joints, persons])
+        }
+        [frames, joints, channels] => {
+            let of_channel = |channel| numbers.iter().skip(channel).step_by(channels);
+            let by_channel: Vec<_> = (0..channels.min(numbers.len())).flat_map(of_channel).copied().collect();
+            SkeletonSequence::new(by_channel, [1, channels, frames, joints, 1])
+        }
+        _ => Err(Error::format(format!(
+            "{} axes; moving skeletons have five (samples, channels, frames, joints, persons) or three (frames, joints, \
+             channels)",
+            shape.len()
+        ))),
+    }
 }
 
 /// The series that a text table or the bytes of an `.npy` file hold: `[time, features]`.

@@ -73,3 +73,15 @@ fn an_observation_is_the_numbers_of_a_table() {
     let error = open("bad.csv").unwrap_err().to_string();
     assert!(error.contains("bad.csv") && error.contains("NaN"), "{error}");
 }
+
+#[test]
+fn the_joints_of_one_person_become_its_channels() {
+    let numbers: Vec<f32> = (0..12).map(|number| number as f32).collect();
+    let of_person = skeletons_from_npy(&npy_from_f32(&numbers, &[2, 3, 2]).unwrap()).unwrap();
+    assert_eq!(of_person.shape(), [1, 2, 2, 3, 1]);
+    assert_eq!(of_person.as_slice(), [0., 2., 4., 6., 8., 10., 1., 3., 5., 7., 9., 11.]);
+    let whole = skeletons_from_npy(&npy_from_f32(&numbers, &[1, 2, 2, 3, 1]).unwrap()).unwrap();
+    assert_eq!(whole.as_slice(), numbers);
+    let flat = skeletons_from_npy(&npy_from_f32(&numbers, &[12]).unwrap()).unwrap_err();
+    assert!(flat.to_string().contains("1 axes"), "{flat}");
+}

@@ -51,7 +51,7 @@ impl Pipeline {
     /// The learners that `specs` names, with their pretrained models: `"nanodet + yunet/320 + each facial_emotion"`.
     ///
     /// # Errors
-    /// As [`crate::learner`] and [`Pipeline::then`].
+    /// As [`crate::learner()`] and [`Pipeline::then`].
     pub fn open(specs: &str) -> Result<Self> {
         Self::open_with(specs, Device::Auto, &Silent)
     }

@@ -23,7 +23,7 @@ pub struct FacialEmotionParams {
     pub face_threshold: f32,
     /// What pictures show.
     #[param(live)]
-    pub input: FaceInput,
+    pub picture: FaceInput,
 }
 
 /// A loaded network with its face detector.
@@ -97,7 +97,7 @@ impl Learner for FacialEmotion {
 
     fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
         let faces = &mut *self.scratch.take();
-        let crop = match self.params.input {
+        let crop = match self.params.picture {
             FaceInput::Face => Some(whole_picture(image, SIDE)),
             FaceInput::Frame => {
                 self.finder.find(image, faces)?;

@@ -111,7 +111,8 @@ class LightweightOpenPoseLearner(NativeLearner):
         accumulate: Batches whose gradients are added up for one step of the optimiser. (default 1; 1 to 4096; in
             OpenDR batches_per_iter)
         lr: Learning rate at its highest. (default 4e-05; 0 to 100)
-        optimizer: What turns gradients into steps. (default 'adam'; one of 'adamw', 'adam', 'sgd', 'rmsprop')
+        optimizer: What turns gradients into steps. (default 'adam'; one of 'adamw', 'adam', 'sgd', 'rmsprop'; in
+            OpenDR optimizer_name)
         momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
         weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
             0.0005; 0 to 10)
@@ -122,7 +123,7 @@ class LightweightOpenPoseLearner(NativeLearner):
         warmup_ratio: What share of the learning rate the warm-up begins with. (default 0.1; 0 to 1)
         lr_min: Learning rate at the end of `cosine` and `linear`. (default 0.0; 0 to 100; in OpenDR
             lr_schedule_eta_min)
-        lr_steps: Epochs at which `step` lowers the learning rate. (default [])
+        lr_steps: Epochs at which `step` lowers the learning rate. (default []; in OpenDR drop_after_epoch)
         lr_gamma: What `step` multiplies the learning rate with. (default 0.1; 0 to 1; in OpenDR lr_decay)
         grad_clip: Gradients whose norm over all weights is above this are scaled down to it; 0 for no limit.
             (default 0.0; 0 to 1e+09)
@@ -173,11 +174,117 @@ class LightweightOpenPoseLearner(NativeLearner):
     upsample_ratio: int
     track: bool
     smooth: bool
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., freeze: bool = ..., width: float = ..., mobilenetv2_width: float = ..., extra_blocks: int = ..., channels: int = ..., separable: bool = ..., num_refinement_stages: int = ..., crop_size: int = ..., augment: bool = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., freeze: bool = ..., width: float = ..., mobilenetv2_width: float = ..., extra_blocks: int = ..., channels: int = ..., separable: bool = ..., num_refinement_stages: int = ..., crop_size: int = ..., augment: bool = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> PoseList: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> list[PoseList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> Iterator[PoseList]: ...
-    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., backbone: str = ..., freeze: bool = ..., width: float = ..., mobilenetv2_width: float = ..., extra_blocks: int = ..., channels: int = ..., separable: bool = ..., num_refinement_stages: int = ..., crop_size: int = ..., augment: bool = ...) -> dict[str, Any]: ...  # type: ignore[override]
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., backbone: str = ..., freeze: bool = ..., width: float = ..., mobilenetv2_width: float = ..., extra_blocks: int = ..., channels: int = ..., separable: bool = ..., num_refinement_stages: int = ..., crop_size: int = ..., augment: bool = ...) -> dict[str, Any]: ...  # type: ignore[override]
+
+class HighResolutionPoseEstimationLearner(NativeLearner):
+    """Looks at large pictures twice: coarsely, then closer where persons may be.
+
+    Task: pose_estimation. ``infer`` takes:
+
+        image: Image.
+
+    and gives: PoseList.
+
+    Args:
+        first_pass_height: Height of the network's input for the whole picture. (default 360; 64 to 2048 px; may
+            change while running, also for one call of infer)
+        second_pass_height: Height of the network's input for a part of it, at most; small parts are magnified
+            four times. (default 540; 64 to 2048 px; may change while running, also for one call of infer)
+        method: How parts of the picture are chosen. (default 'adaptive'; one of 'adaptive', 'primary'; may change
+            while running, also for one call of infer)
+        percentage_around_crop: What is added around a part on each side, as a share of its longer side. (default
+            0.3; 0 to 2; may change while running, also for one call of infer)
+        heatmap_threshold: Where the coarse heat maps are above this, a closer look is worth it. (default 0.1;
+            0.01 to 1; may change while running, also for one call of infer)
+        detail_threshold: Where brightness differs by more than this within 8 pixels of the coarse picture, a
+            closer look is worth it too, 0..=255; 256 switches it off. (default 32.0; 1 to 256; may change while
+            running, also for one call of infer)
+        max_regions: At most this many parts are looked at in one picture; the others follow in the next frames.
+            (default 4; 1 to 64; may change while running, also for one call of infer)
+        threshold: Persons below this score are dropped. (default 0.1; 0 to 1; may change while running, also for
+            one call of infer)
+        keypoint_threshold: Joints below this score are missing. (default 0.1; 0.01 to 1; may change while
+            running, also for one call of infer)
+        upsample_ratio: Steps between the cells of the heat maps in which joints are looked for. (default 4; 1 to
+            8; may change while running, also for one call of infer)
+        track: Whether persons keep their identity from frame to frame. (default True; may change while running,
+            also for one call of infer)
+        smooth: Whether joints are smoothed over frames; needs `track`. (default True; may change while running,
+            also for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Arguments of OpenDR that are taken and have no effect:
+        base_height: no effect: `first_pass_height` and `second_pass_height` say it.
+        mobilenet_use_stride: no effect: the maps lie at every 8th pixel.
+        shufflenet_groups: no effect: the backbone is MobileNet.
+        experiment_name: no effect: it does not train: `lightweight_open_pose` does.
+        weights_only: no effect: it does not train: `lightweight_open_pose` does.
+        output_name: no effect: `eval` says where answers are written.
+        multiscale: no effect: parts are looked at larger than the whole.
+        scales: no effect: parts are looked at larger than the whole.
+        visualize: no effect: `draw` shows poses.
+        img_mean: no effect: the network says what it takes.
+        img_scale: no effect: the network says what it takes.
+        pad_value: no effect: the network says what it takes.
+        half_precision: no effect: the runtime chooses the precision.
+    """
+
+    first_pass_height: int
+    second_pass_height: int
+    method: Literal['adaptive', 'primary']
+    percentage_around_crop: float
+    heatmap_threshold: float
+    detail_threshold: float
+    max_regions: int
+    threshold: float
+    keypoint_threshold: float
+    upsample_ratio: int
+    track: bool
+    smooth: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, first_pass_height: int = ..., second_pass_height: int = ..., method: Literal['adaptive', 'primary'] = ..., percentage_around_crop: float = ..., heatmap_threshold: float = ..., detail_threshold: float = ..., max_regions: int = ..., keypoint_threshold: float = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., base_height: Any = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, first_pass_height: int = ..., second_pass_height: int = ..., method: Literal['adaptive', 'primary'] = ..., percentage_around_crop: float = ..., heatmap_threshold: float = ..., detail_threshold: float = ..., max_regions: int = ..., threshold: float = ..., keypoint_threshold: float = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., base_height: Any = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> PoseList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, first_pass_height: int = ..., second_pass_height: int = ..., method: Literal['adaptive', 'primary'] = ..., percentage_around_crop: float = ..., heatmap_threshold: float = ..., detail_threshold: float = ..., max_regions: int = ..., threshold: float = ..., keypoint_threshold: float = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., base_height: Any = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> list[PoseList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, first_pass_height: int = ..., second_pass_height: int = ..., method: Literal['adaptive', 'primary'] = ..., percentage_around_crop: float = ..., heatmap_threshold: float = ..., detail_threshold: float = ..., max_regions: int = ..., threshold: float = ..., keypoint_threshold: float = ..., upsample_ratio: int = ..., track: bool = ..., smooth: bool = ..., base_height: Any = ..., mobilenet_use_stride: Any = ..., shufflenet_groups: Any = ..., experiment_name: Any = ..., weights_only: Any = ..., output_name: Any = ..., multiscale: Any = ..., scales: Any = ..., visualize: Any = ..., img_mean: Any = ..., img_scale: Any = ..., pad_value: Any = ..., half_precision: Any = ...) -> Iterator[PoseList]: ...
+
+class BlazePoseLearner(NativeLearner):
+    """BlazePose finds 33 points of one person and follows them; hands, feet and face among them.
+
+    Task: pose_estimation. ``infer`` takes:
+
+        image: Image.
+
+    and gives: PoseList.
+
+    Args:
+        threshold: A person below this score is dropped, and followed no longer. (default 0.5; 0 to 1; may change
+            while running, also for one call of infer)
+        keypoint_threshold: Points that are visible with less than this probability are missing. (default 0.1; 0
+            to 1; may change while running, also for one call of infer)
+        looks: How often a person who is not followed yet is looked at: each look starts from where the one before
+            saw the person. (default 2; 1 to 4; may change while running, also for one call of infer)
+        track: Whether the person is followed from frame to frame. Switch it off for single pictures. (default
+            True; may change while running, also for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    threshold: float
+    keypoint_threshold: float
+    looks: int
+    track: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., looks: int = ..., track: bool = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., looks: int = ..., track: bool = ...) -> PoseList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., looks: int = ..., track: bool = ...) -> list[PoseList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., looks: int = ..., track: bool = ...) -> Iterator[PoseList]: ...

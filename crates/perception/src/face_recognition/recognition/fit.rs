@@ -100,7 +100,7 @@ fn train(
         classes,
         margin,
         scale,
-        finder: (params.input == FaceInput::Frame).then(|| Arc::new(finder)),
+        finder: (params.picture == FaceInput::Frame).then(|| Arc::new(finder)),
         manifest,
         parts: parts.collect::<Result<_>>()?,
     };

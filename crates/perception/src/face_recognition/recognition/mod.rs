@@ -40,7 +40,7 @@ pub struct FaceRecognitionParams {
     pub face_threshold: f32,
     /// What pictures show.
     #[param(live)]
-    pub input: FaceInput,
+    pub picture: FaceInput,
 }
 
 /// A loaded face recogniser.
@@ -161,7 +161,7 @@ impl FaceRecognition {
     }
 
     fn faces(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
-        if self.params.input == FaceInput::Frame {
+        if self.params.picture == FaceInput::Frame {
             return self.finder.find(image, faces);
         }
         faces.boxes.clear();
@@ -171,7 +171,7 @@ impl FaceRecognition {
 
     /// The face upright, as the network wants it; `None` where it has no extent.
     fn crop(&self, image: &Image, face: &BoundingBox) -> Option<Similarity> {
-        match self.params.input {
+        match self.params.picture {
             FaceInput::Frame => Similarity::from_points(&face.landmarks, &TEMPLATE),
             FaceInput::Face => Some(whole_picture(image, SIDE)),
         }

@@ -36,9 +36,9 @@ pub struct HeartParams {
     /// Share of features that are left out at random in each training step.
     #[param(default = 0.2, range = 0.0..=0.99)]
     pub dropout: f64,
-    /// Instants a second of a stream, in which beats are found.
-    #[param(default = 360.0, range = 50.0..=10_000.0, unit = "Hz")]
-    pub sample_rate: f64,
+    /// Instants a second of a stream, in which beats are found. None: each piece of a stream is a whole series.
+    #[param(range = 50.0..=10_000.0, unit = "Hz")]
+    pub sample_rate: Option<f64>,
 }
 
 /// One of the networks that tell heart signals apart.
@@ -54,11 +54,11 @@ pub trait HeartKind: Send + Sync + 'static {
 
 /// A loaded network that tells the class of a heart signal.
 ///
-/// A stream is answered for every heart beat in it ([`BeatStream`]).
+/// A stream with a sample rate is answered for every heart beat in it ([`BeatStream`]); without one, each of its pieces is.
 pub struct HeartLearner<K: HeartKind> {
     params: K::Params,
     classes: Classes,
-    beats: Beats,
+    beats: Option<Beats>,
     session: Session,
     time: usize,
     features: usize,
@@ -102,7 +102,7 @@ impl<K: HeartKind> Learner for HeartLearner<K> {
         must_be("in_channels", heart.in_channels, features)?;
         must_be("series_length", heart.series_length, time)?;
         must_be("n_class", heart.n_class, classes)?;
-        let beats = Beats::new(heart.sample_rate, [time, features])?;
+        let beats = heart.sample_rate.map(|rate| Beats::new(rate, [time, features])).transpose()?;
         Ok(Self { classes: model.manifest().classes.clone(), params, beats, session, time, features })
     }
 
@@ -124,9 +124,15 @@ impl<K: HeartKind> Learner for HeartLearner<K> {
     }
 }
 
-/// An answer for every beat that is found in the first feature.
+/// An answer for every beat that is found in the first feature, or for every piece.
 impl<K: HeartKind> Streaming for HeartLearner<K> {
     fn push(&self, state: &mut BeatStream, piece: &Timeseries, emit: &mut dyn FnMut(Category)) -> Result<()> {
+        let Some(beats) = &self.beats else {
+            let mut category = Category::default();
+            self.infer_into(state, piece, &mut category)?;
+            emit(category);
+            return Ok(());
+        };
         let [time, features] = piece.shape();
         if features != self.features {
             return Err(Error::invalid_input(format!(
@@ -134,7 +140,7 @@ impl<K: HeartKind> Streaming for HeartLearner<K> {
                 self.features
             )));
         }
-        self.beats.push(state, piece.as_slice(), |beat| {
+        beats.push(state, piece.as_slice(), |beat| {
             let mut category = Category::default();
             self.category(beat, &mut category)?;
             emit(category);
@@ -143,7 +149,8 @@ impl<K: HeartKind> Streaming for HeartLearner<K> {
     }
 
     fn flush(&self, state: &mut BeatStream, emit: &mut dyn FnMut(Category)) -> Result<()> {
-        self.beats.flush(state, |beat| {
+        let Some(beats) = &self.beats else { return Ok(()) };
+        beats.flush(state, |beat| {
             let mut category = Category::default();
             self.category(beat, &mut category)?;
             emit(category);

@@ -1,30 +1,29 @@
 //! `opendr bench`: how fast a learner is here, stage by stage.
 
+mod drawn;
+mod seen;
+
 use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::data::{Image, Layout, PixelFormat};
 use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, ResetOptions};
 use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Entry, Ports};
-use opendr::zoo::ItemKind;
-use opendr::{ActingStream, Progress, Result, Unit, vision};
+use opendr::{ActingStream, Error, Progress, Result, Unit};
 use serde::Serialize;
 
+use self::seen::Seen;
 use crate::exit::Outcome;
 use crate::peak_memory::peak_memory_mb;
 use crate::progress_bar::Bar;
 use crate::timings::Timings;
 use crate::{environment_flags, learner_flags, loading, stdout};
 
-/// Size of the picture when none is given, pixels.
-const WIDTH: usize = 1920;
-const HEIGHT: usize = 1080;
-
 const EXAMPLES: &str = "\
 Examples:
   opendr bench LEARNER
   opendr bench LEARNER faces.jpg --threads 1 --json
+  opendr bench whisper talk.wav                     a sound; the real-time factor is time over length
   opendr bench ppo --env CartPole-v1                a policy, in the environment that it acts in";
 
 pub fn grammar() -> Command {
@@ -36,10 +35,9 @@ pub fn grammar() -> Command {
         .about("Measure a learner: p50 and p99 of each stage, frames a second, peak memory")
         .arg(loading::learner())
         .arg(
-            Arg::new("input")
-                .value_parser(value_parser!(PathBuf))
-                .value_name("PICTURE")
-                .help("What to run on; a sample of the zoo, or a drawn picture, at 1920x1080 otherwise"),
+            Arg::new("input").value_parser(value_parser!(PathBuf)).value_name("FILE").help(
+                "What to run on; a sample of the zoo otherwise, pictures at 1920x1080, or something drawn",
+            ),
         )
         .arg(count("frames", "100").help("Frames, or steps of a policy, to measure"))
         .arg(count("warmup", "10").help("Frames, or steps, before that"))
@@ -63,19 +61,11 @@ struct Measurement {
     seen: Seen,
     frames: usize,
     frames_per_second: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    real_time_factor: Option<f64>,
     p50_ms: Timings,
     p99_ms: Timings,
     peak_memory_mb: Option<f64>,
-}
-
-/// What was inferred from.
-#[derive(Serialize)]
-#[serde(rename_all = "snake_case")]
-enum Seen {
-    /// One picture, again and again.
-    Picture { source: String, width: usize, height: usize },
-    /// What an environment showed in the course of episodes.
-    Environment(String),
 }
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
@@ -86,8 +76,9 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let mut learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?;
     let (seen, timings) = match environment_flags::is_policy(entry) {
         true => acting(learner.as_ref(), entry, matches, &bar)?,
-        false => seeing(learner.as_mut(), entry, matches, &bar)?,
+        false => seeing(learner.as_mut(), spec, entry, matches, &bar)?,
     };
+    let mean_s = 1e-3 * timings.iter().map(|one| one.total).sum::<f64>() / timings.len() as f64;
     let measurement = Measurement {
         learner: spec.to_owned(),
         runtime: match timings.iter().any(|one| one.session > 0.0) {
@@ -96,9 +87,13 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         },
         device: learner.device().to_string(),
         threads: options.thread_count()?,
+        real_time_factor: match seen {
+            Seen::Sound { piece_s, .. } => Some(mean_s / piece_s),
+            _ => None,
+        },
         seen,
         frames: timings.len(),
-        frames_per_second: 1e3 * timings.len() as f64 / timings.iter().map(|one| one.total).sum::<f64>(),
+        frames_per_second: mean_s.recip(),
         p50_ms: percentile(&timings, 0.50),
         p99_ms: percentile(&timings, 0.99),
         peak_memory_mb: peak_memory_mb(),
@@ -107,22 +102,33 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Measures a learner of pictures.
+/// Measures a learner of pictures, sounds, series.
 fn seeing(
     learner: &mut dyn AnyLearner,
+    spec: &str,
     entry: &'static Entry,
     matches: &ArgMatches,
     bar: &Bar,
 ) -> Result<(Seen, Vec<Timings>)> {
     let further = learner_flags::port_files(entry, matches)?;
-    let (source, image) = picture(matches, bar)?;
-    let mut ports = Ports::one(&image);
-    for file in &further {
-        ports = ports.with(file.name(), file.value(0)?);
-    }
-    let timings =
-        measure(matches, bar, || Timings::of(|| learner.infer(&ports)).map(|(_, timings)| timings))?;
-    Ok((Seen::Picture { source, width: image.width(), height: image.height() }, timings))
+    let (seen, values) = seen::values(spec, entry, matches, bar)?;
+    let in_pieces = matches!(seen, Seen::Sound { .. }) && entry.capabilities.streaming;
+    let mut calls = values.iter().cycle();
+    let timings = measure(matches, bar, || {
+        let Some(value) = calls.next() else {
+            return Err(Error::invalid_input("the sound is too short for a piece of it; name a longer one"));
+        };
+        let mut ports = Ports::one(value);
+        for file in &further {
+            ports = ports.with(file.name(), file.value(0)?);
+        }
+        let ((), timings) = Timings::of(|| match in_pieces {
+            true => learner.push(Some(&ports), &mut |_| ()),
+            false => learner.infer(&ports).map(drop),
+        })?;
+        Ok(timings)
+    })?;
+    Ok((seen, timings))
 }
 
 /// Measures a policy in the course of episodes; the environment's own time does not count.
@@ -150,33 +156,6 @@ fn acting(
         Ok(timings)
     })?;
     Ok((Seen::Environment(source.id().to_owned()), timings))
-}
-
-/// What to run on, and where it is from.
-fn picture(matches: &ArgMatches, bar: &Bar) -> Result<(String, Image)> {
-    if let Some(path) = matches.get_one::<PathBuf>("input") {
-        return Ok((path.display().to_string(), vision::open(path)?));
-    }
-    let zoo = loading::zoo(matches)?;
-    let samples = zoo.items().filter(|item| item.card.kind == ItemKind::Sample && item.variant.demo);
-    for sample in samples.map(|item| item.to_string()) {
-        match zoo.get(&sample, bar) {
-            Ok(path) => return Ok((sample, vision::resize(&vision::open(path)?, WIDTH, HEIGHT)?)),
-            Err(error) => bar.note(&format!("measuring on a drawn picture, since {error}")),
-        }
-    }
-    Ok(("drawn".to_owned(), drawn_picture()?))
-}
-
-/// Gradients and squares: nothing to find, everything to compute.
-fn drawn_picture() -> Result<Image> {
-    let pixel = |at: usize| {
-        let (x, y) = (at % WIDTH, at / WIDTH);
-        let square = if (x / 64 + y / 64) % 2 == 0 { 200 } else { 40 };
-        [(x * 255 / WIDTH) as u8, (y * 255 / HEIGHT) as u8, square]
-    };
-    let samples: Vec<u8> = (0..WIDTH * HEIGHT).flat_map(pixel).collect();
-    Image::new(samples, WIDTH, HEIGHT, PixelFormat::Rgb, Layout::Hwc)
 }
 
 /// The timings of as many calls as the user wants.
@@ -221,13 +200,20 @@ fn print(measurement: &Measurement, json: bool) -> Result<()> {
     let Measurement { learner, runtime, seen, frames, frames_per_second, p50_ms, p99_ms, .. } = measurement;
     let seen = match seen {
         Seen::Picture { source, width, height } => format!("frames of {width}x{height} ({source})"),
+        Seen::Sound { source, sample_rate, piece_s } => {
+            format!("pieces of {piece_s:.1} s at {sample_rate} Hz ({source})")
+        }
+        Seen::Values { source, of, .. } => format!("inputs {of} ({source})"),
         Seen::Environment(id) => format!("steps in {id}"),
     };
+    let real_time = measurement
+        .real_time_factor
+        .map_or_else(String::new, |factor| format!(", real-time factor {factor:.3}"));
     let memory =
         measurement.peak_memory_mb.map_or_else(String::new, |peak| format!("\npeak memory: {peak:.0} MB"));
     stdout::print(format_args!(
         "{learner} on {runtime}\n\
-         {frames} {seen}: {frames_per_second:.1} a second\n\
+         {frames} {seen}: {frames_per_second:.1} a second{real_time}\n\
          p50: {p50_ms}\np99: {p99_ms}{memory}"
     ))
 }
