@@ -50,7 +50,7 @@ fn open_hands_and_fists_are_told() {
     assert!(handle.infer(&picture(&models, "freihand/00115300.jpg")).unwrap().boxes.is_empty());
     let mut other = Handle::<HandGesture>::new(HandGestureParams::default(), Device::Cpu).unwrap();
     let error = other.load(models.get("hand_pose").unwrap()).unwrap_err();
-    assert_eq!(error.kind(), ErrorKind::Format, "{error}");
+    assert_eq!(error.kind(), ErrorKind::InvalidInput, "{error}");
 }
 
 #[test]
