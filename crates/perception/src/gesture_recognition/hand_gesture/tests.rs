@@ -71,7 +71,8 @@ fn a_pointing_finger_draws() {
             [480.0 + 100.0 * angle.cos(), 300.0 + 100.0 * angle.sin()]
         }
     };
-    let ways: [(&dyn Fn(f32) -> [f32; 2], &str); 4] = [
+    type Way<'a> = &'a dyn Fn(f32) -> [f32; 2];
+    let ways: [(Way<'_>, &str); 4] = [
         (&|_| [500.0, 300.0], "stop"),
         (&around(1.0), "clockwise"),
         (&around(-1.0), "counterclockwise"),
