@@ -123,6 +123,8 @@ typedef enum opendr_skeleton {
     OPENDR_JHMDB15 = 6,
     // The 25 joints of a person that Kinect v2 tells, as NTU RGB+D numbers them.
     OPENDR_NTU25 = 7,
+    // Where the two jaws of a gripper go to grasp a thing.
+    OPENDR_GRASP2 = 8,
 } opendr_skeleton;
 
 // A world to act in; threads take turns.
@@ -1043,6 +1045,251 @@ static inline opendr_status opendr_infer_single_shot_detector(const opendr_learn
 }
 
 /*
+ * SortLearner: SORT follows what a detector finds by motion and overlap alone, at next to no cost.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.3): Detections below this score are left out.
+ *   iou_threshold (a float 0.01..=1, may change while it runs, default 0.3): A track and a detection may be one object when they overlap at least this much (intersection over union).
+ *   max_age (an int 0..=1000, may change while it runs, default 1): Frames for which an object may be out of sight.
+ *   min_hits (an int 1..=100, may change while it runs, default 3): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+ *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *
+ * Inputs:
+ *   detections (BoundingBoxList): What was found in the frame; the confidences count.
+ *   image (Image): The frame, which tells how the camera moved. All frames of a stream, or none. NULL leaves it out.
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_sort(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("sort", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_sort(const opendr_learner *learner,
+    const opendr_bounding_box_list *detections,
+    const opendr_image *image,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "detections";
+    inputs_[0].value = (const opendr_value *)detections;
+    inputs_[1].name = "image";
+    inputs_[1].value = (const opendr_value *)image;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ByteTrackLearner: ByteTrack follows what a detector finds, through crowds too: detections of low confidence count.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.6): Detections from this score on are paired first.
+ *   low_threshold (a float 0..=1, may change while it runs, default 0.1): Detections from this score on only go on with tracks.
+ *   new_threshold (a float 0..=1, may change while it runs, default 0.7): A detection begins a track from this score on.
+ *   iou_threshold (a float 0.01..=1, may change while it runs, default 0.2): A track and a detection may be one object when their overlap times the score is at least this.
+ *   low_iou_threshold (a float 0.01..=1, may change while it runs, default 0.5): The same for detections of a low score, by overlap alone.
+ *   track_buffer (an int 0..=1000, may change while it runs, default 30): Frames for which an object may be out of sight.
+ *   min_hits (an int 1..=100, may change while it runs, default 2): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+ *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *
+ * Inputs:
+ *   detections (BoundingBoxList): What was found in the frame; the confidences count.
+ *   image (Image): The frame, which tells how the camera moved. All frames of a stream, or none. NULL leaves it out.
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_byte_track(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("byte_track", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_byte_track(const opendr_learner *learner,
+    const opendr_bounding_box_list *detections,
+    const opendr_image *image,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "detections";
+    inputs_[0].value = (const opendr_value *)detections;
+    inputs_[1].name = "image";
+    inputs_[1].value = (const opendr_value *)image;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * OcSortLearner: OC-SORT follows what a detector finds, through occlusions and uneven motion.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.6): Detections below this score are left out.
+ *   iou_threshold (a float 0.01..=1, may change while it runs, default 0.3): A track and a detection may be one object when they overlap at least this much (intersection over union).
+ *   max_age (an int 0..=1000, may change while it runs, default 30): Frames for which an object may be out of sight.
+ *   min_hits (an int 1..=100, may change while it runs, default 3): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+ *   delta_t (an int 1..=10, may change while it runs, default 3): Over so many frames directions are measured.
+ *   inertia (a float 0..=1, may change while it runs, default 0.2): How much the direction counts beside the overlap.
+ *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *
+ * Inputs:
+ *   detections (BoundingBoxList): What was found in the frame; the confidences count.
+ *   image (Image): The frame, which tells how the camera moved. All frames of a stream, or none. NULL leaves it out.
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_oc_sort(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("oc_sort", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_oc_sort(const opendr_learner *learner,
+    const opendr_bounding_box_list *detections,
+    const opendr_image *image,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "detections";
+    inputs_[0].value = (const opendr_value *)detections;
+    inputs_[1].name = "image";
+    inputs_[1].value = (const opendr_value *)image;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ObjectTracking2DDeepSortLearner: DeepSORT follows the persons that a detector finds and knows them again by how they look.
+ *
+ * Parameters:
+ *   max_dist (a float 0..=2, may change while it runs, default 0.2): Two boxes may show one object when their looks differ at most this much (1 less the cosine).
+ *   min_confidence (a float 0..=1, may change while it runs, default 0.3): Detections below this score are left out.
+ *   nms_max_overlap (a float 0..=1, may change while it runs, default 0.5): Of boxes that overlap more than this (intersection over union) the best is taken.
+ *   max_iou_distance (a float 0..=0.99, may change while it runs, default 0.7): Without looks, a track and a box may be one object when 1 less their overlap is at most this.
+ *   max_age (an int 0..=1000, may change while it runs, default 70): Frames for which an object may be out of sight.
+ *   n_init (an int 1..=100, may change while it runs, default 3): An object is told once it was seen in so many frames in a row; in the first frames of a stream at once.
+ *   nn_budget (an int 1..=200, may change while it runs, default 100): Looks that are remembered of each object.
+ *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *
+ * Inputs:
+ *   image (Image): The frame.
+ *   detections (BoundingBoxList): What was found in it.
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_deep_sort(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("deep_sort", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_deep_sort(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_bounding_box_list *detections,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "detections";
+    inputs_[1].value = (const opendr_value *)detections;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ObjectTracking2DFairMotLearner: NanoDet and ByteTrack in one call follow the persons in a video.
+ *
+ * Parameters:
+ *   threshold (a float 0.1..=1, may change while it runs, default 0.3): Detections from this score on are paired first; 0.1 more begins a track.
+ *   track_buffer (an int 0..=1000, may change while it runs, default 30): Frames for which an object may be out of sight.
+ *   min_box_area (a float 0..=1000000 px^2, may change while it runs, default 100): Smaller boxes are left out.
+ *   every_class (a bool, may change while it runs, default false): Whether all classes of the detector are followed, or persons alone.
+ *   camera_motion (a bool, may change while it runs, default true): Whether frames tell how the camera moved; a camera that stands still needs it not.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_fair_mot(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("fair_mot", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_fair_mot(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ObjectTracking3DAb3dmotLearner: AB3DMOT follows boxes in space by motion and shared volume.
+ *
+ * Parameters:
+ *   max_staleness (an int 1..=1000, may change while it runs, default 2): An object that is out of sight for so many moments is forgotten.
+ *   min_updates (an int 1..=100, may change while it runs, default 3): An object is told once it was seen so many moments in a row; in the first moments of a stream at once.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.01): A track and a box may be one object when they share at least this much of their volume (intersection over union).
+ *   per_class (a bool, may change while it runs, default true): Only boxes of the same class can be one object.
+ *
+ * Inputs:
+ *   boxes_3d (BoundingBox3DList)
+ *
+ * Outputs:
+ *   tracks_3d (TrackingAnnotation3DList)
+ */
+static inline opendr_status opendr_load_ab3dmot(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("ab3dmot", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_ab3dmot(const opendr_learner *learner,
+    const opendr_bounding_box_3d_list *boxes_3d,
+    opendr_tracking_annotation_3d_list **tracks_3d) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "boxes_3d";
+    inputs_[0].value = (const opendr_value *)boxes_3d;
+    outputs_[0].name = "tracks_3d";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (tracks_3d != NULL) *tracks_3d = (opendr_tracking_annotation_3d_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * UltraLightFaceLearner: Ultra-Light RFB finds faces in a few milliseconds; boxes only.
  *
  * Parameters:
@@ -1212,6 +1459,44 @@ static inline opendr_status opendr_infer_facial_emotion(const opendr_learner *le
     opendr_status status_;
     inputs_[0].name = "image";
     inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * ProgressiveSpatioTemporalBLNLearner: PST-BLN tells an expression by the landmarks of a face through time; it trains.
+ *
+ * Parameters:
+ *   num_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   num_point (an int 2..=1000, default none): Landmarks of a face. None: as many as the data have.
+ *   in_channels (an int 2..=3, default 2): Coordinates of a landmark: 2 (a third channel, where there is one, holds scores) or 3.
+ *   num_frames (an int 1..=10000, default 20): Frames of a clip: the last of a longer recording; in a shorter one, the face stands still before it.
+ *   blocksize (an int 1..=256, default 5): Channels of a block.
+ *   topology (a list 1..=1000, default 2,2,4,4): Blocks of each layer.
+ *
+ * Inputs:
+ *   skeleton_sequence (SkeletonSequence)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_progressive_spatio_temporal_bln(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("progressive_spatio_temporal_bln", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_progressive_spatio_temporal_bln(const opendr_learner *learner,
+    const opendr_skeleton_sequence *skeleton_sequence,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "skeleton_sequence";
+    inputs_[0].value = (const opendr_value *)skeleton_sequence;
     outputs_[0].name = "category";
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
@@ -1483,6 +1768,41 @@ static inline opendr_status opendr_infer_keypoint_gesture(const opendr_learner *
 }
 
 /*
+ * HandGestureLearner: Tells the gestures of the hands in a picture, and in a video those of a pointing finger.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.5): Gestures below this score are dropped.
+ *   max_hands (an int 1..=16, default 2): At most this many hands a picture.
+ *   track (a bool, default true): Whether hands are followed from frame to frame. Switch it off for single pictures: paths need it.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_hand_gesture(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("hand_gesture", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_hand_gesture(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * FallDetectorLearner: Tells which persons have fallen, by a rule on their poses over time.
  *
  * Parameters:
@@ -1525,10 +1845,11 @@ static inline opendr_status opendr_infer_fall_detector(const opendr_learner *lea
 }
 
 /*
- * ImageClassifierLearner: A small network that learns the classes of a user's own pictures in minutes.
+ * ImageClassifierLearner: Tells the class of a picture; learns the classes of a user's own pictures in minutes.
  *
  * Parameters:
  *   probabilities (a bool, may change while it runs, default true): Whether the answer has the score of every class.
+ *   softmax (a bool, default true): Whether the network's answer is turned into probabilities by a softmax; false for one that ends in its own.
  *
  * Inputs:
  *   image (Image)
@@ -1542,6 +1863,114 @@ static inline opendr_status opendr_load_image_classifier(const char *path, const
 }
 
 static inline opendr_status opendr_infer_image_classifier(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * DeeplabLearner: DeepLab v3 tells the class of every pixel, in 8 bits.
+ *
+ * Parameters:
+ *   full_size (a bool, may change while it runs, default true): Whether the map has the size of the picture; else it has the network's.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_deeplab(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("deeplab", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * GrConvNetLearner: GR-ConvNet finds where a gripper can take hold, in colour and depth.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.2): Least quality of a grasp.
+ *   max_grasps (an int 1..=100, may change while it runs, default 5): Most grasps of a picture.
+ *   distance (an int 1..=224 px, may change while it runs, default 20): Least distance between two grasps, pixels of the network's map of 224.
+ *
+ * Inputs:
+ *   image (Image): In colour.
+ *   depth (Image): Of the same size and place: one channel, 16 bits in millimetres or floats in metres; 0 where nothing is known.
+ *
+ * Outputs:
+ *   poses (PoseList)
+ */
+static inline opendr_status opendr_load_gr_conv_net(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("gr_conv_net", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_gr_conv_net(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_image *depth,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "depth";
+    inputs_[1].value = (const opendr_value *)depth;
+    outputs_[0].name = "poses";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * MultilinearCompressiveLearner: Tells the class of a picture by few numbers that were measured of it.
+ *
+ * Parameters:
+ *   input_shape (a list 1..=4096, default 32,32,3): Height, width and channels (3) of the pictures that are measured; others are stretched to it.
+ *   compressed_shape (a list 1..=4096, default 16,16,1): Height, width and channels of the measurement.
+ *   backbone (a str, one of small, default small): What tells the class.
+ *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_multilinear_compressive(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("multilinear_compressive", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_multilinear_compressive(const opendr_learner *learner,
     const opendr_image *image,
     opendr_category **category) {
     opendr_input inputs_[1];
@@ -1634,6 +2063,85 @@ static inline opendr_status opendr_infer_co_st_gcn(const opendr_learner *learner
     outputs_[0].name = "category";
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * AudiovisualEmotionLearner: Tells an emotion by the voice and the face; it trains.
+ *
+ * Parameters:
+ *   num_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   seq_length (an int 2..=256, default 15): Frames of the faces, evenly spaced over the video.
+ *   fusion (a str, one of ia, it, lt, default ia): How the branches learn of each other.
+ *   sample_rate (an int 8000..=48000 Hz, default 22050): Samples of the sound a second.
+ *   seconds (a float 0.2..=60 s, default 3.6): Sound that is looked at, from its begin; what is shorter is filled up.
+ *
+ * Inputs:
+ *   audio (Audio): The voice, at the learner's sample rate.
+ *   video (Video): The face, cut out, `[3, frames, height, width]`. NULL leaves it out.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_audiovisual_emotion(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("audiovisual_emotion", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_audiovisual_emotion(const opendr_learner *learner,
+    const opendr_audio *audio,
+    const opendr_video *video,
+    opendr_category **category) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
+    inputs_[1].name = "video";
+    inputs_[1].value = (const opendr_value *)video;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * RgbdHandGestureLearner: Tells a hand's gesture by its colour and its distance; it trains.
+ *
+ * Parameters:
+ *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   architecture (a str, one of small, default small): The network.
+ *
+ * Inputs:
+ *   image (Image): The picture.
+ *   depth (Image): Distances of the same view, one channel: floats in metres, 16 bits in millimetres, 8 bits in centimetres. What is not above 0 is not known.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_rgbd_hand_gesture(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("rgbd_hand_gesture", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_rgbd_hand_gesture(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_image *depth,
+    opendr_category **category) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "depth";
+    inputs_[1].value = (const opendr_value *)depth;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
     if (category != NULL) *category = (opendr_category *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;

@@ -31,7 +31,6 @@ class UltraLightFaceLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     iou_threshold: float
     max_detections: int
     suppression: Literal['hard', 'soft', 'fast', 'cluster']
@@ -66,7 +65,6 @@ class YunetLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     iou_threshold: float
     max_detections: int
     size: int

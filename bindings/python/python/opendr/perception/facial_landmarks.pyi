@@ -31,7 +31,6 @@ class FaceMeshLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     face_threshold: float
     max_faces: int
     track: bool

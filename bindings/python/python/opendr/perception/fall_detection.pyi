@@ -41,7 +41,6 @@ class FallDetectorLearner(NativeLearner):
     """
 
     hold: float
-    threshold: float
     keypoint_threshold: float
     base_height: int
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, hold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., pose_estimator: Any = ...) -> None: ...

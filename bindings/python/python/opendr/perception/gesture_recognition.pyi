@@ -5,9 +5,10 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Literal, NamedTuple, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
+from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
 from opendr._native_learner import NativeLearner, PathLike
-from opendr.engine.data import Vector
-from opendr.engine.target import Category
+from opendr.engine.data import Image, Vector
+from opendr.engine.target import BoundingBoxList, Category
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 
@@ -73,3 +74,31 @@ class KeypointGestureLearner(NativeLearner):
     @overload
     def infer(self, vector: Iterator[Union[Vector, ArrayLike]]) -> Iterator[Category]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+
+class HandGestureLearner(NativeLearner):
+    """Tells the gestures of the hands in a picture, and in a video those of a pointing finger.
+
+    Task: gesture_recognition. ``infer`` takes:
+
+        image: Image.
+
+    and gives: BoundingBoxList.
+
+    Args:
+        threshold: Gestures below this score are dropped. (default 0.5; 0 to 1; may change while running, also for
+            one call of infer)
+        max_hands: At most this many hands a picture. (default 2; 1 to 16)
+        track: Whether hands are followed from frame to frame. Switch it off for single pictures: paths need it.
+            (default True)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    max_hands: int
+    track: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, max_hands: int = ..., track: bool = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ...) -> Iterator[BoundingBoxList]: ...

@@ -37,7 +37,6 @@ class HandPoseEstimationLearner(NativeLearner):
     """
 
     max_hands: int
-    threshold: float
     palm_threshold: float
     iou_threshold: float
     track: bool

@@ -12,7 +12,7 @@ from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 
 class ImageClassifierLearner(NativeLearner):
-    """A small network that learns the classes of a user's own pictures in minutes.
+    """Tells the class of a picture; learns the classes of a user's own pictures in minutes.
 
     Task: image_classification. ``infer`` takes:
 
@@ -23,6 +23,8 @@ class ImageClassifierLearner(NativeLearner):
     Args:
         probabilities: Whether the answer has the score of every class. (default True; may change while running,
             also for one call of infer)
+        softmax: Whether the network's answer is turned into probabilities by a softmax; false for one that ends
+            in its own. (default True)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Parameters of ``fit``, for one call or, given here, for all of them:
@@ -70,7 +72,8 @@ class ImageClassifierLearner(NativeLearner):
     """
 
     probabilities: bool
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, side: int = ..., width: int = ..., dropout: float = ..., crop: float = ..., flip: float = ..., label_smoothing: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., probabilities: bool = ...) -> None: ...
+    softmax: bool
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, side: int = ..., width: int = ..., dropout: float = ..., crop: float = ..., flip: float = ..., label_smoothing: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., probabilities: bool = ..., softmax: bool = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, probabilities: bool = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload

@@ -49,7 +49,6 @@ class CenterNetDetectorLearner(NativeLearner):
         flip_validation: no effect: it belongs to training, which this learner does not have.
     """
 
-    threshold: float
     iou_threshold: float
     max_detections: int
     suppression: Literal['hard', 'soft', 'fast', 'cluster']
@@ -129,7 +128,6 @@ class NanodetLearner(NativeLearner):
         lr_schedule_T_max: no effect: the learning rate falls until the last epoch.
     """
 
-    threshold: float
     iou_threshold: float
     max_detections: int
     suppression: Literal['hard', 'soft', 'fast', 'cluster']
@@ -224,7 +222,6 @@ class SingleShotDetectorLearner(NativeLearner):
         checkpoint_load_iter: no effect: fit goes on from the last checkpoint of its output folder.
     """
 
-    threshold: float
     iou_threshold: float
     max_candidates: int
     max_detections: int

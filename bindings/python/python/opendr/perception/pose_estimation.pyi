@@ -32,7 +32,6 @@ class MovenetLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     keypoint_threshold: float
     size: int
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., size: int = ...) -> None: ...
@@ -66,7 +65,6 @@ class PosenetLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     keypoint_threshold: float
     peak_threshold: float
     nms_radius: float
@@ -168,7 +166,6 @@ class LightweightOpenPoseLearner(NativeLearner):
         half_precision: no effect: the runtime chooses the precision.
     """
 
-    threshold: float
     keypoint_threshold: float
     base_height: int
     upsample_ratio: int
@@ -243,7 +240,6 @@ class HighResolutionPoseEstimationLearner(NativeLearner):
     heatmap_threshold: float
     detail_threshold: float
     max_regions: int
-    threshold: float
     keypoint_threshold: float
     upsample_ratio: int
     track: bool
@@ -277,7 +273,6 @@ class BlazePoseLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     keypoint_threshold: float
     looks: int
     track: bool

@@ -26,7 +26,6 @@ class SileroVadLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
     """
 
-    threshold: float
     min_silence_duration_ms: int
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, min_silence_duration_ms: int = ...) -> None: ...
     @overload
