@@ -169,7 +169,9 @@ def learner(entry):
         text += f"class {entry['class_name']}Outputs(NamedTuple):\n{fields}\n"
     doc = textwrap.indent(document(entry).rstrip(), "    ")
     text += f'class {entry["class_name"]}({parent(entry).__name__}):\n    """{doc.lstrip()}\n    """\n\n'
-    text += "".join(f"    {field['name']}: {param_type(field)}\n" for field in entry["params"])
+    # What every learner has is of the base's type: a narrower one would not do for what is written there.
+    own = [field for field in entry["params"] if field["name"] not in BaseLearner.__signature__.parameters]
+    text += "".join(f"    {field['name']}: {param_type(field)}\n" for field in own)
     return text + call("__init__", arguments(entry), "None") + infer(entry) + fit(entry)
 
 

@@ -184,7 +184,6 @@ class CoSTGCNLearner(NativeLearner):
     num_person: int
     in_channels: int
     graph_type: Literal['ntu', 'kinetics', 'coco', 'jhmdb']
-    backbone: Literal['costgcn']
     sequence_len: int
     channels: list[Any]
     temporal_kernel: int
