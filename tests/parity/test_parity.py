@@ -3,7 +3,10 @@
 import json
 import os
 import shlex
+import shutil
+import struct
 import subprocess
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +19,7 @@ except ImportError:
 
 import opendr
 import opendr.engine.target
+from opendr import _opendr
 from opendr._native_learner import NativeLearner
 
 CLIPS = "data/speech_commands_v0.02_test"
@@ -28,7 +32,9 @@ INPUTS = {
     "SkeletonSequence": ["wave:32x15x2:0.05", "wave:32x15x2:0.7"],
 }
 #: What answers say of how sure they are, of which one case at least must have something.
-SURE = ("confidence", "no_speech_prob")
+SURE = ("confidence", "no_speech_prob", "labels")
+#: Others have to be trained first.
+PRETRAINED = {name for name in opendr.learners() if name == "counter" or _opendr.models(name)}
 
 
 def cases():
@@ -37,19 +43,37 @@ def cases():
     tables = {file.stem: tomllib.loads(file.read_text()) for file in files}
     for name, learner in opendr.learners().items():
         ports = [port["type"] for port in learner._entry["ports"]]
-        if len(ports) == 1 and ports[0] in INPUTS:
+        if len(ports) == 1 and ports[0] in INPUTS and name in PRETRAINED:
             tables.setdefault(name, {"learner": name, "inputs": INPUTS[ports[0]]})
     return tables
 
 
+def depth(size, folder):
+    """A slope of `WIDTHxHEIGHT` pixels as a grey PNG of 16 bits, millimetres."""
+    width, height = map(int, size.split("x"))
+    slope = 500 + np.add.outer(np.arange(height) // 4, np.arange(width) // 3)
+    rows = np.hstack([np.zeros((height, 1), np.uint8), slope.astype(">u2").view(np.uint8)])
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 16, 0, 0, 0, 0)
+    file = folder / f"depth-{size}.png"
+    chunks = chunk(b"IHDR", header), chunk(b"IDAT", zlib.compress(rows.tobytes())), chunk(b"IEND", b"")
+    file.write_bytes(b"\x89PNG\r\n\x1a\n" + b"".join(chunks))
+    return str(file)
+
+
 def file_of(name, test_data, folder):
     """The file `name` of the test data; `FILE:N` is the series in line N, its class left out, a number a line;
-    `wave:SIZES:STEP` are sines; a table is a target."""
+    `wave:SIZES:STEP` are sines, `depth:SIZE` is a slope; a table is a target."""
     if isinstance(name, dict):
         file = folder / f"target-{len(list(folder.iterdir()))}.json"
         file.write_text(json.dumps(name))
         return str(file)
     name, _, line = name.partition(":")
+    if name == "depth":
+        return depth(line, folder)
     if name == "wave":
         sizes, _, step = line.partition(":")
         sizes = [int(size) for size in sizes.split("x")]
@@ -115,9 +139,7 @@ class Case:
             call = {self.port: given}
             for port, targets in self.targets.items():
                 if number < len(targets):
-                    file = self.folder / f"{port}-{number}.json"
-                    file.write_text(json.dumps(targets[number]))
-                    call[port] = str(file)
+                    call[port] = file_of(targets[number], None, self.folder)
             yield call
 
     def words(self):
@@ -151,9 +173,14 @@ def by_command(case):
     if case.stateful:
         command += ["--sequence"]
     for port, targets in case.targets.items():
-        file = case.folder / f"{port}.jsonl"
-        file.write_text("".join(json.dumps(target) + "\n" for target in targets))
-        command += [f"--{port}", str(file)]
+        given = case.folder / (f"{port}.jsonl" if isinstance(targets[0], dict) else port)
+        if isinstance(targets[0], dict):
+            given.write_text("".join(json.dumps(target) + "\n" for target in targets))
+        else:
+            given.mkdir()
+            for number, call in enumerate(case.calls()):
+                shutil.copy(call[port], given / f"{number}.png")
+        command += [f"--{port}", str(given)]
     return [outputs_of(line) for line in printed(command)]
 
 
@@ -200,4 +227,5 @@ def test_every_surface_says_the_same(name, test_data, tmp_path):
 def test_there_is_a_case_for_every_learner():
     there = {table["learner"].split("/")[0] for table in CASES.values()}
     # Other tests of the process register learners written in Python.
-    assert there == {name for name, learner in opendr.learners().items() if issubclass(learner, NativeLearner)}
+    native = {name for name, learner in opendr.learners().items() if issubclass(learner, NativeLearner)}
+    assert there == native & PRETRAINED

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use opendr::datasets::{open_value, value_files};
 use opendr::learner::Port;
-use opendr::{Error, Result, ResultExt, Value, ValueType, vision};
+use opendr::{Error, Result, ResultExt, Value, ValueType};
 use serde_json::{Map, Value as Json};
 
 /// Larger files are no list of targets.
@@ -23,7 +23,7 @@ pub struct PortFile {
 enum Values {
     Same(Box<Value>),
     PerFrame(Vec<Option<Value>>),
-    Files { port: Port, paths: Vec<PathBuf> },
+    Files { kind: ValueType, paths: Vec<PathBuf> },
 }
 
 impl PortFile {
@@ -40,8 +40,8 @@ impl PortFile {
     fn from_file(port: &Port, path: &Path) -> Result<Self> {
         if !port.value_type.is_target() {
             let values = match path.is_dir() {
-                true => Values::Files { port: *port, paths: value_files(port.value_type, path)? },
-                false => Values::Same(Box::new(open_data(port, path)?)),
+                true => Values::Files { kind: port.value_type, paths: value_files(port.value_type, path)? },
+                false => Values::Same(Box::new(open_value(port.value_type, path)?)),
             };
             return Ok(Self { name: port.name, values });
         }
@@ -82,19 +82,10 @@ impl PortFile {
                 let value = values.get(at).and_then(Option::as_ref);
                 value.cloned().ok_or_else(|| none("lines", values.len()))
             }
-            Values::Files { port, paths } => {
-                let path = paths.get(at).ok_or_else(|| none("files", paths.len()))?;
-                open_data(port, path)
+            Values::Files { kind, paths } => {
+                open_value(*kind, paths.get(at).ok_or_else(|| none("files", paths.len()))?)
             }
         }
-    }
-}
-
-/// Data out of a file; depth keeps all its bits.
-fn open_data(port: &Port, path: &Path) -> Result<Value> {
-    match (port.value_type, port.name) {
-        (ValueType::Image, "depth") => vision::Decoder::default().open_depth(path).map(Value::Image),
-        (kind, _) => open_value(kind, path),
     }
 }
 

@@ -1,9 +1,12 @@
 //! One value in one file of its own: what surfaces hand to a learner.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use opendr_engine::data::{Observation, SkeletonSequence, Timeseries, Vector};
 use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
+use opendr_vision::Decoder;
 
 use crate::folder::{has_extension, names_in, read_bytes};
 use crate::{array_from_npy, open_velodyne, open_wav};
@@ -26,7 +29,7 @@ pub const fn value_extensions(kind: ValueType) -> &'static [&'static str] {
 
 /// Reads the file at `path` as a value of the type `kind`:
 ///
-/// * `Image`: JPEG, PNG, BMP, WebP;
+/// * `Image`: JPEG, PNG, BMP, WebP; grey PNG of 16 bits keeps them all, as depth needs;
 /// * `Audio`: WAVE;
 /// * `Timeseries`: a table of numbers, a line a moment and a column a feature, with commas, semicolons, tabs or blanks
 ///   between them and perhaps a line of names above, or a `.npy` of one or two axes;
@@ -42,6 +45,7 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
     let path = path.as_ref();
     let opening = || format!("opening {}", path.display());
     match kind {
+        ValueType::Image if is_deep_grey(path) => Decoder::default().open_depth(path).map(Value::Image),
         ValueType::Image => opendr_vision::open(path).map(Value::Image),
         ValueType::Audio => open_wav(path).map(Value::Audio),
         ValueType::PointCloud => open_velodyne(path).map(Value::PointCloud),
@@ -93,6 +97,13 @@ pub fn value_files(kind: ValueType, path: &Path) -> Result<Vec<PathBuf>> {
         return Err(Error::not_found(format!("no file .{endings} in the folder {}", path.display())));
     }
     Ok(names.iter().map(|name| path.join(name)).collect())
+}
+
+/// Whether the file is a grey PNG of 16 bits; where it cannot be read, whoever opens it says so.
+fn is_deep_grey(path: &Path) -> bool {
+    let mut header = [0; 26];
+    let read = File::open(path).and_then(|mut file| file.read_exact(&mut header));
+    read.is_ok() && header.starts_with(b"\x89PNG") && header[24..] == [16, 0]
 }
 
 /// All numbers of a table, line by line.
