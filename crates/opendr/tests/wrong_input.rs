@@ -10,7 +10,7 @@ use opendr::data::{
 };
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::params::ParamMap;
-use opendr::target::BoundingBoxList;
+use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList};
 use opendr::{Device, ErrorKind, Result, Value, ValueType};
 
 #[test]
@@ -133,7 +133,24 @@ fn wrong(kind: ValueType) -> Vec<(&'static str, Value)> {
         ValueType::Video => {
             vec![("one black pixel", Video::new(vec![0.0; 3], [3, 1, 1, 1]).unwrap().into())]
         }
-        ValueType::BoundingBoxList => vec![("nothing", BoundingBoxList::default().into())],
+        ValueType::BoundingBoxList => {
+            let odd = |left, width| BoundingBox::new(0, left, 0.0, width, 10.0, f32::NAN);
+            vec![
+                ("nothing", BoundingBoxList::default().into()),
+                (
+                    "odd boxes",
+                    BoundingBoxList::from(vec![odd(f32::NAN, 5.0), odd(0.0, -5.0), odd(1e38, f32::INFINITY)])
+                        .into(),
+                ),
+            ]
+        }
+        ValueType::BoundingBox3DList => {
+            let odd = BoundingBox3D { location: [f32::NAN, 0.0, f32::INFINITY], ..BoundingBox3D::default() };
+            vec![
+                ("nothing", BoundingBox3DList::default().into()),
+                ("an odd box", BoundingBox3DList::from(vec![odd]).into()),
+            ]
+        }
         other => panic!("no wrong input of the type {}; say what may come", other.name()),
     }
 }

@@ -33,8 +33,8 @@ pub fn node_grammar(ros: Ros, entry: Option<&'static Entry>) -> Command {
                 .help("Ask publishers of pictures and clouds to send what was lost again"),
         )
         .arg(
-            Arg::new("depth")
-                .long("depth")
+            Arg::new("qos-depth")
+                .long("qos-depth")
                 .value_parser(value_parser!(u16).range(1..))
                 .value_name("N")
                 .help("Messages that are kept for a slow peer"),
@@ -133,7 +133,7 @@ pub fn options(entry: &Entry, matches: &ArgMatches, params: NodeParams) -> Resul
                 topic.topic.clone_from(text);
             }
             topic.message_type = message.unwrap_or(topic.message_type);
-            if let Some(depth) = matches.get_one::<u16>("depth") {
+            if let Some(depth) = matches.get_one::<u16>("qos-depth") {
                 topic.qos.depth = usize::from(*depth);
             }
             topic.qos.reliable |= matches.get_flag("reliable");
@@ -169,7 +169,7 @@ mod tests {
             "sensor_msgs/msg/CompressedImage",
             "--out-boxes",
             "found",
-            "--depth",
+            "--qos-depth",
             "3",
         ];
         let matches = node_grammar(Ros::Two, Some(entry)).try_get_matches_from(words).unwrap();
