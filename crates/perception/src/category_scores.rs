@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result};
 /// Fills `category` with the class of the highest of `logits`, its probability and those of all classes.
 ///
 /// # Errors
-/// `Format` when there are no logits, or not as many as `classes` names.
+/// `Format` when there are no logits, or not as many as `classes` names; `InvalidInput` when they are no numbers.
 pub(crate) fn category_from_logits(category: &mut Category, logits: &[f32], classes: &Classes) -> Result<()> {
     let highest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     category.probabilities.clear();
@@ -56,6 +56,11 @@ fn highest_wins(category: &mut Category, classes: &Classes) -> Result<()> {
         return Err(Error::format(format!(
             "the model gives {scores} scores for {names} classes; export it with the classes it was trained on"
         )));
+    }
+    if !category.probabilities.iter().all(|probability| probability.is_finite()) {
+        return Err(Error::invalid_input(
+            "the network's scores are no numbers: the input is far out of the range that it was made for",
+        ));
     }
     let highest = category.probabilities.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let class =
