@@ -16,6 +16,8 @@ pub enum Sound<'a> {
 }
 
 const PORT: &str = ValueType::Audio.port();
+/// Samples beyond are no sound of any unit, and their spectra would be infinite.
+const LOUDEST: f32 = 1e9;
 
 impl<'a> Sound<'a> {
     /// Samples a second: those of the sound, or `of_series` where it is a series.
@@ -29,7 +31,7 @@ impl<'a> Sound<'a> {
     /// The samples of one channel at `sample_rate`.
     ///
     /// # Errors
-    /// `InvalidInput` for another rate, a series of several features, or a sample that is no number.
+    /// `InvalidInput` for another rate, a series of several features, or a sample that is no number or beyond 10^9, of which spectra would overflow.
     pub fn samples(self, sample_rate: u32) -> Result<Cow<'a, [f32]>> {
         let samples = match self {
             Self::Audio(audio) if audio.sample_rate() != sample_rate => {
@@ -47,7 +49,7 @@ impl<'a> Sound<'a> {
                 )));
             }
         };
-        match samples.iter().position(|sample| !sample.is_finite()) {
+        match samples.iter().position(|sample| !(-LOUDEST..=LOUDEST).contains(sample)) {
             Some(at) => Err(Error::invalid_input(format!(
                 "sample {at} of the sound is {}; give numbers within -1 and 1",
                 samples[at]
