@@ -3,11 +3,13 @@
 mod bayer;
 mod camera;
 pub mod codec;
+pub mod components;
 pub mod draw;
 pub mod preprocess;
 mod resize;
 mod similarity;
 pub mod source;
+pub mod stereo;
 mod video;
 mod workers;
 mod yuv422;

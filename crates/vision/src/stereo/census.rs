@@ -1,0 +1,61 @@
+//! What a pixel's surroundings look like, in bits.
+//!
+//! R. Zabih, J. Woodfill, "Non-parametric local transforms for computing visual correspondence", ECCV 1994: a bit for each
+//! neighbour tells whether it is darker. Brightness of the cameras may differ.
+
+/// How far the window reaches to each side, pixels: 9 x 7.
+const REACH: [usize; 2] = [4, 3];
+/// Bits of a window without its middle.
+pub(super) const BITS: u8 = 62;
+/// Bytes of which these bits are.
+const BYTES: usize = 8;
+
+/// The census of a picture; memory is used again.
+#[derive(Debug, Default)]
+pub(super) struct Census {
+    /// The picture with its edges repeated around it.
+    padded: Vec<u8>,
+    planes: Vec<u8>,
+    /// A word a pixel, row by row.
+    pub words: Vec<u64>,
+}
+
+impl Census {
+    /// Takes a picture of grey levels, 0..=255. With `is_mirrored`, each row of words is written backwards.
+    pub fn fill(&mut self, grey: &[f32], [width, height]: [usize; 2], is_mirrored: bool) {
+        let Self { padded, planes, words } = self;
+        let [across, down] = REACH;
+        let stride = width + 2 * across;
+        padded.clear();
+        for y in 0..height + 2 * down {
+            let y = y.saturating_sub(down).min(height - 1);
+            let row = &grey[y * width..][..width];
+            let level = |x: usize| row[x].round() as u8;
+            padded.extend((0..across).map(|_| level(0)));
+            padded.extend(row.iter().map(|level| level.round() as u8));
+            padded.extend((0..across).map(|_| level(width - 1)));
+        }
+        words.clear();
+        words.resize(width * height, 0);
+        planes.resize(BYTES * width, 0);
+        for (y, row) in words.chunks_exact_mut(width).enumerate() {
+            planes.fill(0);
+            let middles = &padded[(y + down) * stride + across..][..width];
+            let places = (0..=2 * down).flat_map(|dy| (0..=2 * across).map(move |dx| [dx, dy]));
+            for (number, [dx, dy]) in places.filter(|place| *place != REACH).enumerate() {
+                let bit = 1_u8 << (number % 8);
+                let neighbours = &padded[(y + dy) * stride + dx..][..width];
+                let plane = &mut planes[number / 8 * width..][..width];
+                for ((bits, neighbour), middle) in plane.iter_mut().zip(neighbours).zip(middles) {
+                    *bits |= if neighbour < middle { bit } else { 0 };
+                }
+            }
+            for (x, word) in row.iter_mut().enumerate() {
+                *word = u64::from_le_bytes(std::array::from_fn(|byte| planes[byte * width + x]));
+            }
+            if is_mirrored {
+                row.reverse();
+            }
+        }
+    }
+}

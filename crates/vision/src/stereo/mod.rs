@@ -1,0 +1,249 @@
+//! Disparities of a stereo pair by semi-global matching.
+//!
+//! H. Hirschmüller, "Stereo processing by semiglobal matching and mutual information", IEEE PAMI 2008, over census costs (9 x 7,
+//! Zabih and Woodfill 1994). Eight paths in two passes: one goes down the picture, the other up, each on a thread. They meet in
+//! the middle, and each decides the rows that the other has already seen, so that one table of sums is enough and threads
+//! change no bit. Costs and paths are bytes, sums 16 bits, 2 bytes for each pixel and disparity.
+
+mod camera;
+mod census;
+mod paths;
+mod repair;
+mod winner;
+
+use std::sync::{Mutex, PoisonError};
+
+use opendr_engine::data::Image;
+use opendr_engine::{Error, Result};
+
+use crate::components::Components;
+use crate::preprocess::{ChannelOrder, Preprocess};
+use crate::workers;
+
+pub use camera::StereoCamera;
+
+use census::Census;
+use paths::{MOST_PENALTY, Pass, Penalties};
+use winner::{Doubts, UNKNOWN, Winner};
+
+/// How a pair is matched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StereoOptions {
+    /// The least disparity that is looked for, pixels.
+    pub min_disparity: usize,
+    /// How many disparities are looked for; rounded up to a multiple of 16.
+    pub disparities: usize,
+    /// What a step of one pixel in disparity costs, in differing bits of 62.
+    pub small_penalty: u8,
+    /// What a larger step costs; at least the small one, at most 193.
+    pub large_penalty: u8,
+    /// By how many percent the second best disparity must be worse, 0..=99.
+    pub uniqueness: u8,
+    /// How far the right picture's disparity may be from the left one's, pixels; `None` does not ask.
+    pub left_right: Option<u16>,
+    /// Islands of at most as many pixels are forgotten; 0 keeps all.
+    pub speckle_size: u32,
+    /// Neighbours belong to one island where they differ by at most as many pixels.
+    pub speckle_range: f32,
+    /// Whether what is not known is filled from the row's background.
+    pub fill: bool,
+}
+
+impl Default for StereoOptions {
+    fn default() -> Self {
+        Self {
+            min_disparity: 0,
+            disparities: 64,
+            small_penalty: 8,
+            large_penalty: 40,
+            uniqueness: 5,
+            left_right: Some(1),
+            speckle_size: 100,
+            speckle_range: 1.0,
+            fill: false,
+        }
+    }
+}
+
+/// Most sums of one pair: 1 GiB of memory.
+const MOST_SUMS: usize = 1 << 29;
+
+/// Matches pairs; memory is used again. The answer depends on the pair alone.
+#[derive(Debug, Default)]
+pub struct StereoMatcher {
+    preprocess: Option<Preprocess>,
+    grey: Vec<f32>,
+    left: Census,
+    right: Census,
+    sums: Vec<u16>,
+    down: Pass,
+    up: Pass,
+    winners: [Winner; 2],
+    components: Components,
+}
+
+impl StereoMatcher {
+    /// Writes the disparity of each pixel of `left`, row by row: how many pixels further left it lies in `right`, with parts of
+    /// pixels; 0 where nothing is known. The pair must be rectified: rows are the same in both.
+    ///
+    /// # Errors
+    /// `InvalidInput` when the pictures differ in size, when `disparities` has another, and when picture and disparities are
+    /// together too large.
+    pub fn run_into(
+        &mut self,
+        left: &Image,
+        right: &Image,
+        options: &StereoOptions,
+        disparities: &mut [f32],
+    ) -> Result<()> {
+        let size @ [width, height] = [left.width(), left.height()];
+        if [right.width(), right.height()] != size {
+            return Err(Error::invalid_input(format!(
+                "a left picture of {width}x{height} pixels and a right one of {}x{}; give a rectified pair of one size",
+                right.width(),
+                right.height()
+            )));
+        }
+        let count = options.disparities.clamp(1, 1 << 12).next_multiple_of(16);
+        let total = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(count));
+        let Some(total) = total.filter(|total| *total <= MOST_SUMS && disparities.len() * count == *total)
+        else {
+            return Err(Error::invalid_input(format!(
+                "{count} disparities of {width}x{height} pixels are too many, or the map has another size; scale the \
+                 pair down or look for fewer"
+            )));
+        };
+        self.read(left, size, false)?;
+        self.read(right, size, true)?;
+        self.sums.resize(total, 0);
+        self.down.begin(width, count);
+        self.up.begin(width, count);
+        let large = options.large_penalty.min(MOST_PENALTY);
+        let plan = Plan {
+            width,
+            count,
+            from: options.min_disparity,
+            penalties: Penalties { small: options.small_penalty.min(large), large },
+            doubts: Doubts { uniqueness: options.uniqueness.into(), disagreement: options.left_right },
+        };
+        let middle = height / 2;
+        let words = [&self.left.words[..], &self.right.words].map(|words| words.split_at(middle * width));
+        let [(left_upper, left_lower), (right_upper, right_lower)] = words;
+        let (upper, lower) = self.sums.split_at_mut(middle * width * count);
+        let (found_upper, found_lower) = disparities.split_at_mut(middle * width);
+        let [first, second] = &mut self.winners;
+        let [upper_words, lower_words] = [[left_upper, right_upper], [left_lower, right_lower]];
+        both(
+            Job {
+                plan,
+                pass: &mut self.down,
+                is_backward: false,
+                words: upper_words,
+                sums: upper,
+                found: None,
+            },
+            Job { plan, pass: &mut self.up, is_backward: true, words: lower_words, sums: lower, found: None },
+        );
+        let (found_lower, found_upper) = (Some((first, found_lower)), Some((second, found_upper)));
+        both(
+            Job {
+                plan,
+                pass: &mut self.down,
+                is_backward: false,
+                words: lower_words,
+                sums: lower,
+                found: found_lower,
+            },
+            Job {
+                plan,
+                pass: &mut self.up,
+                is_backward: true,
+                words: upper_words,
+                sums: upper,
+                found: found_upper,
+            },
+        );
+        if options.speckle_size > 0 {
+            let StereoOptions { speckle_size, speckle_range, .. } = *options;
+            repair::remove_speckles(disparities, size, speckle_size, speckle_range, &mut self.components);
+        }
+        if options.fill {
+            repair::fill_holes(disparities, width);
+        }
+        disparities.iter_mut().filter(|found| **found == UNKNOWN).for_each(|found| *found = 0.0);
+        Ok(())
+    }
+
+    fn read(&mut self, image: &Image, size @ [width, height]: [usize; 2], is_right: bool) -> Result<()> {
+        if self.preprocess.as_ref().is_none_or(|known| known.size() != size) {
+            self.preprocess = Some(Preprocess::new(width, height).order(ChannelOrder::Grey));
+        }
+        let Some(preprocess) = &self.preprocess else { return Ok(()) };
+        self.grey.resize(width * height, 0.0);
+        preprocess.run_into(image.view(), &mut self.grey)?;
+        let census = if is_right { &mut self.right } else { &mut self.left };
+        census.fill(&self.grey, size, is_right);
+        Ok(())
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Plan {
+    width: usize,
+    count: usize,
+    from: usize,
+    penalties: Penalties,
+    doubts: Doubts,
+}
+
+/// Rows that a pass goes through, and where the disparities go when the other pass has been there.
+struct Job<'a> {
+    plan: Plan,
+    pass: &'a mut Pass,
+    is_backward: bool,
+    /// Of the left and of the right picture.
+    words: [&'a [u64]; 2],
+    sums: &'a mut [u16],
+    found: Option<(&'a mut Winner, &'a mut [f32])>,
+}
+
+fn both(first: Job<'_>, second: Job<'_>) {
+    let jobs = [first, second].map(Mutex::new);
+    workers::run(2, 2, &|part| {
+        let mut job = jobs[part].lock().unwrap_or_else(PoisonError::into_inner);
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") {
+            // SAFETY: the machine has the instructions.
+            return unsafe { go_avx2(&mut job) };
+        }
+        go(&mut job);
+    });
+}
+
+/// The same code with wider registers.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,popcnt")]
+fn go_avx2(job: &mut Job<'_>) {
+    go(job);
+}
+
+#[inline(always)]
+fn go(job: &mut Job<'_>) {
+    let Plan { width, count, from, penalties, doubts } = job.plan;
+    let [left, right] = job.words;
+    let height = left.len() / width;
+    for step in 0..height {
+        let y = if job.is_backward { height - 1 - step } else { step };
+        let row = y * width..(y + 1) * width;
+        let sums = &mut job.sums[y * width * count..][..width * count];
+        let (left, right) = (&left[row.clone()], &right[row.clone()]);
+        let is_first = job.found.is_none();
+        job.pass.row(left, right, sums, from, penalties, [job.is_backward, is_first]);
+        if let Some((winner, found)) = &mut job.found {
+            winner.row(sums, count, from, doubts, &mut found[row]);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,146 @@
+//! Costs of disparities, smoothed along four of the eight paths through a picture.
+
+use super::census::BITS;
+
+/// What a cost can be at most is below 255, so that bytes hold it: bits of a census and the larger penalty.
+pub(super) const MOST_PENALTY: u8 = u8::MAX - BITS;
+
+/// Four paths: along the row, and from the three pixels of the row before. One pass goes down the picture and to the right,
+/// the other up and to the left; both count pixels in the order in which they come.
+#[derive(Debug, Default)]
+pub(super) struct Pass {
+    width: usize,
+    disparities: usize,
+    costs: Vec<u8>,
+    /// Sums of the paths in the row before and in this one: path by path, pixel by pixel, with a byte beside both ends that is
+    /// never the least.
+    before: Vec<u8>,
+    now: Vec<u8>,
+    /// The least of each.
+    least_before: Vec<u8>,
+    least_now: Vec<u8>,
+    along: [Vec<u8>; 2],
+    nothing: Vec<u8>,
+    is_first_row: bool,
+}
+
+/// What a change of the disparity costs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Penalties {
+    /// By one pixel.
+    pub small: u8,
+    /// By more.
+    pub large: u8,
+}
+
+impl Pass {
+    /// Begins at an edge of the picture.
+    pub fn begin(&mut self, width: usize, disparities: usize) {
+        (self.width, self.disparities, self.is_first_row) = (width, disparities, true);
+        let stride = disparities + 2;
+        self.costs.resize(disparities, 0);
+        for (sums, count) in [(&mut self.before, 3 * width), (&mut self.now, 3 * width)]
+            .into_iter()
+            .chain(self.along.iter_mut().map(|sums| (sums, 1)))
+        {
+            sums.clear();
+            sums.resize(count * stride, u8::MAX);
+        }
+        for leasts in [&mut self.least_before, &mut self.least_now] {
+            leasts.clear();
+            leasts.resize(3 * width, 0);
+        }
+        self.nothing.clear();
+        self.nothing.resize(stride, 0);
+    }
+
+    /// Adds the paths' sums of the next row to `sums`, `[width, disparities]`. `left` are the census words of the row in the
+    /// left picture, `right` those in the right one from the last to the first; `from` is the first disparity. Where this pass
+    /// is the first that comes by, what `sums` held before does not count.
+    #[inline(always)]
+    pub fn row(
+        &mut self,
+        left: &[u64],
+        right: &[u64],
+        sums: &mut [u16],
+        from: usize,
+        penalties: Penalties,
+        [is_backward, is_first]: [bool; 2],
+    ) {
+        let Self { width, disparities, costs, before, now, least_before, least_now, along, nothing, .. } =
+            self;
+        let (width, disparities, stride) = (*width, *disparities, *disparities + 2);
+        let [along_before, along_now] = along;
+        let mut least_along = 0;
+        for step in 0..width {
+            let x = if is_backward { width - 1 - step } else { step };
+            fill_costs(costs, left[x], right, width - 1 - x + from);
+            let sums = &mut sums[x * disparities..][..disparities];
+            let after = &mut along_now[..stride];
+            let history = if step == 0 { &nothing[..] } else { &along_before[..stride] };
+            least_along = match is_first {
+                true => advance::<true>(costs, history, least_along, penalties, after, sums),
+                false => advance::<false>(costs, history, least_along, penalties, after, sums),
+            };
+            std::mem::swap(along_before, along_now);
+            for path in 0..3 {
+                // From the pixel before, the same, the one after.
+                let other = (step + path).wrapping_sub(1);
+                let is_known = !self.is_first_row && other < width;
+                let (history, least) = match is_known {
+                    true => {
+                        let at = path * width + other;
+                        (&before[at * stride..][..stride], least_before[at])
+                    }
+                    false => (&nothing[..], 0),
+                };
+                let at = path * width + step;
+                let after = &mut now[at * stride..][..stride];
+                least_now[at] = advance::<false>(costs, history, least, penalties, after, sums);
+            }
+        }
+        std::mem::swap(before, now);
+        std::mem::swap(least_before, least_now);
+        self.is_first_row = false;
+    }
+}
+
+/// How many bits of the census differ at each disparity; half of them where the other picture has no pixel.
+#[inline(always)]
+fn fill_costs(costs: &mut [u8], word: u64, right: &[u64], first: usize) {
+    let there = right.get(first..).unwrap_or_default();
+    let count = there.len().min(costs.len());
+    let (inside, outside) = costs.split_at_mut(count);
+    for (cost, other) in inside.iter_mut().zip(there) {
+        *cost = (word ^ other).count_ones() as u8;
+    }
+    outside.fill(BITS / 2);
+}
+
+/// One step of a path (Hirschmüller's equation 13): adds to `sums`, or writes them, and returns the least.
+#[inline(always)]
+fn advance<const IS_FIRST: bool>(
+    costs: &[u8],
+    before: &[u8],
+    least: u8,
+    penalties: Penalties,
+    after: &mut [u8],
+    sums: &mut [u16],
+) -> u8 {
+    let count = costs.len();
+    let (fewer, same, more) = (&before[..count], &before[1..=count], &before[2..count + 2]);
+    let after = &mut after[1..=count];
+    let jump = least.saturating_add(penalties.large);
+    let mut lowest = u8::MAX;
+    for at in 0..count {
+        let near = fewer[at].min(more[at]).saturating_add(penalties.small);
+        // No overflow: the best is at most the least and the larger penalty.
+        let sum = costs[at].wrapping_add(same[at].min(near).min(jump).wrapping_sub(least));
+        after[at] = sum;
+        lowest = lowest.min(sum);
+    }
+    for (sum, path) in sums.iter_mut().zip(after) {
+        *sum = u16::from(*path) + if IS_FIRST { 0 } else { *sum };
+    }
+    lowest
+}

@@ -1,0 +1,62 @@
+//! Small islands are taken out, and holes filled.
+
+use crate::components::{Components, Touching};
+
+use super::winner::UNKNOWN;
+
+/// Forgets disparities in islands of at most `most` pixels, neighbours being joined where they differ by at most `step`.
+pub(super) fn remove_speckles(
+    map: &mut [f32],
+    size: [usize; 2],
+    most: u32,
+    step: f32,
+    components: &mut Components,
+) {
+    components.label(size, Touching::Sides, |at| map[at] >= 0.0, |a, b| (map[a] - map[b]).abs() <= step);
+    for (disparity, label) in map.iter_mut().zip(components.labels()) {
+        if components.areas()[*label as usize] <= most {
+            *disparity = UNKNOWN;
+        }
+    }
+}
+
+/// Fills what is unknown with the farther of the nearest neighbours in its row: what one camera does not see lies behind.
+/// Rows of which nothing is known stay.
+pub(super) fn fill_holes(map: &mut [f32], width: usize) {
+    for row in map.chunks_exact_mut(width) {
+        let mut at = 0;
+        while at < width {
+            if row[at] >= 0.0 {
+                at += 1;
+                continue;
+            }
+            let end = row[at..].iter().position(|disparity| *disparity >= 0.0).map(|count| at + count);
+            let before = at.checked_sub(1).map(|before| row[before]);
+            let after = end.map(|end| row[end]);
+            let filled = match (before, after) {
+                (Some(before), Some(after)) => before.min(after),
+                (one, other) => one.or(other).unwrap_or(UNKNOWN),
+            };
+            let end = end.unwrap_or(width);
+            row[at..end].fill(filled);
+            at = end;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn islands_vanish_and_the_background_fills() {
+        let mut map = [9.0, 9.0, -1.0, 4.0, 4.0, 4.5, 9.0, 20.0, 4.0, 4.0];
+        remove_speckles(&mut map, [5, 2], 1, 1.0, &mut Components::default());
+        assert_eq!(map, [9.0, 9.0, -1.0, 4.0, 4.0, -1.0, 9.0, -1.0, 4.0, 4.0]);
+        fill_holes(&mut map, 5);
+        assert_eq!(map, [9.0, 9.0, 4.0, 4.0, 4.0, 9.0, 9.0, 4.0, 4.0, 4.0]);
+        let mut nothing = [-1.0; 3];
+        fill_holes(&mut nothing, 3);
+        assert_eq!(nothing, [-1.0; 3]);
+    }
+}
