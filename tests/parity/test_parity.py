@@ -124,6 +124,7 @@ class Case:
         self.stateful = entry["stateful"]
         self.targets = self.table.get("ports", {})
         self.folder = folder
+        self.test_data = test_data
         #: A container of the case's own, for a learner that has none in the zoo.
         self.model = self.container() if self.learner == "counter" else None
 
@@ -139,7 +140,7 @@ class Case:
             call = {self.port: given}
             for port, targets in self.targets.items():
                 if number < len(targets):
-                    call[port] = file_of(targets[number], None, self.folder)
+                    call[port] = file_of(targets[number], self.test_data, self.folder)
             yield call
 
     def words(self):

@@ -59,6 +59,14 @@ tasks! {
     ImageClassification = "image_classification";
     /// The class of every pixel.
     SemanticSegmentation = "semantic_segmentation";
+    /// The class and the object of every pixel.
+    PanopticSegmentation = "panoptic_segmentation";
+    /// The pixels of each object.
+    InstanceSegmentation = "instance_segmentation";
+    /// How far away everything is that two cameras see.
+    StereoMatching = "stereo_matching";
+    /// Whether a map of values leaves a doubt where the best place is.
+    AmbiguityMeasure = "ambiguity_measure";
     /// Where a gripper can take hold.
     GraspDetection = "grasp_detection";
     /// The class of a picture that was measured with few numbers.

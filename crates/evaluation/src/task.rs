@@ -17,6 +17,8 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         | Task::FacialExpressionRecognition => Ok("classification"),
         Task::FacialLandmarks => Ok("keypoints"),
         Task::SemanticSegmentation => Ok("segmentation"),
+        Task::PanopticSegmentation => Ok("panoptic"),
+        Task::InstanceSegmentation => Ok("coco_segmentation"),
         Task::PoseEstimation => Ok("coco_keypoints"),
         Task::GestureRecognition
         | Task::ActivityRecognition

@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
+use opendr_perception::ambiguity_measure::AmbiguityMeasure;
 use opendr_perception::compressive_learning::MultilinearCompressive;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::face_recognition::FaceRecognition;
@@ -15,17 +16,20 @@ use opendr_perception::grasp_detection::GrConvNet;
 use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
+use opendr_perception::instance_segmentation::BodyPix;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
+use opendr_perception::panoptic_segmentation::EfficientPs;
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
-use opendr_perception::semantic_segmentation::Deeplab;
+use opendr_perception::semantic_segmentation::{Bisenet, Deeplab, SelfieSegmentation};
 use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
 use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
 use opendr_perception::speech_transcription::Whisper;
+use opendr_perception::stereo_matching::SemiGlobalMatching;
 use opendr_perception::voice_activity_detection::SileroVad;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
 use opendr_rl::{DqnLearner, PpoLearner, SacLearner, Td3Learner};
@@ -62,6 +66,12 @@ pub fn registry() -> &'static Registry {
             FallDetector,
             ImageClassifier,
             Deeplab,
+            Bisenet,
+            SelfieSegmentation,
+            EfficientPs,
+            BodyPix,
+            SemiGlobalMatching,
+            AmbiguityMeasure,
             GrConvNet,
             MultilinearCompressive,
             SpatioTemporalGcn,

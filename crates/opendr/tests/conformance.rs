@@ -11,7 +11,7 @@ use opendr::datasets::{OpenOptions, Problems, open};
 use opendr::environment::{Environment as _, ResetOptions};
 use opendr::learner::{CheckOptions, Entry, Port, check_learner};
 use opendr::model::Model;
-use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList};
+use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap};
 use opendr::{Header, Value, ValueType};
 
 #[test]
@@ -69,6 +69,7 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
             .into(),
         ValueType::BoundingBoxList => [0.0, 4.0, 8.0].map(|shift| boxes(shift).into()).into(),
         ValueType::BoundingBox3DList => [0.0, 0.4, 0.8].map(|shift| cars(shift).into()).into(),
+        ValueType::Heatmap => [1.0, 0.7, 0.4].map(values).map(Value::from).into(),
         ValueType::Video => [3, 9, 30].map(clip).map(Value::from).into(),
         kind => {
             let (format, path) = match kind {
@@ -111,6 +112,7 @@ fn beside(port: &Port, first: &Value, shift: f32) -> Value {
             let metres: Vec<_> = (0..width * height).map(|at| 0.5 + (at % 97) as f32 / 200.0).collect();
             Image::new(metres, width, height, PixelFormat::Grey, Layout::Hwc).unwrap().into()
         }
+        (ValueType::Image, "right", Value::Image(image)) => image.clone().into(),
         (ValueType::Image, ..) => checkered(shift as usize).into(),
         (other, ..) => panic!("there are no test data of the type {}", other.name()),
     }
@@ -142,6 +144,12 @@ fn cars(shift: f32) -> BoundingBox3DList {
         ..BoundingBox3D::default()
     };
     [-5.0, 5.0].map(car).to_vec().into()
+}
+
+/// A map of hills.
+fn values(step: f32) -> Heatmap {
+    let values = (0..30 * 40).map(|at| (at as f32 * step).sin() + (at / 40) as f32 / 30.0).collect();
+    Heatmap::from_scores(values, &[30, 40]).unwrap()
 }
 
 /// A square that crosses a clip of so many frames.

@@ -10,7 +10,7 @@ use opendr::data::{
 };
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::params::ParamMap;
-use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList};
+use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap};
 use opendr::{Device, ErrorKind, Result, Value, ValueType};
 
 #[test]
@@ -132,6 +132,18 @@ fn wrong(kind: ValueType) -> Vec<(&'static str, Value)> {
         ],
         ValueType::Video => {
             vec![("one black pixel", Video::new(vec![0.0; 3], [3, 1, 1, 1]).unwrap().into())]
+        }
+        ValueType::Heatmap => {
+            let map = |values: Vec<f32>, shape: &[usize]| Heatmap::from_scores(values, shape).unwrap().into();
+            vec![
+                ("nothing", Heatmap::default().into()),
+                ("classes", Heatmap::from_labels(vec![3; 12], &[3, 4]).unwrap().into()),
+                ("one value", map(vec![-2.0], &[1, 1])),
+                ("a flat map", map(vec![0.5; 12], &[3, 4])),
+                ("no numbers", map(vec![f32::NAN; 12], &[3, 4])),
+                ("huge values", map(vec![f32::MAX, -f32::MAX, f32::MAX], &[1, 3])),
+                ("three axes", map(vec![0.0; 12], &[3, 2, 2])),
+            ]
         }
         ValueType::BoundingBoxList => {
             let odd = |left, width| BoundingBox::new(0, left, 0.0, width, 10.0, f32::NAN);

@@ -1,6 +1,7 @@
 //! Perception learners: one folder per task, one file per learner.
 
 pub mod activity_recognition;
+pub mod ambiguity_measure;
 pub mod beats;
 pub mod compressive_learning;
 pub mod face_detection;
@@ -13,11 +14,13 @@ pub mod grasp_detection;
 pub mod hand_pose_estimation;
 pub mod heart_anomaly_detection;
 pub mod image_classification;
+pub mod instance_segmentation;
 pub mod mfcc;
 pub mod multimodal_human_centric;
 pub mod object_detection_2d;
 pub mod object_tracking_2d;
 pub mod object_tracking_3d;
+pub mod panoptic_segmentation;
 pub mod pose_estimation;
 pub mod regions;
 pub mod resampler;
@@ -25,6 +28,7 @@ pub mod semantic_segmentation;
 pub mod skeleton_based_action_recognition;
 pub mod speech_recognition;
 pub mod speech_transcription;
+pub mod stereo_matching;
 pub mod suppression;
 pub mod tracking;
 pub mod voice_activity;

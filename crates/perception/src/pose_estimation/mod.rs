@@ -7,7 +7,7 @@ mod lightweight_open_pose;
 mod movenet;
 mod one_euro;
 pub mod part_affinity;
-mod part_tree;
+pub(crate) mod part_tree;
 mod pose_tracks;
 mod posenet;
 

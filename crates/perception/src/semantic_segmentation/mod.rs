@@ -1,5 +1,13 @@
 //! The class of every pixel of a picture.
 
+mod bisenet;
 mod deeplab;
+mod nearest;
+mod selfie_segmentation;
 
+#[cfg(feature = "training")]
+pub use bisenet::BisenetFitParams;
+pub use bisenet::{Bisenet, BisenetParams};
 pub use deeplab::{Deeplab, DeeplabParams};
+pub(crate) use nearest::nearest;
+pub use selfie_segmentation::{SelfieSegmentation, SelfieSegmentationParams};

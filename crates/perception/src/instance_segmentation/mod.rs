@@ -1,0 +1,7 @@
+//! The pixels of each object in a picture.
+
+mod bodypix;
+mod owner_map;
+
+pub use bodypix::{BodyPix, BodyPixParams};
+pub use owner_map::OwnerMap;

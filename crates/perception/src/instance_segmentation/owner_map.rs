@@ -1,0 +1,132 @@
+//! Which object each pixel of a picture belongs to, and boxes with masks of it.
+
+use opendr_engine::target::{BoundingBox, Name, Rle, Segment, Segmentation};
+use opendr_engine::{Error, Result};
+
+/// The number of an object for each pixel, 0 being none; memory is used again.
+#[derive(Debug, Clone, Default)]
+pub struct OwnerMap {
+    size: [usize; 2],
+    owners: Vec<u8>,
+    extents: Vec<Extent>,
+}
+
+/// What the pixels of an object span.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    left: usize,
+    top: usize,
+    right: usize,
+    bottom: usize,
+    pixels: u64,
+}
+
+impl OwnerMap {
+    /// A map of `[width, height]` pixels that `owner` fills, given x and y.
+    pub fn fill(&mut self, size @ [width, height]: [usize; 2], mut owner: impl FnMut(usize, usize) -> u8) {
+        self.size = size;
+        let nothing = Extent { left: width, top: height, right: 0, bottom: 0, pixels: 0 };
+        self.extents.clear();
+        self.extents.resize(usize::from(u8::MAX) + 1, nothing);
+        self.owners.clear();
+        self.owners.reserve(width * height);
+        for y in 0..height {
+            for x in 0..width {
+                let object = owner(x, y);
+                self.owners.push(object);
+                if object > 0 {
+                    let extent = &mut self.extents[usize::from(object)];
+                    (extent.left, extent.top) = (extent.left.min(x), extent.top.min(y));
+                    (extent.right, extent.bottom) = (extent.right.max(x), extent.bottom.max(y));
+                    extent.pixels += 1;
+                }
+            }
+        }
+    }
+
+    /// The objects' numbers, row by row.
+    pub fn owners(&self) -> &[u8] {
+        &self.owners
+    }
+
+    /// `[left, top, right, bottom]` around the pixels of an object; `None` when it has no pixel.
+    pub fn corners(&self, object: u8) -> Option<[f32; 4]> {
+        let extent = self.extents.get(usize::from(object)).filter(|extent| extent.pixels > 0)?;
+        let Extent { left, top, right, bottom, .. } = *extent;
+        Some([left, top, right + 1, bottom + 1].map(|edge| edge as f32))
+    }
+
+    /// The box around the pixels of an object, with their mask; `None` when it has no pixel.
+    ///
+    /// # Errors
+    /// `InvalidInput` for a picture whose sides are above 2^32 pixels.
+    pub fn bounding_box(&self, object: u8, name: Name, confidence: f32) -> Result<Option<BoundingBox>> {
+        let (Some(corners), Some(extent)) = (self.corners(object), self.extents.get(usize::from(object)))
+        else {
+            return Ok(None);
+        };
+        let mut found = BoundingBox::from_corners(name, corners, confidence);
+        let segmentation = Segmentation::Rle(self.mask(object, extent)?);
+        found.segment = Some(Box::new(Segment { segmentation, area: extent.pixels as f32, iscrowd: false }));
+        Ok(Some(found))
+    }
+
+    fn mask(&self, object: u8, extent: &Extent) -> Result<Rle> {
+        let [width, height] = self.size;
+        let (mut counts, mut inside, mut begun) = (Vec::new(), false, 0);
+        for x in extent.left..=extent.right {
+            for y in extent.top..=extent.bottom + 1 {
+                let is_object = y <= extent.bottom && self.owners[y * width + x] == object;
+                if is_object != inside {
+                    // Pixels are counted column by column.
+                    let at = x * height + y;
+                    inside = is_object;
+                    match counts.pop_if(|_| is_object && at == begun) {
+                        // From the foot of a column to the head of the next.
+                        Some(run) => begun -= run as usize,
+                        None => {
+                            counts.push((at - begun) as u32);
+                            begun = at;
+                        }
+                    }
+                }
+            }
+        }
+        counts.push((width * height - begun) as u32);
+        let side =
+            |side: usize| u32::try_from(side).map_err(|_| Error::invalid_input("the picture is too large"));
+        Rle::new(side(height)?, side(width)?, counts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masks_are_those_of_the_pixels() {
+        let picture = ["..11", "2.11", "2..1", "2..."];
+        let pixels: Vec<u8> =
+            picture.concat().bytes().map(|byte| if byte == b'.' { 0 } else { byte - b'0' }).collect();
+        let mut map = OwnerMap::default();
+        for _ in 0..2 {
+            map.fill([4, 4], |x, y| pixels[y * 4 + x]);
+            for object in [1, 2] {
+                let found = map.bounding_box(object, Name::Index(0), 0.5).unwrap().unwrap();
+                let Segmentation::Rle(rle) = &found.segment.as_ref().unwrap().segmentation else { panic!() };
+                let wanted: Vec<_> = pixels.iter().map(|pixel| *pixel == object).collect();
+                assert_eq!(rle, &Rle::from_mask(&wanted, 4, 4).unwrap());
+                assert_eq!(found.segment.as_ref().unwrap().area, rle.area() as f32);
+            }
+        }
+        let corner = map.bounding_box(1, Name::Index(0), 0.5).unwrap().unwrap();
+        assert_eq!(corner.corners(), [2.0, 0.0, 4.0, 3.0]);
+        assert!(map.bounding_box(3, Name::Index(0), 0.5).unwrap().is_none());
+        map.fill([2, 3], |_, _| 9);
+        let whole = map.bounding_box(9, Name::Index(0), 0.5).unwrap().unwrap();
+        let Segmentation::Rle(rle) = &whole.segment.as_ref().unwrap().segmentation else { panic!() };
+        assert_eq!(rle.counts(), [0, 6]);
+        map.fill([4, 4], |_, _| 0);
+        assert!(map.bounding_box(1, Name::Index(0), 0.5).unwrap().is_none());
+    }
+}

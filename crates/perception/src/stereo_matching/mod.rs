@@ -1,0 +1,9 @@
+//! How far away everything is that two cameras see.
+
+mod obstacles;
+mod semi_global_matching;
+
+pub use obstacles::{ObstacleOptions, Obstacles};
+pub use semi_global_matching::{
+    SemiGlobalMatching, SemiGlobalMatchingInputs, SemiGlobalMatchingParams, SemiGlobalMatchingTargets,
+};

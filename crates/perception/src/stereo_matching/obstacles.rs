@@ -1,0 +1,175 @@
+//! Boxes around what stands on a floor, out of a map of depths.
+
+use opendr_engine::target::BoundingBox3D;
+use opendr_vision::components::{Components, Touching};
+use opendr_vision::stereo::StereoCamera;
+
+/// What counts as an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ObstacleOptions {
+    /// Of the camera, which looks level, above the floor, metres.
+    pub camera_height: f32,
+    /// Lowest and highest place above the floor, metres.
+    pub heights: [f32; 2],
+    /// Metres ahead and to each side.
+    pub farthest: f32,
+}
+
+/// Finds obstacles; memory is used again.
+///
+/// Points between the two heights are counted in the squares of a grid on the floor. Squares with a quarter of the points that
+/// a surface of one square's size would have at that distance are taken, and those that touch are an obstacle.
+#[derive(Debug, Default)]
+pub struct Obstacles {
+    counts: Vec<u32>,
+    components: Components,
+    extents: Vec<Extent>,
+}
+
+/// Side of a square, metres.
+const SIDE: f32 = 0.1;
+/// Least share of a surface's points, and least points.
+const SHARE: f32 = 0.25;
+const LEAST: f32 = 4.0;
+
+/// What the points of an obstacle span: x, y, z in metres, and pixels.
+#[derive(Debug, Clone, Copy)]
+struct Extent {
+    low: [f32; 3],
+    high: [f32; 3],
+    pixels: [f32; 4],
+}
+
+impl Obstacles {
+    /// Writes the obstacles in a map of depths, metres, `width` a row, 0 being unknown: the nearest first, in the camera's
+    /// frame, class 0, with the score 1.
+    pub fn find(
+        &mut self,
+        camera: &StereoCamera,
+        depths: &[f32],
+        width: usize,
+        options: &ObstacleOptions,
+        boxes: &mut Vec<BoundingBox3D>,
+    ) {
+        boxes.clear();
+        let farthest = options.farthest.clamp(SIDE, 100.0);
+        let rows = (farthest / SIDE).ceil() as usize;
+        let columns = 2 * rows;
+        // A pixel's place and square, where it may belong to an obstacle.
+        let seen = |at: usize| {
+            let (x, y) = (at % width, at / width);
+            let depth = depths[at];
+            let place = camera.point([x as f32 + 0.5, y as f32 + 0.5], depth);
+            let height = options.camera_height - place[1];
+            let [lowest, highest] = options.heights;
+            let counts = depth > 0.0 && depth < farthest && height >= lowest && height <= highest;
+            let column = (place[0] + farthest) / SIDE;
+            let is_beside = !(column >= 0.0 && column < columns as f32);
+            if !counts || is_beside {
+                return None;
+            }
+            Some((place, ((depth / SIDE) as usize).min(rows - 1) * columns + column as usize))
+        };
+        self.counts.clear();
+        self.counts.resize(rows * columns, 0);
+        for at in 0..depths.len() {
+            if let Some((_, square)) = seen(at) {
+                self.counts[square] += 1;
+            }
+        }
+        let counts = &self.counts;
+        let is_taken = |square: usize| {
+            let depth = ((square / columns) as f32 + 0.5) * SIDE;
+            let surface = (camera.focal * SIDE / depth).powi(2);
+            counts[square] as f32 >= (SHARE * surface).max(LEAST)
+        };
+        let count = self.components.label([columns, rows], Touching::Corners, is_taken, |_, _| true);
+        let nothing =
+            Extent { low: [f32::MAX; 3], high: [f32::MIN; 3], pixels: [f32::MAX, f32::MAX, 0.0, 0.0] };
+        self.extents.clear();
+        self.extents.resize(count, nothing);
+        for at in 0..depths.len() {
+            let Some((place, square)) = seen(at) else { continue };
+            let Some(number) = self.components.labels()[square].checked_sub(1) else { continue };
+            let extent = &mut self.extents[number as usize];
+            for axis in 0..3 {
+                extent.low[axis] = extent.low[axis].min(place[axis]);
+                extent.high[axis] = extent.high[axis].max(place[axis]);
+            }
+            let [x, y] = [at % width, at / width].map(|at| at as f32);
+            let [left, top, right, bottom] = extent.pixels;
+            extent.pixels = [left.min(x), top.min(y), right.max(x + 1.0), bottom.max(y + 1.0)];
+        }
+        boxes.extend(self.extents.iter().map(Extent::bounding_box));
+        boxes.sort_by(|one, other| one.location[2].total_cmp(&other.location[2]));
+    }
+}
+
+impl Extent {
+    fn bounding_box(&self) -> BoundingBox3D {
+        let Self { low, high, pixels } = *self;
+        let middle = |axis: usize| (low[axis] + high[axis]) / 2.0;
+        BoundingBox3D {
+            truncated: -1.0,
+            occluded: -1,
+            bbox2d: pixels,
+            dimensions: [high[0] - low[0], high[1] - low[1], high[2] - low[2]],
+            location: [middle(0), high[1], middle(2)],
+            confidence: 1.0,
+            ..BoundingBox3D::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CAMERA: StereoCamera =
+        StereoCamera { focal: 100.0, baseline: 0.1, centre: [80.0, 60.0], offset: 0.0 };
+    const OPTIONS: ObstacleOptions =
+        ObstacleOptions { camera_height: 1.0, heights: [0.2, 2.0], farthest: 10.0 };
+
+    /// A floor, a near box on the left and a farther one on the right.
+    fn depths() -> Vec<f32> {
+        let depth = |at: usize| {
+            let (x, y) = (at % 160, at / 160);
+            match (x, y) {
+                (10..40, 50..110) => 2.0,
+                (100..120, 55..85) => 4.0,
+                (_, 0..63) => 0.0,
+                _ => 100.0 / (y as f32 + 0.5 - 60.0),
+            }
+        };
+        (0..160 * 120).map(depth).collect()
+    }
+
+    #[test]
+    fn two_boxes_stand_on_the_floor() {
+        let mut boxes = Vec::new();
+        Obstacles::default().find(&CAMERA, &depths(), 160, &OPTIONS, &mut boxes);
+        let [near, far] = &boxes[..] else { panic!("{boxes:?}") };
+        assert_eq!((near.location[2], far.location[2]), (2.0, 4.0));
+        assert_eq!(near.bbox2d[..3], [10.0, 50.0, 40.0]);
+        assert!(
+            (near.dimensions[0] - 0.58).abs() < 0.01 && (near.location[0] + 1.1).abs() < 0.01,
+            "{near:?}"
+        );
+        assert!((far.dimensions[0] - 0.76).abs() < 0.01 && (far.location[0] - 1.2).abs() < 0.01, "{far:?}");
+    }
+
+    #[test]
+    fn nonsense_and_nothing_are_no_obstacles() {
+        let mut boxes = vec![BoundingBox3D::default()];
+        let mut finder = Obstacles::default();
+        for depth in [0.0, -3.0, f32::NAN, f32::INFINITY, 1e9] {
+            finder.find(&CAMERA, &[depth; 160 * 120], 160, &OPTIONS, &mut boxes);
+            assert!(boxes.is_empty(), "{depth}");
+        }
+        finder.find(&CAMERA, &[], 160, &OPTIONS, &mut boxes);
+        assert!(boxes.is_empty());
+        let wild = StereoCamera { focal: f32::NAN, ..CAMERA };
+        finder.find(&wild, &depths(), 160, &OPTIONS, &mut boxes);
+        assert!(boxes.is_empty());
+    }
+}
