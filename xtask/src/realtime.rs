@@ -31,15 +31,15 @@ pub fn run_with(environment: impl Fn(&mut Command)) -> Result<()> {
     for model in models.as_array().into_iter().flatten() {
         let [name, task] = ["model", "task"].map(|key| model[key].as_str().unwrap_or_default());
         let kept = best.entry(task.to_owned()).or_default();
-        let report =
-            match json(&mut opendr(&["bench", name, "--frames", "40", "--warmup", "5", "--json", "--quiet"]))
-            {
-                Ok(report) => report,
-                Err(error) => {
-                    println!("{task}: {name}: not measured ({error})");
-                    continue;
-                }
-            };
+        let report = match json(&mut opendr(&[
+            "bench", name, "--frames", "100", "--warmup", "5", "--json", "--quiet",
+        ])) {
+            Ok(report) => report,
+            Err(error) => {
+                println!("{task}: {name}: not measured ({error})");
+                continue;
+            }
+        };
         let number = |key: &str| report[key].as_f64().unwrap_or(f64::NAN);
         let (fps, peak) = (number("frames_per_second"), number("peak_memory_mb"));
         let (fast, how_fast) = match report["real_time_factor"].as_f64() {
