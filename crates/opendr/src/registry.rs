@@ -16,13 +16,13 @@ use opendr_perception::hand_pose_estimation::HandPose;
 use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, GatedRecurrentUnit};
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
-use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
+use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector, TiledDetection};
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
-use opendr_perception::semantic_segmentation::Deeplab;
+use opendr_perception::semantic_segmentation::{Deeplab, TiledSegmentation};
 use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
 use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
 use opendr_perception::speech_transcription::Whisper;
@@ -39,6 +39,7 @@ pub fn registry() -> &'static Registry {
             CenterNet,
             Nanodet,
             SingleShotDetector,
+            TiledDetection,
             Sort,
             ByteTrack,
             OcSort,
@@ -62,6 +63,7 @@ pub fn registry() -> &'static Registry {
             FallDetector,
             ImageClassifier,
             Deeplab,
+            TiledSegmentation,
             GrConvNet,
             MultilinearCompressive,
             SpatioTemporalGcn,

@@ -26,6 +26,7 @@ pub mod skeleton_based_action_recognition;
 pub mod speech_recognition;
 pub mod speech_transcription;
 pub mod suppression;
+pub mod tiling;
 pub mod tracking;
 pub mod voice_activity;
 pub mod voice_activity_detection;
