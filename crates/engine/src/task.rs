@@ -59,6 +59,8 @@ tasks! {
     ImageClassification = "image_classification";
     /// The class of every pixel.
     SemanticSegmentation = "semantic_segmentation";
+    /// Which parts of a large picture show what is looked for.
+    BinaryHighResolution = "binary_high_resolution";
     /// Where a gripper can take hold.
     GraspDetection = "grasp_detection";
     /// The class of a picture that was measured with few numbers.

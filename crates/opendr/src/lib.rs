@@ -53,7 +53,7 @@ pub use opendr_perception::{
     hand_pose_estimation, heart_anomaly_detection, image_classification, mfcc, multimodal_human_centric,
     object_detection_2d, object_tracking_2d, object_tracking_3d, pose_estimation, regions, resampler,
     semantic_segmentation, skeleton_based_action_recognition, speech_recognition, speech_transcription,
-    suppression, tracking, voice_activity, voice_activity_detection,
+    suppression, tiling, tracking, voice_activity, voice_activity_detection,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

@@ -17,7 +17,7 @@ use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, Ga
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector, TiledDetection};
-use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
+use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
@@ -45,6 +45,7 @@ pub fn registry() -> &'static Registry {
             OcSort,
             DeepSort,
             FairMot,
+            NanoTrack,
             Ab3dmot,
             UltraLightFace,
             Yunet,
