@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
+use opendr_perception::binary_high_resolution::HighResolutionPatches;
 use opendr_perception::compressive_learning::MultilinearCompressive;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::face_recognition::FaceRecognition;
@@ -65,6 +66,7 @@ pub fn registry() -> &'static Registry {
             ImageClassifier,
             Deeplab,
             TiledSegmentation,
+            HighResolutionPatches,
             GrConvNet,
             MultilinearCompressive,
             SpatioTemporalGcn,

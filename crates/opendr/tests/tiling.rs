@@ -26,8 +26,8 @@ fn learner(models: &Models, spec: &str, params: &[(&str, f64)]) -> Option<Box<dy
     let mut learner = opendr::registry().find(name).unwrap().make(&ParamMap::new(), Device::Cpu).unwrap();
     learner.load(&model).unwrap();
     for (name, value) in params {
-        let as_integer = learner.set(name, (*value as i64).into());
-        as_integer.or_else(|_| learner.set(name, (*value).into())).unwrap();
+        let as_float = learner.set(name, (*value).into());
+        as_float.or_else(|_| learner.set(name, (*value as i64).into())).unwrap();
     }
     Some(learner)
 }

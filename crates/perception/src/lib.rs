@@ -2,6 +2,7 @@
 
 pub mod activity_recognition;
 pub mod beats;
+pub mod binary_high_resolution;
 pub mod compressive_learning;
 pub mod face_detection;
 pub mod face_recognition;
@@ -42,6 +43,8 @@ mod frozen_layers;
 mod labelled;
 #[cfg(feature = "training")]
 mod labelled_pictures;
+#[cfg(feature = "training")]
+mod open_sides;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod overfit;

@@ -32,7 +32,7 @@ impl<'a> Trace<'a> {
         let mut trace = Self { graph, weights, tensors: HashMap::new() };
         for layer in layers {
             let wire = match layer.kind {
-                "Input" => Ok(trace.open(layer, layers, options)?),
+                "Input" => trace.open(layer, layers, options),
                 _ => output(&mut trace, layer),
             };
             let wire = wire.context(|| format!("layer {} ({})", layer.name, layer.kind))?;
@@ -43,7 +43,7 @@ impl<'a> Trace<'a> {
                     layer.outputs.len()
                 )));
             }
-            for name in &layer.outputs {
+            for &name in &layer.outputs {
                 if trace.tensors.insert(name, wire.clone()).is_some() {
                     return Err(Error::format(format!("two layers give {name:?}")));
                 }

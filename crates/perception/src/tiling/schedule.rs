@@ -181,7 +181,9 @@ impl Tiles {
         if turn > 0 && self.pictures % turn == turn - 1 {
             let other = (0..tiles.len()).min_by_key(age);
             self.order.retain(|index| Some(*index) != other);
-            self.order.splice(0..0, other);
+            if let Some(other) = other {
+                self.order.insert(0, other);
+            }
         }
         if params.max_tiles > 0 {
             self.order.truncate(params.max_tiles);
@@ -192,11 +194,11 @@ impl Tiles {
 impl Tile {
     /// Whether it is worth a look; notes when it changed first.
     fn is_due(&mut self, coarse: &CoarsePicture, size: [usize; 2], params: &TilingParams, now: u64) -> bool {
-        let cells = cells_of(&self.region, size, coarse);
+        let mut cells = cells_of(&self.region, size, coarse);
         if self.seen.is_none() {
             return params.detail_threshold <= 0.0
                 || self.core.is_empty()
-                || cells.into_iter().any(|cell| f32::from(coarse.ranges()[cell]) > params.detail_threshold);
+                || cells.any(|cell| f32::from(coarse.ranges()[cell]) > params.detail_threshold);
         }
         let differs = |(cell, then): (usize, &u8)| {
             f32::from(coarse.means()[cell].abs_diff(*then)) > params.change_threshold
@@ -293,7 +295,7 @@ mod tests {
         let first = looked(&mut tiles, &params, &image);
         assert_eq!(first[0], 0, "the whole picture");
         let shows = |index: &usize| {
-            tiles.tiles()[*index].region.overlaps(&Region { x: 300, y: 200, width: 24, height: 24 })
+            tiles.tiles()[*index].region.overlaps(&Region { x: 284, y: 184, width: 56, height: 56 })
         };
         assert!(first.len() >= 2 && first.iter().all(shows));
         assert!(looked(&mut tiles, &params, &image).is_empty(), "nothing changed");
