@@ -48,7 +48,8 @@ fn sequences_follow_one_another() {
     let second = mot.get(1).unwrap();
     assert_eq!(second.data[0].header(), &Header::new(100_000_000, "A"));
     // What was found is data where tracks are wanted, and not where boxes are to be learned.
-    let Value::BoundingBoxList(found) = &mot.get(0).unwrap().data[1] else { panic!("{second:?}") };
+    let sample = mot.get(0).unwrap();
+    let Value::BoundingBoxList(found) = &sample.data[1] else { panic!("{sample:?}") };
     assert_eq!(found.boxes[0].corners(), [9.0, 19.0, 40.0, 60.0]);
     assert!(matches!(&second.data[1], Value::BoundingBoxList(found) if found.boxes.is_empty()));
     let options = OpenOptions { target: Some(ValueType::BoundingBoxList), ..OpenOptions::default() };

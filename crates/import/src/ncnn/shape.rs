@@ -39,7 +39,7 @@ pub fn reshape(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Wire> {
 /// The sizes of a shape, with that of -1 where it can be known.
 fn inferred(shape: &[i64], own: &[Dim]) -> Vec<Dim> {
     let all = own.iter().try_fold(1usize, |count, side| count.checked_mul((*side)?));
-    let given = shape.iter().filter(|side| **side > 0);
+    let mut given = shape.iter().filter(|side| **side > 0);
     let given = given.try_fold(1usize, |count, side| count.checked_mul(usize::try_from(*side).ok()?));
     let left = all.zip(given).and_then(|(all, given)| all.checked_div(given));
     let side = |side: &i64| if *side < 0 { left } else { usize::try_from(*side).ok() };

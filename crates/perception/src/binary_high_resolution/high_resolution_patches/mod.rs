@@ -75,16 +75,7 @@ impl Learner for HighResolutionPatches {
         .class("BinaryHighResolutionLearner")
         .about(
             "Tells where a picture of full high definition shows what it has learned to look for; it trains.",
-        )
-        .without_effect(&[
-            ("lr", Spec::OF_TRAINING),
-            ("iters", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
-            ("optimizer", Spec::OF_TRAINING),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
-            ("num_workers", Spec::OF_TRAINING),
-        ]);
+        );
     type Params = HighResolutionPatchesParams;
     type Input<'a> = &'a Image;
     /// Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is
