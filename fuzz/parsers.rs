@@ -11,10 +11,11 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 25] = [
+pub const PARSERS: [(&str, Parser); 26] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("tflite", tflite),
+    ("ncnn", ncnn),
     ("ctranslate2", ctranslate2),
     ("card_toml", card_toml),
     ("picture", picture),
@@ -59,6 +60,15 @@ fn tfjs_json(bytes: &[u8]) {
 
 fn tflite(bytes: &[u8]) {
     if let Ok(onnx) = opendr_import::onnx_from_tflite(bytes, &Default::default()) {
+        assert!(!onnx.is_empty());
+    }
+}
+
+/// The layers up to the first zero byte; the rest is the weights.
+fn ncnn(bytes: &[u8]) {
+    let end = bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len());
+    let weights = bytes.get(end + 1..).unwrap_or_default();
+    if let Ok(onnx) = opendr_import::onnx_from_ncnn(&bytes[..end], weights, &Default::default()) {
         assert!(!onnx.is_empty());
     }
 }

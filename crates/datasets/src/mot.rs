@@ -25,7 +25,8 @@ const HEAD: usize = 4096;
 /// A data set of the MOT Challenge, of motmetrics, or a bare `gt.txt`: a sample is a picture with its objects.
 ///
 /// The samples are the pictures of one sequence after the other; the header of picture and target has the name of the
-/// sequence as frame id, and the time since its begin. Without pictures, samples have no data. In the truth, objects
+/// sequence as frame id, and the time since its begin. The data of a sample are its picture, where there are pictures, and, read as
+/// tracks, what `det.txt` has found in it, where it has found anything in the sequence: what trackers take. In the truth, objects
 /// that are not to be considered have confidence 0; read as boxes, they are left out.
 #[derive(Debug)]
 pub struct Mot {
@@ -89,7 +90,9 @@ impl DatasetIterator for Mot {
         let (sequence, frame, path) = self.frame(index)?;
         let image = path.map(opendr_vision::open).transpose()?;
         let image = image.map(|image| Value::Image(image.with_header(header(sequence, frame))));
-        let data = image.into_iter().collect();
+        let is_tracked = self.target != ValueType::BoundingBoxList && sequence.has_detections();
+        let found = self.detections(index).filter(|_| is_tracked).map(Value::BoundingBoxList);
+        let data = image.into_iter().chain(found).collect();
         Ok(Sample { data, target: self.target(index)? })
     }
 

@@ -67,6 +67,8 @@ tasks! {
     StereoMatching = "stereo_matching";
     /// Whether a map of values leaves a doubt where the best place is.
     AmbiguityMeasure = "ambiguity_measure";
+    /// Which parts of a large picture show what is looked for.
+    BinaryHighResolution = "binary_high_resolution";
     /// Where a gripper can take hold.
     GraspDetection = "grasp_detection";
     /// The class of a picture that was measured with few numbers.

@@ -74,11 +74,7 @@ fn answer_sample(
     wanted: ValueType,
 ) -> Result<Value> {
     let sample = dataset.get(at)?;
-    let named = ports
-        .iter()
-        .zip(&sample.data)
-        .fold(Ports::default(), |named, (port, value)| named.with(port.name, value));
-    let outputs = worker.answer(&named)?;
+    let outputs = worker.answer(&Ports::of_sample(ports, &sample.data))?;
     let found = outputs.iter().find(|(_, value)| value.as_value_ref().value_type() == wanted);
     let found = found.or_else(|| outputs.iter().next()).map(|(_, value)| value.clone());
     found.ok_or_else(|| Error::invalid_input("the learner answers nothing"))

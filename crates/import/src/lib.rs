@@ -5,17 +5,21 @@
 //! the transpositions, identities and shape arithmetic of the original evaluated or folded away. How images are laid
 //! out at its inputs and outputs is one rule, written there.
 //!
+//! [`onnx_from_ncnn`] takes the two files of a model of ncnn's, which has pictures channels-first already.
+//!
 //! [`onnx_from_whisper`] builds the two networks of a Whisper around weights from anywhere; those of CTranslate2 are read by
 //! [`whisper_from_ctranslate2`].
 
 mod bounded;
 mod ctranslate2;
+mod ncnn;
 mod tensorflow;
 mod tfjs;
 mod tflite;
 mod whisper;
 
 pub use ctranslate2::whisper_from_ctranslate2;
+pub use ncnn::{onnx_from_ncnn, onnx_from_ncnn_files};
 pub use tensorflow::ImportOptions;
 pub use tfjs::{onnx_from_tfjs, onnx_from_tfjs_file, tfjs_weight_files};
 pub use tflite::{onnx_from_tflite, onnx_from_tflite_file};

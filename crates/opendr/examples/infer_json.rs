@@ -7,11 +7,12 @@
 //!
 //! The learner is a name of the registry, with `/VARIANT` or `=CONTAINER`; then its parameters as JSON; then the inputs:
 //! `PORT=FILE` with a picture, sound, series, scan, or the JSON of a target, as the port takes it, with a comma between the
-//! calls of one stream.
+//! calls of one stream. With `--seconds` before all that, a last line lists how long each call took.
 
 use std::collections::BTreeMap;
 use std::env;
 use std::error::Error;
+use std::time::Instant;
 
 use opendr::learner::{AnyLearner, Outputs, Port, Ports};
 use opendr::params::ParamMap;
@@ -25,9 +26,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     {
         return Ok(opendr::learner::counter::write_model(folder.as_ref(), 5, &ParamMap::new())?);
     }
-    let [name, params, inputs @ ..] = &arguments[..] else {
+    let is_timed = arguments.first().is_some_and(|flag| flag == "--seconds");
+    let [name, params, inputs @ ..] = &arguments[usize::from(is_timed)..] else {
         return Err("give a learner, parameters as JSON, and inputs as PORT=FILE".into());
     };
+    let mut seconds = Vec::new();
     let mut learner = load(name, &serde_json::from_str(params)?)?;
     let ports = opendr::registry().find(learner_name(name))?.ports;
     for call in inputs.split(|word| word == ",") {
@@ -35,7 +38,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let ports = values
             .iter()
             .fold(Ports::default(), |ports, (name, value)| ports.with(name, value.as_value_ref()));
-        println!("{}", json(&learner.infer(&ports)?)?);
+        let begun = Instant::now();
+        let outputs = learner.infer(&ports)?;
+        seconds.push(begun.elapsed().as_secs_f64());
+        println!("{}", json(&outputs)?);
+    }
+    if is_timed {
+        println!("{}", serde_json::to_string(&seconds)?);
     }
     Ok(())
 }

@@ -48,12 +48,13 @@ pub use fit::{
 };
 pub use opendr_engine::*;
 pub use opendr_perception::{
-    activity_recognition, ambiguity_measure, beats, compressive_learning, face_detection, face_recognition,
-    facial_expression_recognition, facial_landmarks, fall_detection, gesture_recognition, grasp_detection,
-    hand_panoptic_segmentation, heart_anomaly_detection, image_classification, instance_segmentation, mfcc,
-    multimodal_human_centric, object_detection_2d, object_tracking_2d, object_tracking_3d, pose_estimation,
-    regions, resampler, semantic_segmentation, skeleton_based_action_recognition, speech_recognition,
-    speech_transcription, stereo_matching, suppression, tracking, voice_activity, voice_activity_detection,
+    activity_recognition, ambiguity_measure, beats, binary_high_resolution, compressive_learning,
+    face_detection, face_recognition, facial_expression_recognition, facial_landmarks, fall_detection,
+    gesture_recognition, grasp_detection, hand_pose_estimation, heart_anomaly_detection,
+    image_classification, instance_segmentation, mfcc, multimodal_human_centric, object_detection_2d,
+    object_tracking_2d, object_tracking_3d, panoptic_segmentation, pose_estimation, regions, resampler,
+    semantic_segmentation, skeleton_based_action_recognition, speech_recognition, speech_transcription,
+    stereo_matching, suppression, tiling, tracking, voice_activity, voice_activity_detection,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
 use opendr_perception::ambiguity_measure::AmbiguityMeasure;
+use opendr_perception::binary_high_resolution::HighResolutionPatches;
 use opendr_perception::compressive_learning::MultilinearCompressive;
 use opendr_perception::face_detection::{UltraLightFace, Yunet};
 use opendr_perception::face_recognition::FaceRecognition;
@@ -18,14 +19,14 @@ use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, Ga
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::instance_segmentation::BodyPix;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
-use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
-use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
+use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector, TiledDetection};
+use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
 use opendr_perception::panoptic_segmentation::EfficientPs;
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
-use opendr_perception::semantic_segmentation::{Bisenet, Deeplab, SelfieSegmentation};
+use opendr_perception::semantic_segmentation::{Bisenet, Deeplab, SelfieSegmentation, TiledSegmentation};
 use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
 use opendr_perception::speech_recognition::{DsCnn, EdgeSpeechNets, MatchboxNet};
 use opendr_perception::speech_transcription::Whisper;
@@ -43,11 +44,13 @@ pub fn registry() -> &'static Registry {
             CenterNet,
             Nanodet,
             SingleShotDetector,
+            TiledDetection,
             Sort,
             ByteTrack,
             OcSort,
             DeepSort,
             FairMot,
+            NanoTrack,
             Ab3dmot,
             UltraLightFace,
             Yunet,
@@ -72,6 +75,8 @@ pub fn registry() -> &'static Registry {
             BodyPix,
             SemiGlobalMatching,
             AmbiguityMeasure,
+            TiledSegmentation,
+            HighResolutionPatches,
             GrConvNet,
             MultilinearCompressive,
             SpatioTemporalGcn,

@@ -3,6 +3,7 @@
 pub mod activity_recognition;
 pub mod ambiguity_measure;
 pub mod beats;
+pub mod binary_high_resolution;
 pub mod compressive_learning;
 pub mod face_detection;
 pub mod face_recognition;
@@ -30,6 +31,7 @@ pub mod speech_recognition;
 pub mod speech_transcription;
 pub mod stereo_matching;
 pub mod suppression;
+pub mod tiling;
 pub mod tracking;
 pub mod voice_activity;
 pub mod voice_activity_detection;
@@ -45,6 +47,8 @@ mod frozen_layers;
 mod labelled;
 #[cfg(feature = "training")]
 mod labelled_pictures;
+#[cfg(feature = "training")]
+mod open_sides;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod overfit;

@@ -102,10 +102,7 @@ fn answers(learner: &mut dyn AnyLearner, entry: &Entry, dataset: &dyn DatasetIte
     for index in 0..dataset.len().min(SHOWN) {
         learner.reset();
         let Ok(mut sample) = dataset.get(index) else { continue };
-        let ports = entry.ports.iter().zip(&sample.data);
-        let ports =
-            ports.fold(Ports::default(), |ports, (port, datum)| ports.with(port.name, datum.as_value_ref()));
-        let Ok(outputs) = learner.infer(&ports) else { continue };
+        let Ok(outputs) = learner.infer(&Ports::of_sample(entry.ports, &sample.data)) else { continue };
         sample.target = outputs.iter().next().map(|(_, value)| value.clone());
         pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(index))));
     }

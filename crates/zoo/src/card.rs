@@ -133,6 +133,8 @@ pub enum Import {
     Tfjs(ImportedNetwork),
     /// A TensorFlow Lite model, one file.
     Tflite(ImportedNetwork),
+    /// A model of ncnn's: the text of its layers, then its weights.
+    Ncnn(ImportedNetwork),
     /// A Whisper that CTranslate2 converted: the first of the files is its `model.bin`, of which `encoder.onnx` and
     /// `decoder.onnx` are made; the others go into the container as they are.
     Ctranslate2Whisper,
@@ -163,7 +165,7 @@ impl Import {
     /// Names of the files that are made.
     pub fn outputs(&self) -> Vec<&str> {
         match self {
-            Self::Tfjs(network) | Self::Tflite(network) => vec![&network.output],
+            Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => vec![&network.output],
             Self::Ctranslate2Whisper => Self::WHISPER.to_vec(),
         }
     }
@@ -171,7 +173,7 @@ impl Import {
     /// Those of the card's files that it names; all are meant when it names none.
     pub(crate) fn named_files(&self) -> &[String] {
         match self {
-            Self::Tfjs(network) | Self::Tflite(network) => &network.files,
+            Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => &network.files,
             Self::Ctranslate2Whisper => &[],
         }
     }

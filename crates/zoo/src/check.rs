@@ -77,6 +77,7 @@ fn check_imports(variant: &Variant) -> Result<()> {
         match import {
             Import::Tfjs(_) => ensure(count >= 2, || "a TensorFlow.js model has a JSON and weights".into())?,
             Import::Tflite(_) => ensure(count == 1, || "a TensorFlow Lite model is one file".into())?,
+            Import::Ncnn(_) => ensure(count == 2, || "an ncnn model has layers and weights".into())?,
             Import::Ctranslate2Whisper => ensure(count >= 1, || "no files".into())?,
         }
     }

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use opendr_engine::{Error, Result};
 use opendr_import::{
-    ImportOptions, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files, whisper_from_ctranslate2,
+    ImportOptions, onnx_from_ncnn, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files,
+    whisper_from_ctranslate2,
 };
 
 use crate::card::{Import, ImportedNetwork};
@@ -34,6 +35,15 @@ pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) ->
             Ok(vec![(&network.output, onnx_from_tflite(first, &options(network))?.into())])
         }
         Import::Tflite(_) => Err(Error::format(format!("a TensorFlow Lite model of {} files", files.len()))),
+        Import::Ncnn(network) => match others {
+            [(_, weights)] => {
+                Ok(vec![(&network.output, onnx_from_ncnn(first, weights, &options(network))?.into())])
+            }
+            _ => Err(Error::format(format!(
+                "an ncnn model of {} files: layers and weights are two",
+                files.len()
+            ))),
+        },
         Import::Ctranslate2Whisper => {
             let networks = whisper_from_ctranslate2(first)?;
             let [encoder, decoder] = Import::WHISPER;

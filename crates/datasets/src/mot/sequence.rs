@@ -209,6 +209,11 @@ impl MotSequence {
         rows_of(&self.truth, frame)
     }
 
+    /// Whether `det.txt` has found anything in any picture.
+    pub fn has_detections(&self) -> bool {
+        !self.detections.is_empty()
+    }
+
     /// The rows of `det.txt` for picture number `frame`.
     pub fn detections(&self, frame: i64) -> &[MotRow] {
         rows_of(&self.detections, frame)

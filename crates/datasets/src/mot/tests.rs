@@ -47,6 +47,14 @@ fn sequences_follow_one_another() {
     assert_eq!(first.classes.label(&first.annotations[1].bounding_box.name), Some("distractor"));
     let second = mot.get(1).unwrap();
     assert_eq!(second.data[0].header(), &Header::new(100_000_000, "A"));
+    // What was found is data where tracks are wanted, and not where boxes are to be learned.
+    let sample = mot.get(0).unwrap();
+    let Value::BoundingBoxList(found) = &sample.data[1] else { panic!("{sample:?}") };
+    assert_eq!(found.boxes[0].corners(), [9.0, 19.0, 40.0, 60.0]);
+    assert!(matches!(&second.data[1], Value::BoundingBoxList(found) if found.boxes.is_empty()));
+    let options = OpenOptions { target: Some(ValueType::BoundingBoxList), ..OpenOptions::default() };
+    let boxes = Mot::open(folder.path(), &options, &Problems::strict()).unwrap();
+    assert_eq!(boxes.get(0).unwrap().data.len(), 1);
     assert_eq!(mot.sequences()[0].truth(2)[0].visibility, 0.75);
     assert!(mot.get(2).unwrap().data.is_empty());
     assert_eq!(tracks(&mot, 4).annotations[0].id, 4);
@@ -138,6 +146,8 @@ fn what_is_written_is_read() {
     for index in 0..mot.len() {
         assert_eq!(tracks(&again, index).annotations, tracks(&mot, index).annotations, "{index}");
         assert_eq!(again.get(index).unwrap().data.len(), mot.get(index).unwrap().data.len());
+        let boxes = |mot: &Mot| mot.detections(index).unwrap().boxes;
+        assert_eq!(boxes(&again), boxes(&mot), "{index}");
     }
 }
 

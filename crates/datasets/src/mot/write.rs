@@ -18,6 +18,7 @@ struct Unfinished {
     folder: PathBuf,
     name: String,
     truth: String,
+    detections: String,
     pictures: i64,
     image_size: Option<[usize; 2]>,
 }
@@ -94,6 +95,23 @@ impl Unfinished {
             write_picture(dataset.path(index).as_deref(), image, &file, link)?;
             self.image_size = Some([image.width(), image.height()]);
         }
+        let found = sample.data.iter().filter_map(|datum| match datum {
+            Value::BoundingBoxList(found) => Some(found),
+            _ => None,
+        });
+        for one in found
+            .flat_map(|found| &found.boxes)
+            .filter(|one| one.corners().iter().all(|edge| edge.is_finite()))
+        {
+            let (frame, confidence) = (self.pictures + 1, one.confidence);
+            // Writing to a String cannot fail.
+            writeln!(
+                self.detections,
+                "{frame},-1,{},{},{},{},{confidence}",
+                one.left, one.top, one.width, one.height
+            )
+            .ok();
+        }
         self.pictures += 1;
         self.truth += &truth;
         Ok(())
@@ -109,6 +127,9 @@ impl Unfinished {
             writeln!(info, "imWidth={width}\nimHeight={height}\nimExt=.jpg").ok();
         }
         write_file(&self.folder.join("seqinfo.ini"), info.as_bytes())?;
+        if !self.detections.is_empty() {
+            write_file(&self.folder.join("det/det.txt"), self.detections.as_bytes())?;
+        }
         write_file(&self.folder.join("gt/gt.txt"), self.truth.as_bytes())
     }
 }

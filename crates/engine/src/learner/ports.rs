@@ -2,7 +2,7 @@
 
 use smallvec::SmallVec;
 
-use crate::{Datum, Error, Header, Result, ValueRef, ValueType};
+use crate::{Datum, Error, Header, Result, Value, ValueRef, ValueType};
 
 /// One named input: a Python argument, a command-line flag, a field of a C struct, a ROS topic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,6 +58,27 @@ impl<'a> Ports<'a> {
     pub fn one(value: impl Into<ValueRef<'a>>) -> Self {
         let value = value.into();
         Self::default().with(value.value_type().port(), value)
+    }
+
+    /// The data of a sample as the ports of a learner: each port takes the first datum of its type that none before it took, and
+    /// is left out where there is none; what is given once a stream is not in samples. Where no type fits, they are in
+    /// the order of the ports, so that the learner says what it wants.
+    pub fn of_sample(table: &'static [Port], data: &'a [Value]) -> Self {
+        let mut is_taken: SmallVec<[bool; 4]> = data.iter().map(|_| false).collect();
+        let mut ports = Self::default();
+        for port in table.iter().filter(|port| !port.init) {
+            let fits = |(at, value): &(usize, &Value)| {
+                !is_taken[*at] && value.as_value_ref().value_type() == port.value_type
+            };
+            if let Some((at, value)) = data.iter().enumerate().find(fits) {
+                is_taken[at] = true;
+                ports = ports.with(port.name, value);
+            }
+        }
+        if ports.values.is_empty() {
+            return table.iter().zip(data).fold(ports, |ports, (port, value)| ports.with(port.name, value));
+        }
+        ports
     }
 
     /// Adds a port.
@@ -125,5 +146,35 @@ impl<'a> Ports<'a> {
             ))),
             None => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::target::{BoundingBoxList, Category, PoseList};
+
+    const fn port(name: &'static str, value_type: ValueType, init: bool) -> Port {
+        Port { name, doc: "", value_type, optional: true, init }
+    }
+
+    static TABLE: [Port; 4] = [
+        port("begin", ValueType::BoundingBoxList, true),
+        port("left", ValueType::BoundingBoxList, false),
+        port("right", ValueType::BoundingBoxList, false),
+        port("poses", ValueType::PoseList, false),
+    ];
+
+    #[test]
+    fn samples_meet_ports_by_type() {
+        let data: [Value; 3] =
+            [PoseList::default().into(), Category::default().into(), BoundingBoxList::default().into()];
+        let ports = Ports::of_sample(&TABLE, &data);
+        let names: Vec<_> = ports.values.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["left", "poses"]);
+        assert_eq!(ports.get("left").unwrap().value_type(), ValueType::BoundingBoxList);
+        let ports = Ports::of_sample(&TABLE, &data[1..2]);
+        assert!(ports.get("begin").is_some(), "as they stand");
+        assert!(Ports::of_sample(&TABLE, &[]).values.is_empty());
     }
 }

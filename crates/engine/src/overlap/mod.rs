@@ -6,4 +6,4 @@ mod rotated;
 mod upright;
 
 pub use rotated::{RotatedRectangle, StandingBox};
-pub use upright::{image_cover, image_overlap};
+pub use upright::{image_cover, image_distance_overlap, image_generalised_overlap, image_overlap};

@@ -15,6 +15,33 @@ pub fn image_cover(a: [f64; 4], b: [f64; 4]) -> f64 {
     if shared > 0.0 { shared / area(a) } else { 0.0 }
 }
 
+/// Generalised intersection over union of two boxes `[x0, y0, x1, y1]`, -1..=1: less than 0 the more there is between them
+/// (H. Rezatofighi et al., "Generalized Intersection over Union", CVPR 2019, Algorithm 1). -1 where neither has an area
+/// nor the box around them.
+pub fn image_generalised_overlap(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let shared = shared_area(a, b);
+    let (union, around) = (area(a) + area(b) - shared, area(around(a, b)));
+    if around > 0.0 { shared / union.max(f64::MIN_POSITIVE) - (around - union) / around } else { -1.0 }
+}
+
+/// Intersection over union of two boxes `[x0, y0, x1, y1]` less the squared distance of their middles, as a share of the squared
+/// diagonal of the box around both: -1..=1 (Z. Zheng et al., "Distance-IoU Loss", AAAI 2020, Eq. 7).
+pub fn image_distance_overlap(a: [f64; 4], b: [f64; 4]) -> f64 {
+    let square = |axis: usize| {
+        let between = (a[axis] + a[axis + 2] - b[axis] - b[axis + 2]) / 2.0;
+        let around = around(a, b);
+        [between, around[axis + 2] - around[axis]].map(|length| length * length)
+    };
+    let ([dx, width], [dy, height]) = (square(0), square(1));
+    let diagonal = width + height;
+    image_overlap(a, b) - if diagonal > 0.0 { (dx + dy) / diagonal } else { 0.0 }
+}
+
+/// The smallest box with both.
+fn around(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]
+}
+
 fn area([x0, y0, x1, y1]: [f64; 4]) -> f64 {
     (x1 - x0).max(0.0) * (y1 - y0).max(0.0)
 }
@@ -35,6 +62,18 @@ mod tests {
         assert_eq!(image_overlap(a, a), 1.0);
         let turned = [4.0, 4.0, 0.0, 0.0];
         assert_eq!((image_overlap(a, turned), image_cover(turned, a)), (0.0, 0.0));
+        // Side by side, 2 apart: the box around them has 10 by 4.
+        let far = [6.0, 0.0, 10.0, 4.0];
+        assert_eq!(image_generalised_overlap(a, far), -8.0 / 40.0);
+        assert_eq!(image_distance_overlap(a, far), -36.0 / 116.0);
+        assert_eq!((image_generalised_overlap(a, a), image_distance_overlap(a, a)), (1.0, 1.0));
+        let around = 24.0 - (16.0 + 8.0 - 4.0);
+        assert_eq!(image_generalised_overlap(a, b), 4.0 / 20.0 - around / 24.0);
+        let point = [1.0, 1.0, 1.0, 1.0];
+        assert_eq!(
+            (image_generalised_overlap(point, point), image_distance_overlap(point, point)),
+            (-1.0, 0.0)
+        );
         let touching = [4.0, 0.0, 8.0, 4.0];
         assert_eq!((image_overlap(a, touching), image_cover(a, touching)), (0.0, 0.0));
     }

@@ -3,6 +3,7 @@
 mod centernet;
 mod nanodet;
 pub mod single_shot_detector;
+mod tiled_detection;
 
 pub use centernet::{CenterNet, CenterNetParams};
 pub use nanodet::{Nanodet, NanodetParams};
@@ -11,6 +12,7 @@ pub use nanodet::{NanodetFitParams, NanodetFreeze, NanodetNetwork};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_vision::InputGeometry;
 pub use single_shot_detector::{SingleShotDetector, SingleShotDetectorParams};
+pub use tiled_detection::{TiledDetection, TiledDetectionParams, TiledDetectionState};
 
 use crate::suppression::Candidate;
 

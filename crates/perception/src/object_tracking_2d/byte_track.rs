@@ -115,6 +115,11 @@ impl ByteTrack {
 }
 
 impl ByteTrackState {
+    /// How many objects are remembered, those out of sight too.
+    pub fn track_count(&self) -> usize {
+        self.tracks.len()
+    }
+
     fn update(&mut self, params: &ByteTrackParams, input: &TrackerInputs<'_>) -> Result<()> {
         let lowest = params.low_threshold.min(params.threshold);
         sound_boxes(input.detections, f64::from(lowest), &mut self.boxes);

@@ -120,6 +120,11 @@ impl Sort {
 }
 
 impl SortState {
+    /// How many objects are remembered, those out of sight too.
+    pub fn track_count(&self) -> usize {
+        self.tracks.len()
+    }
+
     /// Pairs tracks and boxes; the rest of the tracks may be forgotten, and the rest of the boxes begin tracks.
     fn pair(&mut self, params: &SortParams, input: &TrackerInputs<'_>) {
         let needed = if self.frame <= i64::from(params.min_hits) { 1 } else { params.min_hits };

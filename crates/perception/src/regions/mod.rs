@@ -1,11 +1,14 @@
 //! Where to look closer: from a coarse look at a large picture to the few parts of it that are worth a second one.
 //!
 //! A first pass marks cells of a [`CellGrid`]; cells that touch become a [`Region`]; regions are grown by a margin,
-//! joined where they overlap, and cut into tiles where they are larger than a second pass can magnify.
+//! joined where they overlap, and cut into tiles where they are larger than a second pass can magnify. What a
+//! [`CoarsePicture`] shows of brightness tells where there is detail, and where something moved.
 
 mod cell_grid;
+mod coarse_picture;
 
 pub use cell_grid::CellGrid;
+pub use coarse_picture::CoarsePicture;
 
 /// A part of a picture, in whole pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

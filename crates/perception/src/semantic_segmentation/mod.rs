@@ -4,6 +4,7 @@ mod bisenet;
 mod deeplab;
 mod nearest;
 mod selfie_segmentation;
+mod tiled_segmentation;
 
 #[cfg(feature = "training")]
 pub use bisenet::BisenetFitParams;
@@ -11,3 +12,4 @@ pub use bisenet::{Bisenet, BisenetParams};
 pub use deeplab::{Deeplab, DeeplabParams};
 pub(crate) use nearest::nearest;
 pub use selfie_segmentation::{SelfieSegmentation, SelfieSegmentationParams};
+pub use tiled_segmentation::{TiledSegmentation, TiledSegmentationParams, TiledSegmentationState};

@@ -30,6 +30,7 @@ pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Resu
                 both.image = warp(&both.image, map, border.level)?;
                 retain(&mut both.boxes.boxes, |found| follow_box(found, map, border))?;
             }
+            Value::BoundingBoxList(_) => follow(datum, map, border)?,
             other => {
                 return Err(Error::unsupported(format!(
                     "a {} beside the picture cannot follow when that is moved; leave the augmentation out",

@@ -142,6 +142,11 @@ impl Learner for DeepSort {
 }
 
 impl DeepSortState {
+    /// How many objects are remembered, those out of sight too.
+    pub fn track_count(&self) -> usize {
+        self.tracks.len()
+    }
+
     /// Takes the boxes of a frame and how they look.
     fn see(
         &mut self,

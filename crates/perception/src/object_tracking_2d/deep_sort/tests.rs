@@ -1,3 +1,4 @@
+use opendr_engine::Random;
 use opendr_engine::model::Model;
 use opendr_engine::target::BoundingBox;
 
@@ -71,6 +72,38 @@ fn numbers_stay_with_persons() {
         tracker.infer_into(&mut state, input, &mut answer).unwrap();
         let wanted: Vec<_> = PERSONS.iter().zip(1..).map(|([x0, ..], id)| (id, x0 + shift)).collect();
         assert_eq!(ids(&answer), if frame == 3 { vec![] } else { wanted }, "frame {frame}");
+    }
+}
+
+#[test]
+fn hostile_frames_never_panic_and_memory_is_bounded() {
+    let Some(tracker) = tracker() else { return };
+    let photo = Image::from_rgb8(vec![99; 3 * 50 * 40], 50, 40).unwrap();
+    let (mut state, mut answer) = (DeepSortState::default(), TrackingAnnotationList::default());
+    let mut random = Random::new(9);
+    for frame in 0..10_000_i64 {
+        // The network looks at what can be looked at: few, so that the test ends.
+        let count = if frame % 5000 == 0 { 5000 } else { random.below(2) };
+        let found = (0..count).map(|_| {
+            let strange = [f32::NAN, f32::INFINITY, -1e38, -20.0, 0.0, 1e38];
+            let place = [0; 4].map(|_| match random.chance(0.3) {
+                true => strange[random.below(strange.len())],
+                false => random.uniform(0.0, 50.0),
+            });
+            BoundingBox::new(
+                random.below(2) as i64,
+                place[0],
+                place[1],
+                place[2],
+                place[3],
+                random.uniform(0.0, 1.2),
+            )
+        });
+        let mut detections = BoundingBoxList::from(found.collect::<Vec<_>>());
+        detections.header.stamp_ns = Some(-frame);
+        let input = DeepSortInputs { image: &photo, detections: &detections };
+        tracker.infer_into(&mut state, input, &mut answer).unwrap();
+        assert!(state.track_count() <= MOST && answer.annotations.len() <= MOST);
     }
 }
 

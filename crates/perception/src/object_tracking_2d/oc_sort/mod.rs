@@ -108,6 +108,11 @@ impl OcSort {
 }
 
 impl OcSortState {
+    /// How many objects are remembered, those out of sight too.
+    pub fn track_count(&self) -> usize {
+        self.tracks.len()
+    }
+
     fn update(&mut self, params: &OcSortParams, input: &TrackerInputs<'_>) -> Result<()> {
         sound_boxes(input.detections, f64::from(params.threshold), &mut self.boxes);
         self.is_taken.clear();

@@ -113,6 +113,11 @@ impl Learner for Ab3dmot {
 }
 
 impl Ab3dmotState {
+    /// How many objects are remembered, those out of sight too.
+    pub fn track_count(&self) -> usize {
+        self.tracks.len()
+    }
+
     fn update(&mut self, params: &Ab3dmotParams, list: &BoundingBox3DList) {
         self.frame = self.frame.saturating_add(1);
         self.boxes.clear();

@@ -2,10 +2,9 @@
 
 use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
-use opendr_vision::{ChannelOrder, Preprocess};
 
 use super::{HighResolutionPoseEstimationParams, RegionMethod};
-use crate::regions::{CellGrid, Region, join_overlapping};
+use crate::regions::{CellGrid, CoarsePicture, Region, join_overlapping};
 
 /// A part of a picture, and how many pixels high the network sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,9 +14,8 @@ pub(super) struct Look {
 }
 
 /// How the choice is made, with its work memory.
+#[derive(Default)]
 pub(super) struct Search {
-    /// The coarse picture's brightness.
-    grey: Preprocess,
     scratch: Pool<Scratch>,
 }
 
@@ -25,7 +23,7 @@ pub(super) struct Search {
 struct Scratch {
     grid: CellGrid,
     detail: CellGrid,
-    grey: Vec<u8>,
+    coarse: CoarsePicture,
     regions: Vec<Region>,
 }
 
@@ -40,12 +38,6 @@ const CELL: usize = 8;
 /// More groups of cells than this are noise.
 const MOST_GROUPS: usize = 256;
 
-impl Default for Search {
-    fn default() -> Self {
-        Self { grey: Preprocess::new(CELL, CELL).order(ChannelOrder::Grey), scratch: Pool::default() }
-    }
-}
-
 impl Search {
     /// Runs the `first` pass, which marks the cells of its grid where heat maps are high, and lists what is worth a
     /// closer look: parts with heat before parts with nothing but detail.
@@ -56,7 +48,7 @@ impl Search {
         looks: &mut Vec<Look>,
         first: impl FnOnce(&mut CellGrid) -> Result<()>,
     ) -> Result<()> {
-        let Scratch { grid, detail, grey, regions } = &mut *self.scratch.take();
+        let Scratch { grid, detail, coarse, regions } = &mut *self.scratch.take();
         let size = [view.width(), view.height()];
         looks.clear();
         grid.reset(0, 0);
@@ -71,7 +63,7 @@ impl Search {
         grow(regions, params.percentage_around_crop, size);
         let look = |region: &Region| Look { region: *region, height: height_of(region, params) };
         looks.extend(regions.iter().map(look));
-        self.mark_detail(view, params, grey, detail)?;
+        mark_detail(view, params, coarse, detail)?;
         regions.iter().for_each(|region| detail.unmark(region, size));
         regions.clear();
         detail.take_regions(size, MOST_GROUPS, regions);
@@ -119,33 +111,21 @@ impl Search {
         looks
             .extend(regions.iter().map(|region| Look { region: *region, height: height_of(region, params) }));
     }
+}
 
-    /// Marks the cells of the coarse picture in which brightness differs.
-    fn mark_detail(
-        &self,
-        view: ImageView<'_>,
-        params: &HighResolutionPoseEstimationParams,
-        grey: &mut Vec<u8>,
-        detail: &mut CellGrid,
-    ) -> Result<()> {
-        let rows = params.first_pass_height.div_ceil(CELL).max(1);
-        let columns = (rows * view.width()).div_ceil(view.height().max(1)).clamp(1, 8 * rows);
-        let width = columns * CELL;
-        let coarse = self.grey.with_size(width, rows * CELL);
-        grey.resize(coarse.len(), 0);
-        coarse.run_into(view, grey)?;
-        detail.reset(columns, rows);
-        detail.mark(|column, row| {
-            let mut range = (u8::MAX, u8::MIN);
-            for line in grey[row * CELL * width..].chunks_exact(width).take(CELL) {
-                for level in &line[column * CELL..(column + 1) * CELL] {
-                    range = (range.0.min(*level), range.1.max(*level));
-                }
-            }
-            f32::from(range.1) - f32::from(range.0) > params.detail_threshold
-        });
-        Ok(())
-    }
+/// Marks the cells of the coarse picture in which brightness differs.
+fn mark_detail(
+    view: ImageView<'_>,
+    params: &HighResolutionPoseEstimationParams,
+    coarse: &mut CoarsePicture,
+    detail: &mut CellGrid,
+) -> Result<()> {
+    let rows = params.first_pass_height.div_ceil(CELL).max(1);
+    let columns = (rows * view.width()).div_ceil(view.height().max(1)).clamp(1, 8 * rows);
+    coarse.look(view, columns, rows, CELL)?;
+    detail.reset(columns, rows);
+    detail.mark(|column, row| f32::from(coarse.range(column, row)) > params.detail_threshold);
+    Ok(())
 }
 
 fn grow(regions: &mut Vec<Region>, share: f32, size: [usize; 2]) {

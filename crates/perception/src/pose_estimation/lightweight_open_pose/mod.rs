@@ -11,8 +11,6 @@ mod network;
 #[cfg(feature = "training")]
 mod objective;
 #[cfg(feature = "training")]
-mod open_sides;
-#[cfg(feature = "training")]
 mod person_crop;
 #[cfg(test)]
 #[cfg(feature = "training")]

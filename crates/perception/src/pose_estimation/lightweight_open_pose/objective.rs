@@ -14,10 +14,10 @@ use opendr_training::{Container, Loss, Objective};
 use opendr_vision::{Anchor, InputGeometry, Preprocess};
 
 use super::network::{Maps, Network, NetworkConfig};
-use super::open_sides::open_sides;
 use super::person_crop::PersonCrop;
 use super::{LEVEL, LightweightOpenPose, OUTPUTS, STRIDE};
 use crate::frozen_layers::FrozenLayers;
+use crate::open_sides::open_sides;
 use crate::pose_estimation::joints::opendr_joints;
 use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, Painter};
 

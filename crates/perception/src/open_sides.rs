@@ -10,7 +10,7 @@ const OUTPUT_SIDES: [&str; 2] = ["rows", "columns"];
 
 /// Leaves height and width of inputs and outputs `[1, channels, height, width]` open. The network is one of
 /// convolutions, additions and joinings, none of which knows a side.
-pub(super) fn open_sides(onnx: &[u8]) -> Result<Vec<u8>> {
+pub(crate) fn open_sides(onnx: &[u8]) -> Result<Vec<u8>> {
     let mut model = model_from_bytes(onnx)?;
     let Some(graph) = &mut model.graph else { return Err(Error::internal("a model without a graph")) };
     graph.value_info.clear();

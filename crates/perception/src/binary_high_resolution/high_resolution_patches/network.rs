@@ -1,0 +1,60 @@
+//! Four convolutions.
+
+use burn::module::Module;
+use burn::nn::conv::{Conv2d, Conv2dConfig};
+use burn::nn::{BatchNorm, BatchNormConfig};
+use burn::tensor::activation::relu;
+use burn::tensor::{Device, Tensor};
+
+use super::PatchArchitecture;
+
+/// Three convolutions that halve the picture and one as large as what is left of a patch. None pads, so that a patch gives
+/// one answer, the same alone and in a picture.
+#[derive(Module, Debug)]
+pub struct PatchNetwork {
+    first: Block,
+    second: Block,
+    third: Block,
+    answer: Conv2d,
+}
+
+#[derive(Module, Debug)]
+struct Block {
+    conv: Conv2d,
+    norm: BatchNorm,
+}
+
+impl PatchNetwork {
+    /// Of an architecture.
+    pub fn new(architecture: PatchArchitecture, device: &Device) -> Self {
+        let width = match architecture {
+            PatchArchitecture::Vgg720p => 16,
+            PatchArchitecture::Vgg1080p => 8,
+        };
+        let halved = |side: usize, kernel: usize| (side - kernel) / 2 + 1;
+        let left = halved(halved(halved(architecture.side(), 5), 3), 3);
+        Self {
+            first: Block::new(3, width, 5, device),
+            second: Block::new(width, 2 * width, 3, device),
+            third: Block::new(2 * width, 2 * width, 3, device),
+            answer: Conv2dConfig::new([2 * width, 2], [left; 2]).init(device),
+        }
+    }
+
+    /// `[batch, 3, height, width]` to logits `[batch, 2, rows, columns]`, one row and column for a patch.
+    pub fn forward(&self, pictures: Tensor<4>) -> Tensor<4> {
+        let features = self.third.forward(self.second.forward(self.first.forward(pictures)));
+        self.answer.forward(features)
+    }
+}
+
+impl Block {
+    fn new(inputs: usize, outputs: usize, kernel: usize, device: &Device) -> Self {
+        let conv = Conv2dConfig::new([inputs, outputs], [kernel; 2]).with_stride([2; 2]).with_bias(false);
+        Self { conv: conv.init(device), norm: BatchNormConfig::new(outputs).init(device) }
+    }
+
+    fn forward(&self, features: Tensor<4>) -> Tensor<4> {
+        relu(self.norm.forward(self.conv.forward(features)))
+    }
+}

@@ -1,0 +1,126 @@
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use opendr_engine::Result;
+
+/// How long a picture may take.
+#[derive(Debug, Clone, Copy)]
+pub struct Allowance {
+    begun: Instant,
+    limit: Option<Duration>,
+}
+
+impl Allowance {
+    /// From now on so many milliseconds; 0 or no number: no limit.
+    pub fn of_milliseconds(milliseconds: f32) -> Self {
+        let limit = (milliseconds > 0.0).then(|| Duration::from_secs_f32(milliseconds.min(1e9) / 1000.0));
+        Self { begun: Instant::now(), limit }
+    }
+
+    /// Whether there is time for something that takes `long`.
+    fn has(&self, long: Duration) -> bool {
+        self.limit.is_none_or(|limit| self.begun.elapsed() + long <= limit)
+    }
+}
+
+/// Does `jobs` in their order, at most `workers` side by side, while the allowance has time for one more that takes as long as
+/// the longest so far; the first is always done. `work` is given the number of its worker and the job; what was done
+/// is in the order of the jobs.
+///
+/// # Errors
+/// The first error of `work`; what is under way is finished.
+///
+/// # Panics
+/// Goes on with a panic of `work`.
+pub fn look_side_by_side<R: Send>(
+    workers: usize,
+    jobs: &[usize],
+    allowance: Allowance,
+    work: impl Fn(usize, usize) -> Result<R> + Sync,
+) -> Result<Vec<(usize, R)>> {
+    let (next, longest) = (AtomicUsize::new(0), AtomicU64::new(0));
+    let done = Mutex::new(Vec::new());
+    let run = |worker: usize| {
+        loop {
+            let at = next.load(Ordering::Relaxed);
+            let Some(job) = jobs.get(at) else { return };
+            if at > 0 && !allowance.has(Duration::from_nanos(longest.load(Ordering::Relaxed))) {
+                return;
+            }
+            if next.compare_exchange(at, at + 1, Ordering::Relaxed, Ordering::Relaxed).is_err() {
+                continue;
+            }
+            let begun = Instant::now();
+            let result = work(worker, *job);
+            longest.fetch_max(begun.elapsed().as_nanos() as u64, Ordering::Relaxed);
+            if result.is_err() {
+                next.store(jobs.len(), Ordering::Relaxed);
+            }
+            done.lock().unwrap_or_else(PoisonError::into_inner).push((at, *job, result));
+        }
+    };
+    thread::scope(|scope| {
+        for worker in 1..workers.min(jobs.len()) {
+            let run = &run;
+            scope.spawn(move || run(worker));
+        }
+        run(0);
+    });
+    let mut done = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    done.sort_unstable_by_key(|(at, ..)| *at);
+    done.into_iter().map(|(_, job, result)| result.map(|result| (job, result))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::Error;
+
+    use super::*;
+
+    #[test]
+    fn all_is_done_in_order_without_a_limit() {
+        for workers in [0, 1, 3] {
+            let jobs: Vec<usize> = (0..50).rev().collect();
+            let done =
+                look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), |_, job| Ok(job * 2));
+            let wanted: Vec<_> = jobs.iter().map(|job| (*job, job * 2)).collect();
+            assert_eq!(done.unwrap(), wanted);
+        }
+    }
+
+    #[test]
+    fn one_is_done_when_the_time_is_over_already() {
+        let allowance = Allowance::of_milliseconds(1e-6);
+        thread::sleep(Duration::from_millis(1));
+        let done = look_side_by_side(1, &[7, 8, 9], allowance, |_, job| Ok(job)).unwrap();
+        assert_eq!(done, [(7, 7)]);
+        assert!(look_side_by_side(2, &[], allowance, |_, job| Ok(job)).unwrap().is_empty());
+    }
+
+    #[test]
+    fn what_would_take_too_long_is_not_begun() {
+        let begun = Instant::now();
+        let (long, limit) = (Duration::from_millis(30), Duration::from_millis(75));
+        let allowance = Allowance { begun, limit: Some(limit) };
+        let done = look_side_by_side(1, &[1, 2, 3, 4, 5], allowance, |_, job| {
+            thread::sleep(long);
+            Ok(job)
+        });
+        // Two fit; the machine may be slow, so that there may be fewer, never more.
+        assert!((1..=2).contains(&done.unwrap().len()));
+    }
+
+    #[test]
+    fn an_error_ends_it() {
+        let work = |_: usize, job: usize| {
+            if job == 3 { Err(Error::invalid_input("three")) } else { Ok(job) }
+        };
+        for workers in [1, 2] {
+            let jobs: Vec<usize> = (0..1000).collect();
+            let error = look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), work).unwrap_err();
+            assert!(error.to_string().contains("three"));
+        }
+    }
+}
