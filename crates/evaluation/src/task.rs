@@ -9,6 +9,7 @@ use opendr_engine::{Error, Result, Task};
 pub fn metric_of(task: Task) -> Result<&'static str> {
     match task {
         Task::ObjectDetection2d => Ok("coco_detection"),
+        Task::ObjectDetection3d => Ok("kitti_detection"),
         Task::ObjectTracking2d => Ok("hota"),
         Task::FaceDetection => Ok("voc_detection"),
         Task::ImageClassification

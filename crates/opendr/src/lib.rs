@@ -51,9 +51,9 @@ pub use opendr_perception::{
     activity_recognition, beats, compressive_learning, face_detection, face_recognition,
     facial_expression_recognition, facial_landmarks, fall_detection, gesture_recognition, grasp_detection,
     hand_pose_estimation, heart_anomaly_detection, image_classification, mfcc, multimodal_human_centric,
-    object_detection_2d, object_tracking_2d, object_tracking_3d, pose_estimation, regions, resampler,
-    semantic_segmentation, skeleton_based_action_recognition, speech_recognition, speech_transcription,
-    suppression, tracking, voice_activity, voice_activity_detection,
+    object_detection_2d, object_detection_3d, object_tracking_2d, object_tracking_3d, pose_estimation,
+    regions, resampler, semantic_segmentation, skeleton_based_action_recognition, speech_recognition,
+    speech_transcription, suppression, tracking, voice_activity, voice_activity_detection,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

@@ -17,6 +17,7 @@ use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, Ga
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector};
+use opendr_perception::object_detection_3d::VoxelObjectDetection3d;
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
 use opendr_perception::pose_estimation::{
@@ -39,6 +40,7 @@ pub fn registry() -> &'static Registry {
             CenterNet,
             Nanodet,
             SingleShotDetector,
+            VoxelObjectDetection3d,
             Sort,
             ByteTrack,
             OcSort,
