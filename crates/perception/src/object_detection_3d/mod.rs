@@ -2,6 +2,6 @@
 
 pub mod voxel_object_detection;
 
-pub use voxel_object_detection::{Scan, VoxelObjectDetection3d, VoxelObjectDetection3dParams};
 #[cfg(feature = "training")]
 pub use voxel_object_detection::{PillarObjective, VoxelObjectDetection3dFitParams};
+pub use voxel_object_detection::{Scan, VoxelObjectDetection3d, VoxelObjectDetection3dParams};

@@ -83,7 +83,9 @@ mod tests {
         assert_eq!(GRID.cell([0.0, -4.0, -3.0]), Some([0, 0]));
         assert_eq!(GRID.cell([7.999_999_5, 0.2, 0.0]), Some([15, 8]));
         assert_eq!(GRID.middle([15, 8]), [7.75, 0.25]);
-        for outside in [[8.0, 0.0, 0.0], [-0.01, 0.0, 0.0], [1.0, 4.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, -3.1]] {
+        for outside in
+            [[8.0, 0.0, 0.0], [-0.01, 0.0, 0.0], [1.0, 4.0, 0.0], [1.0, 0.0, 1.0], [1.0, 0.0, -3.1]]
+        {
             assert_eq!(GRID.cell(outside), None);
         }
         for strange in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e38] {

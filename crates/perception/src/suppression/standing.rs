@@ -85,7 +85,8 @@ mod tests {
 
     #[test]
     fn what_is_no_box_is_dropped() {
-        let mut boxes = vec![car(0.0, f64::NAN, 0.9, 0), car(f64::INFINITY, 0.0, 0.9, 1), car(0.0, 0.0, f32::NAN, 2)];
+        let mut boxes =
+            vec![car(0.0, f64::NAN, 0.9, 0), car(f64::INFINITY, 0.0, 0.9, 1), car(0.0, 0.0, f32::NAN, 2)];
         boxes.push(StandingCandidate {
             floor: RotatedRectangle { center: [0.0; 2], size: [-1.0, 2.0], angle: 0.0 },
             ..car(0.0, 0.0, 0.9, 3)

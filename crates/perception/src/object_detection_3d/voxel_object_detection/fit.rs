@@ -81,12 +81,8 @@ impl VoxelObjectDetection3dFitParams {
             let classes = model.manifest().classes.clone();
             return Ok(PillarObjective { layout, classes, augment: self.augment });
         }
-        let grid = PillarGrid {
-            x: [0.0, self.ahead],
-            y: [-self.aside, self.aside],
-            z: HEIGHTS,
-            side: self.pillar,
-        };
+        let grid =
+            PillarGrid { x: [0.0, self.ahead], y: [-self.aside, self.aside], z: HEIGHTS, side: self.pillar };
         grid.check()?;
         let sides = [grid.columns(), grid.rows()];
         if sides.iter().any(|side| !side.is_multiple_of(MULTIPLE)) {
@@ -102,6 +98,10 @@ impl VoxelObjectDetection3dFitParams {
             anchors.extend(AnchorKind::of_class(name, number)?);
         }
         AnchorKind::check(&anchors, classes.len())?;
-        Ok(PillarObjective { layout: PillarLayout { grid, stride: 2, anchors }, classes, augment: self.augment })
+        Ok(PillarObjective {
+            layout: PillarLayout { grid, stride: 2, anchors },
+            classes,
+            augment: self.augment,
+        })
     }
 }

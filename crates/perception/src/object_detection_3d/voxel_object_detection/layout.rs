@@ -38,8 +38,10 @@ impl PillarLayout {
     pub fn from_manifest(manifest: &Manifest) -> Result<Self> {
         let layout: Self =
             serde_json::from_value(Value::Object(manifest.inputs.clone())).map_err(|error| {
-                Error::format("the model's \"inputs\" do not tell its grid and its anchors; train or get it anew")
-                    .with_source(error)
+                Error::format(
+                    "the model's \"inputs\" do not tell its grid and its anchors; train or get it anew",
+                )
+                .with_source(error)
             })?;
         layout.grid.check()?;
         AnchorKind::check(&layout.anchors, manifest.classes.len())?;

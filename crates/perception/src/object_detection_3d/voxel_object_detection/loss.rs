@@ -38,7 +38,11 @@ impl PillarLoss {
         let backs = output.backs.reshape([-1]);
         if batch.objects.is_empty() {
             let nothing = offsets.sum() * 0.0;
-            return Self { scores: background, offsets: nothing.clone(), directions: nothing + backs.sum() * 0.0 };
+            return Self {
+                scores: background,
+                offsets: nothing.clone(),
+                directions: nothing + backs.sum() * 0.0,
+            };
         }
         let count = batch.objects.len();
         let objects = Tensor::<1, Int>::from_data(TensorData::new(batch.objects.clone(), [count]), device);

@@ -123,7 +123,10 @@ impl Learner for VoxelObjectDetection3d {
         let channels = points.channels() + Voxeliser::STATISTICS;
         let shape = [1, channels, layout.grid.rows(), layout.grid.columns()];
         let [input] = pillars.inputs() else {
-            return Err(Error::format(format!("{PILLAR_FILE} has {} inputs instead of one", pillars.inputs().len())));
+            return Err(Error::format(format!(
+                "{PILLAR_FILE} has {} inputs instead of one",
+                pillars.inputs().len()
+            )));
         };
         if input.dims.iter().zip(shape).any(|(dim, side)| dim.is_some_and(|dim| dim != side)) {
             return Err(Error::format(format!(
@@ -132,7 +135,17 @@ impl Learner for VoxelObjectDetection3d {
         }
         let [scores, offsets, backs] = OUTPUTS.map(|name| pillars.output_index(name));
         let outputs = [scores?, offsets?, backs?];
-        Ok(Self { params, classes, layout, names, points, pillars, channels, outputs, scratch: Pool::default() })
+        Ok(Self {
+            params,
+            classes,
+            layout,
+            names,
+            points,
+            pillars,
+            channels,
+            outputs,
+            scratch: Pool::default(),
+        })
     }
 
     fn params(&self) -> &VoxelObjectDetection3dParams {
@@ -153,7 +166,13 @@ impl Learner for VoxelObjectDetection3d {
         boxes.boxes.clear();
         boxes.classes.clone_from(&self.classes);
         boxes.action = None;
-        self.points.run(scan.cloud(), &self.layout.grid, &mut scratch.voxeliser, &mut scratch.chunk, &mut scratch.features)?;
+        self.points.run(
+            scan.cloud(),
+            &self.layout.grid,
+            &mut scratch.voxeliser,
+            &mut scratch.chunk,
+            &mut scratch.features,
+        )?;
         if scratch.voxeliser.cells().is_empty() {
             return Ok(());
         }
@@ -170,7 +189,9 @@ impl Learner for VoxelObjectDetection3d {
         })?;
         self.thin_out(scratch);
         for candidate in &scratch.candidates {
-            let Some(FoundBox { place, score, class }) = scratch.found.get(candidate.index as usize) else { continue };
+            let Some(FoundBox { place, score, class }) = scratch.found.get(candidate.index as usize) else {
+                continue;
+            };
             let mut found = place.to_camera(scan.calibration(), scan.image_shape());
             // As KITTI has it, what the camera cannot see is no answer.
             if scan.image_shape().is_some() && found.truncated >= 1.0 {

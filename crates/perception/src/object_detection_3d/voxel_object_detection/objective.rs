@@ -66,8 +66,7 @@ impl Objective for PillarObjective {
     fn container(&self, network: &PillarNetwork) -> Result<Container> {
         let grid = &self.layout.grid;
         let input = Input::new("points", [CHUNK, PillarPoint::FEATURES]);
-        let points =
-            export::onnx(network, input, &["features"], |network, points| network.features(points))?;
+        let points = export::onnx(network, input, &["features"], |network, points| network.features(points))?;
         let input = Input::new("pillars", [1, CHANNELS, grid.rows(), grid.columns()]);
         let pillars = export::onnx(network, input, &OUTPUTS, |network, canvas| {
             let output = network.forward(canvas);

@@ -29,7 +29,9 @@ impl PointFeatures {
     pub fn open(model: &Model, device: Device) -> Result<Self> {
         let session = Session::open(&model.file(POINT_FILE)?, device)?;
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
-            return Err(Error::format(format!("{POINT_FILE} has not one input and one output; train or get it anew")));
+            return Err(Error::format(format!(
+                "{POINT_FILE} has not one input and one output; train or get it anew"
+            )));
         };
         match (&input.dims[..], &output.dims[..]) {
             ([Some(CHUNK), Some(PillarPoint::FEATURES)], [_, Some(learnt @ 1..=MOST_FEATURES)]) => {
