@@ -38,7 +38,8 @@ fn main() -> Result<()> {
         statistics.extend(voxeliser.statistics().flatten());
         scatter(&statistics, Voxeliser::STATISTICS, voxeliser.cells(), &mut canvas);
     });
-    let candidates: Vec<_> = (0..).zip(boxes.chunks_exact(6)).map(|(index, numbers)| candidate(index, numbers)).collect();
+    let candidates: Vec<_> =
+        (0..).zip(boxes.chunks_exact(6)).map(|(index, numbers)| candidate(index, numbers)).collect();
     let (mut kept, mut dropped) = (Vec::new(), Vec::new());
     let suppress = median(|| {
         kept.clone_from(&candidates);
@@ -55,7 +56,8 @@ fn main() -> Result<()> {
 
 fn candidate(index: u32, numbers: &[f32]) -> StandingCandidate {
     let number = |at: usize| numbers.get(at).copied().map_or(f64::NAN, f64::from);
-    let floor = RotatedRectangle { center: [number(0), number(1)], size: [number(2), number(3)], angle: number(4) };
+    let floor =
+        RotatedRectangle { center: [number(0), number(1)], size: [number(2), number(3)], angle: number(4) };
     StandingCandidate { floor, score: number(5) as f32, class: 0, index }
 }
 

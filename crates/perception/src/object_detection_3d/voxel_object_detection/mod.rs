@@ -93,6 +93,8 @@ const POINT_FILE: &str = "vfe.onnx";
 const PILLAR_FILE: &str = "rpn.onnx";
 /// Points that the first takes at once.
 const CHUNK: usize = 4096;
+/// Channels of a picture: more are a mistake.
+const MOST_CHANNELS: usize = 1024;
 /// The outputs of the second.
 const OUTPUTS: [&str; 3] = ["scores", "offsets", "backs"];
 
@@ -118,21 +120,21 @@ impl Learner for VoxelObjectDetection3d {
         let layout = PillarLayout::from_manifest(model.manifest())?;
         let classes = model.manifest().classes.clone();
         let names = classes.iter().map(Name::from).collect();
-        let points = PointFeatures::open(model, device)?;
         let pillars = Session::open(&model.file(PILLAR_FILE)?, device)?;
-        let channels = points.channels() + Voxeliser::STATISTICS;
-        let shape = [1, channels, layout.grid.rows(), layout.grid.columns()];
-        let [input] = pillars.inputs() else {
-            return Err(Error::format(format!(
-                "{PILLAR_FILE} has {} inputs instead of one",
-                pillars.inputs().len()
-            )));
+        let [rows, columns] = [layout.grid.rows(), layout.grid.columns()].map(Some);
+        let channels = match pillars.inputs() {
+            [input] if input.dims.len() == 4 && input.dims[2..] == [rows, columns] => {
+                input.dims[1].unwrap_or(0)
+            }
+            _ => 0,
         };
-        if input.dims.iter().zip(shape).any(|(dim, side)| dim.is_some_and(|dim| dim != side)) {
+        if !(Voxeliser::STATISTICS + 1..=MOST_CHANNELS).contains(&channels) {
             return Err(Error::format(format!(
-                "{PILLAR_FILE} takes {input}, but grid and {POINT_FILE} make {shape:?}; train or get it anew"
+                "{PILLAR_FILE} does not take one picture of {rows:?} x {columns:?} pillars as the model's grid has; train \
+                 or get it anew"
             )));
         }
+        let points = PointFeatures::open(model, device, channels - Voxeliser::STATISTICS)?;
         let [scores, offsets, backs] = OUTPUTS.map(|name| pillars.output_index(name));
         let outputs = [scores?, offsets?, backs?];
         Ok(Self {

@@ -7,6 +7,7 @@ use burn::tensor::activation::relu;
 use burn::tensor::module::interpolate;
 use burn::tensor::ops::{InterpolateMode, InterpolateOptions};
 use burn::tensor::{Device, IndexingUpdateOp, Int, Tensor, TensorData};
+use opendr_engine::{Error, Result};
 use opendr_training::layers::{ConvNormAct, ConvNormActConfig};
 
 use super::coding::NUMBERS;
@@ -79,12 +80,15 @@ impl PillarNetwork {
 
     /// Features of pillars, `[pillars, 28]`: the largest of their points in each channel. `pillars` has the pillar of every
     /// point, below `count`.
-    pub fn pooled(&self, points: Tensor<2>, pillars: &[u32], count: usize) -> Tensor<2> {
+    ///
+    /// # Errors
+    /// `Internal` when features cannot be read, `InvalidInput` for a point of a pillar that there is not.
+    pub fn pooled(&self, points: Tensor<2>, pillars: &[u32], count: usize) -> Result<Tensor<2>> {
         let device = points.device();
         let features = self.features(points);
-        let places = largest(&features, pillars, count);
+        let places = largest(&features, pillars, count)?;
         let places = Tensor::<2, Int>::from_data(TensorData::new(places, [count, LEARNT]), &device);
-        features.gather(0, places)
+        Ok(features.gather(0, places))
     }
 
     /// Pillars `[pillars, channels]` on the cells of pictures, `[batch, channels, rows, columns]`.
@@ -137,20 +141,25 @@ fn answering(outputs: usize, bias: f32, device: &Device) -> Conv2d {
 }
 
 /// The points with the largest feature of every pillar and channel: where its gradient goes.
-fn largest(features: &Tensor<2>, pillars: &[u32], count: usize) -> Vec<i64> {
-    let values = features.clone().detach().into_data().try_to_vec::<f32>().unwrap_or_default();
+fn largest(features: &Tensor<2>, pillars: &[u32], count: usize) -> Result<Vec<i64>> {
+    let values = features.clone().detach().into_data().try_to_vec::<f32>();
+    let values =
+        values.map_err(|error| Error::internal(format!("features of points are no floats: {error:?}")))?;
     let mut places = vec![0; count * LEARNT];
     let mut most = vec![f32::NEG_INFINITY; count * LEARNT];
     for (at, (point, pillar)) in values.chunks_exact(LEARNT).zip(pillars).enumerate() {
         let begin = *pillar as usize * LEARNT;
-        let best = most[begin..begin + LEARNT].iter_mut().zip(&mut places[begin..begin + LEARNT]);
-        for ((most, place), value) in best.zip(point) {
+        let range = begin..begin + LEARNT;
+        let (Some(most), Some(places)) = (most.get_mut(range.clone()), places.get_mut(range)) else {
+            return Err(Error::invalid_input(format!("a point is in pillar {pillar}, of {count}")));
+        };
+        for ((most, place), value) in most.iter_mut().zip(places).zip(point) {
             if value > most {
                 (*most, *place) = (*value, at as i64);
             }
         }
     }
-    places
+    Ok(places)
 }
 
 #[cfg(test)]
@@ -165,7 +174,8 @@ mod tests {
             [[0.1, 0.2, 0.3, 0.4], [-0.5, 0.5, 1.0, 0.0], [0.9, -0.9, 0.2, 0.3]],
             &device,
         );
-        let pooled = network.pooled(points.clone(), &[1, 0, 1], 2);
+        let pooled = network.pooled(points.clone(), &[1, 0, 1], 2).unwrap();
+        assert!(network.pooled(points.clone(), &[1, 0, 7], 2).is_err());
         let alone = network.features(points).into_data().try_to_vec::<f32>().unwrap();
         let pooled = pooled.into_data().try_to_vec::<f32>().unwrap();
         for channel in 0..LEARNT {

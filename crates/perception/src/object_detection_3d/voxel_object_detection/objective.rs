@@ -52,7 +52,7 @@ impl Objective for PillarObjective {
                 Tensor::<2>::from_data(data, device)
             };
             let points = matrix(&batch.points, PillarPoint::FEATURES);
-            let pooled = network.pooled(points, &batch.pillars, count);
+            let pooled = network.pooled(points, &batch.pillars, count)?;
             let pillars = Tensor::cat(vec![pooled, matrix(&batch.statistics, Voxeliser::STATISTICS)], 1);
             PillarNetwork::canvas(pillars, &batch.cells, shape)
         };

@@ -21,34 +21,22 @@ pub(super) struct Chunk {
     pillars: Vec<u32>,
 }
 
-/// More features of a point are a mistake.
-const MOST_FEATURES: usize = 1024;
-
 impl PointFeatures {
-    /// Opens the container's layer.
-    pub fn open(model: &Model, device: Device) -> Result<Self> {
+    /// Opens the container's layer, which makes `learnt` features of a point.
+    pub fn open(model: &Model, device: Device, learnt: usize) -> Result<Self> {
         let session = Session::open(&model.file(POINT_FILE)?, device)?;
-        let ([input], [output]) = (session.inputs(), session.outputs()) else {
+        let ([input], [_]) = (session.inputs(), session.outputs()) else {
             return Err(Error::format(format!(
                 "{POINT_FILE} has not one input and one output; train or get it anew"
             )));
         };
-        match (&input.dims[..], &output.dims[..]) {
-            ([Some(CHUNK), Some(PillarPoint::FEATURES)], [_, Some(learnt @ 1..=MOST_FEATURES)]) => {
-                let learnt = *learnt;
-                Ok(Self { session, learnt })
-            }
-            _ => Err(Error::format(format!(
-                "{POINT_FILE} takes {input} and gives {output}; it should take [{CHUNK}, {}] and give [{CHUNK}, 1 to \
-                 {MOST_FEATURES}]",
-                PillarPoint::FEATURES
-            ))),
+        if input.dims[..] != [Some(CHUNK), Some(PillarPoint::FEATURES)] {
+            let wanted = [CHUNK, PillarPoint::FEATURES];
+            return Err(Error::format(format!(
+                "{POINT_FILE} takes {input} instead of {wanted:?}; train or get it anew"
+            )));
         }
-    }
-
-    /// Features of a point.
-    pub fn channels(&self) -> usize {
-        self.learnt
+        Ok(Self { session, learnt })
     }
 
     /// Writes the features of all pillars of `cloud`, the layer's and then the voxeliser's, one pillar after the other.
@@ -88,7 +76,12 @@ impl PointFeatures {
         chunk.features.resize(CHUNK * PillarPoint::FEATURES, 0.0);
         let input = TensorView::new(&[CHUNK, PillarPoint::FEATURES], &chunk.features[..])?;
         self.session.run(&[input], |outputs| {
-            let given = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
+            let given =
+                outputs.first().filter(|given| *given.shape() == [CHUNK, self.learnt]).ok_or_else(|| {
+                    let wanted = [CHUNK, self.learnt];
+                    Error::format(format!("{POINT_FILE} does not give {wanted:?}; train or get it anew"))
+                })?;
+            let given = given.values::<f32>()?;
             for (point, pillar) in given.chunks_exact(self.learnt).zip(&chunk.pillars) {
                 let begin = *pillar as usize * channels;
                 let Some(most) = features.get_mut(begin..begin + self.learnt) else { continue };

@@ -59,8 +59,7 @@ impl PillarBatches {
             let is_box = place.size.iter().all(|side| (0.05..100.0).contains(side));
             let [x, y, _] = place.center;
             let grid = &self.layout.grid;
-            let is_within = scan.cloud().channels() > 0
-                && (f64::from(grid.x[0])..f64::from(grid.x[1])).contains(&x)
+            let is_within = (f64::from(grid.x[0])..f64::from(grid.x[1])).contains(&x)
                 && (f64::from(grid.y[0])..f64::from(grid.y[1])).contains(&y);
             let class = (is_within && found.occluded < HIDDEN).then_some(class);
             is_box.then_some(Truth { place, class })
