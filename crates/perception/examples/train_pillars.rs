@@ -49,9 +49,10 @@ fn main() -> Result<()> {
             epochs: (4 * steps as usize).div_ceil(TRAINING.1),
             checkpoint_after_iter: 250,
             log_after: 10,
+            lr: 3e-3,
             ..defaults.training
         };
-        let fit_params = VoxelObjectDetection3dFitParams { training, ..defaults };
+        let fit_params = VoxelObjectDetection3dFitParams { pillar: 0.4, training, ..defaults };
         let streets = StreetScans::new(TRAINING.0, TRAINING.1);
         println!("{}", handle.fit(&fit_params, (&streets as &dyn DatasetIterator).into(), None, &job)?);
     } else {

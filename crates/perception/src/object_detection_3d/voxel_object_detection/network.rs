@@ -14,12 +14,12 @@ use super::coding::NUMBERS;
 use crate::pillars::{PillarPoint, Voxeliser};
 
 /// Features of a pillar that the network makes of its points; the voxeliser tells more.
-pub const LEARNT: usize = 28;
+pub const LEARNT: usize = 20;
 /// Channels of the picture of pillars.
 pub const CHANNELS: usize = LEARNT + Voxeliser::STATISTICS;
 /// Channels of the stages, and of the features that the head sees.
-const STAGES: [usize; 3] = [32, 64, 64];
-const FEATURES: usize = 40;
+const STAGES: [usize; 3] = [24, 48, 64];
+const FEATURES: usize = 32;
 /// The score that an untrained network gives everything (Lin et al., Focal Loss, ICCV 2017, section 3.3).
 const PRIOR: f32 = 0.01;
 
@@ -73,12 +73,12 @@ impl PillarNetwork {
         }
     }
 
-    /// Features of points, `[points, 4]` to `[points, 28]`, none below 0.
+    /// Features of points, `[points, 4]` to `[points, 20]`, none below 0.
     pub fn features(&self, points: Tensor<2>) -> Tensor<2> {
         relu(self.points.forward(points))
     }
 
-    /// Features of pillars, `[pillars, 28]`: the largest of their points in each channel. `pillars` has the pillar of every
+    /// Features of pillars, `[pillars, 20]`: the largest of their points in each channel. `pillars` has the pillar of every
     /// point, below `count`.
     ///
     /// # Errors
