@@ -49,6 +49,7 @@ impl StreetScans {
         for label in returns.iter().map(|seen| usize::from(seen.label)) {
             seen.get_mut(label).into_iter().for_each(|count| *count += 1);
         }
+        let rays = self.lidar.directions(&mut Random::new(0))?;
         let mut boxes = Vec::new();
         for (label, object) in street.objects.iter().enumerate() {
             let Some(name) = name_of(object.kind) else { continue };
@@ -59,30 +60,28 @@ impl StreetScans {
             }
             found.name = name.into();
             found.confidence = 1.0;
-            found.occluded = self.hidden(street, label, seen[label])?;
+            found.occluded = self.hidden(street, label, seen[label], &rays)?;
             boxes.push(found);
         }
         Ok(BoundingBox3DList { classes: self.classes(), ..boxes.into() })
     }
 
     /// 0 to 3 by the share of the rays that would meet it if it stood alone.
-    fn hidden(&self, street: &Street, label: usize, seen: usize) -> Result<i32> {
+    fn hidden(&self, street: &Street, label: usize, seen: usize, rays: &[Vector]) -> Result<i32> {
         let mut alone = Scene::default();
         let own = street.scene.bodies().iter().filter(|body| usize::from(body.label()) == label);
         own.for_each(|body| alone.add(body.clone()));
         let place = &street.objects[label].place;
-        let [x, y, _] = place.center;
-        let reach = place.size[0].hypot(place.size[1]) / 2.0;
-        let angle = y.atan2(x) as f32;
-        let half = (reach / x.hypot(y).max(reach + 0.1)).asin() as f32;
-        let lidar = &self.lidar;
-        let directions: Vec<Vector> = lidar
-            .directions(&mut Random::new(0))?
-            .into_iter()
-            .filter(|[dx, dy, _]| (dy.atan2(*dx) - angle).abs() < half)
-            .collect();
-        let mut hits = vec![None; directions.len()];
-        alone.hits([0.0; 3], &directions, lidar.range, &mut hits)?;
+        let [x, y] = [place.center[0], place.center[1]].map(|part| part as f32);
+        let distance = x.hypot(y).max(0.1);
+        // The tangent of half the angle under which it is seen, at most 45 degrees: what is nearer covers all.
+        let reach = (place.size[0].hypot(place.size[1]) / 2.0) as f32;
+        let most = (reach / (distance - reach).max(0.1)).min(1.0);
+        let [cos, sin] = [x / distance, y / distance];
+        let is_near = |[dx, dy, _]: &Vector| (dy * cos - dx * sin).abs() <= most * (dx * cos + dy * sin);
+        let rays: Vec<Vector> = rays.iter().copied().filter(is_near).collect();
+        let mut hits = vec![None; rays.len()];
+        alone.hits([0.0; 3], &rays, self.lidar.range, &mut hits)?;
         let all = hits.iter().flatten().count().max(1);
         // Some returns are lost anyhow.
         let share = seen as f64 / all as f64 / 0.85;
