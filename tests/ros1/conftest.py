@@ -71,7 +71,10 @@ class Process:
         try:
             return until(found, seconds, f"{count} of {key}")
         except AssertionError as error:
-            raise AssertionError(f"{error}: {self.lines[-5:]} {''.join(self.other[-20:])}") from None
+            others = [line for line in self.lines if key not in line]
+            raise AssertionError(
+                f"{error}: {self.lines[-5:]}, besides {others[-20:]} {''.join(self.other[-20:])}"
+            ) from None
 
     def end(self, seconds=60):
         code = self.process.wait(seconds)

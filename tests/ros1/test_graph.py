@@ -96,6 +96,15 @@ def test_a_master_that_is_killed_and_started_again(program, tmp_path):
         ros.close()
 
 
+def test_a_master_that_does_not_tell_of_a_publisher(ros):
+    """It tells once of a change; what was lost is asked for. Here the master has forgotten a subscription."""
+    held = ros.probe("hold", "/told", "__name:=untold")
+    ros.master.unregisterSubscriber("/untold", "/heard", held.wait_for("ready")[0]["ready"])
+    assert "/untold" not in ros.subscribers("/heard") and "/untold" in ros.publishers("/told")
+    ros.peer("publish", "/heard", "hello", 20)
+    held.wait_for("text")
+
+
 def test_a_master_that_comes_later(program, tmp_path):
     ros = Ros(tmp_path, program)
     try:

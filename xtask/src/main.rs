@@ -7,6 +7,7 @@ mod python_package;
 mod realtime;
 mod ros;
 mod shell;
+mod speed;
 mod surfaces;
 mod test;
 mod tools;
@@ -28,6 +29,8 @@ usage: cargo xtask VERB
              the command with the feature zenoh beside a Zenoh router and peer; no part of the test command
   generate   write stubs, C headers and docs/learners.md, which are made of the registry
   realtime   fail when a task has no learner at 25 frames a second in 1 GB on 2 cores
+  realtime --write
+             that, and write what was measured into the cards; on a machine with nothing else to do
   install-c PREFIX
              the C library with its headers, pkg-config file and CMake package under PREFIX
 
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         ["ros", "--zenoh"] => ros::run_zenoh(),
         ["generate"] => generate::run(),
         ["realtime"] => realtime::run(),
+        ["realtime", "--write"] => realtime::run_and_write(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),
         _ => {
             eprintln!("{USAGE}");

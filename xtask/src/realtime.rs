@@ -7,6 +7,7 @@ use std::process::Command;
 use serde_json::Value;
 
 use crate::shell::{Result, command, output, target};
+use crate::speed::write_speed;
 
 const FRAMES_PER_SECOND: f64 = 25.0;
 const REAL_TIME_FACTOR: f64 = 0.2;
@@ -15,15 +16,19 @@ const CORES: &str = "0,1";
 
 /// Measures every model that is cached or near, and fails when a task has none that keeps the promise.
 pub fn run() -> Result<()> {
-    run_with(|_| {})
+    measure(|_, _| Ok(()))
 }
 
-/// As [`run`], with an environment for every program that it starts.
-pub fn run_with(environment: impl Fn(&mut Command)) -> Result<()> {
+/// As [`run`]; the cards then have what was measured.
+pub fn run_and_write() -> Result<()> {
+    measure(write_speed)
+}
+
+/// Calls `see` with each model and what `opendr bench` says of it.
+fn measure(see: impl Fn(&str, &Value) -> Result<()>) -> Result<()> {
     let opendr = |arguments: &[&str]| {
         let mut opendr = bounded_opendr();
         opendr.args(arguments);
-        environment(&mut opendr);
         opendr
     };
     let models = json(&mut opendr(&["models", "--json"]))?;
@@ -31,15 +36,16 @@ pub fn run_with(environment: impl Fn(&mut Command)) -> Result<()> {
     for model in models.as_array().into_iter().flatten() {
         let [name, task] = ["model", "task"].map(|key| model[key].as_str().unwrap_or_default());
         let kept = best.entry(task.to_owned()).or_default();
-        let report =
-            match json(&mut opendr(&["bench", name, "--frames", "40", "--warmup", "5", "--json", "--quiet"]))
-            {
-                Ok(report) => report,
-                Err(error) => {
-                    println!("{task}: {name}: not measured ({error})");
-                    continue;
-                }
-            };
+        let report = match json(&mut opendr(&[
+            "bench", name, "--frames", "100", "--warmup", "5", "--json", "--quiet",
+        ])) {
+            Ok(report) => report,
+            Err(error) => {
+                println!("{task}: {name}: not measured ({error})");
+                continue;
+            }
+        };
+        see(name, &report)?;
         let number = |key: &str| report[key].as_f64().unwrap_or(f64::NAN);
         let (fps, peak) = (number("frames_per_second"), number("peak_memory_mb"));
         let (fast, how_fast) = match report["real_time_factor"].as_f64() {

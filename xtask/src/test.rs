@@ -39,6 +39,7 @@ pub fn run() -> Result<()> {
         "training on GPUs",
         cargo(&["check", "--package", "opendr-training", "--features", "cuda,wgpu"]).env("DOCS_RS", "1"),
     )?;
+    check("ROS 2 over Zenoh", &mut cargo(&["check", "--package", "opendr-ros", "--features", "zenoh"]))?;
     if is_installed("cargo-nextest") {
         check("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
     } else {

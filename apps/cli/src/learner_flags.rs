@@ -16,6 +16,12 @@ pub fn add(command: Command, entry: &'static Entry) -> Command {
     with_params(command, entry).args(ports)
 }
 
+/// Adds the learner's flags to a command that measures: something is drawn for an input without a file.
+pub fn add_for_bench(command: Command, entry: &'static Entry) -> Command {
+    let ports = entry.ports.iter().skip(1).map(|port| port_flag(port).required(false));
+    with_params(command, entry).args(ports)
+}
+
 /// Adds the learner's flags to a command that trains: its own parameters, and those of its training.
 pub fn add_for_fit(command: Command, entry: &'static Entry) -> Command {
     let heading = format!("Training of {}", entry.spec.name);

@@ -25,7 +25,7 @@ use opendr_perception::pose_estimation::{
 };
 use opendr_perception::semantic_segmentation::Deeplab;
 use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
-use opendr_perception::speech_recognition::{DsCnn, MatchboxNet};
+use opendr_perception::speech_recognition::{DsCnn, EdgeSpeechNets, MatchboxNet};
 use opendr_perception::speech_transcription::Whisper;
 use opendr_perception::voice_activity_detection::SileroVad;
 use opendr_planning::end_to_end::EndToEndPlanningRl;
@@ -72,6 +72,7 @@ pub fn registry() -> &'static Registry {
             RgbdHandGesture,
             GatedRecurrentUnit,
             AttentionNeuralBagOfFeature,
+            EdgeSpeechNets,
             MatchboxNet,
             DsCnn,
             SileroVad,

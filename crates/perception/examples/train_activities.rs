@@ -49,7 +49,7 @@ fn main() -> Result<()> {
         ..defaults
     };
     let mut handle = Handle::<X3d>::new(params, Device::Cpu)?;
-    let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
+    let job = FitJob { device: Device::Cpu, resume: true, ..FitJob::new(Path::new(output)) };
     let statistics = handle.fit(&fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
     println!("{statistics}");
     co_x3d_from(&Model::open(job.model())?)?.write(&Path::new(output).join("co_x3d"))?;

@@ -79,7 +79,7 @@ fn train<K: TrainableWords>(
     let (kept_apart, training) = (0..clips.len()).partition(|index| is_kept_apart(&clips.name(*index)));
     let (training, kept_apart) = (Subset::new(clips, training)?, Subset::new(clips, kept_apart)?);
     let mut handle = Handle::<WordLearner<K>>::new(params, Device::Cpu)?;
-    let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
+    let job = FitJob { device: Device::Cpu, resume: true, ..FitJob::new(Path::new(output)) };
     let statistics = handle.fit(fit_params, (&training as &dyn DatasetIterator).into(), None, &job)?;
     println!("{statistics}");
     let mut right = 0;

@@ -94,7 +94,6 @@ impl Graph {
     /// Registers everything again, with a master that may know nothing of it.
     pub fn register_all(&self) {
         let publications: Vec<_> = lock(&self.publications).values().cloned().collect();
-        let subscriptions: Vec<_> = lock(&self.subscriptions).clone();
         let services: Vec<_> = lock(&self.services).values().cloned().collect();
         let watches: Vec<_> = lock(&self.watches).clone();
         let each = publications.iter().map(|publication| publication.register(self));
@@ -102,6 +101,12 @@ impl Graph {
         let each = each.chain(watches.iter().map(|watch| watch.register(self).map(|_| ())));
         let errors = each.filter_map(Result::err).collect::<Vec<_>>();
         errors.into_iter().for_each(|error| self.problem(error));
+        self.register_subscriptions();
+    }
+
+    /// Tells the master of every subscription, and connects to the publishers that it knows.
+    pub fn register_subscriptions(&self) {
+        let subscriptions: Vec<_> = lock(&self.subscriptions).clone();
         for error in subscriptions.iter().filter_map(|subscribed| subscribed.register(true).err()) {
             self.problem(error);
         }

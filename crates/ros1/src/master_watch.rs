@@ -13,6 +13,10 @@ use crate::lock::lock;
 /// How often the master is asked.
 const INTERVAL: Duration = Duration::from_secs(2);
 
+/// Looks between two questions for the publishers: the master tells of a change once, and never again where that
+/// was lost.
+const LOOKS: u32 = 5;
+
 /// How long it may take to answer.
 const ANSWER_TIME: Duration = Duration::from_secs(2);
 
@@ -37,6 +41,7 @@ pub(crate) fn start(graph: &Arc<Graph>) -> Result<()> {
 struct Known {
     pid: Option<ParameterValue>,
     lost: bool,
+    looks: u32,
 }
 
 impl Known {
@@ -54,7 +59,10 @@ impl Known {
         self.pid = Some(pid);
         if std::mem::take(&mut self.lost) || other || missed || !is_known(graph)? {
             graph.register_all();
+        } else if self.looks % LOOKS == LOOKS - 1 {
+            graph.register_subscriptions();
         }
+        self.looks = self.looks.wrapping_add(1);
         Ok(())
     }
 }

@@ -99,8 +99,12 @@ pub struct Variant {
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Speed {
-    /// Frames a second from decoded picture to targets.
-    pub fps: f64,
+    /// Frames a second from decoded picture to targets, or calls a second; none of a sound.
+    pub fps: Option<f64>,
+    /// Of a sound, the time for a second of it.
+    pub real_time_factor: Option<f64>,
+    /// Median time of a call, milliseconds.
+    pub p50_ms: Option<f64>,
     /// Peak memory of the process in MB (10^6 bytes).
     pub peak_mb: f64,
     /// Processor, threads, runtime.

@@ -74,10 +74,10 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         && let Some(command) = commands.iter_mut().find(|command| command.get_name() == name)
         && let Some(entry) = named_learner(command, rest)?
     {
-        let add = if ["fit", "tune"].iter().any(|trains| name == trains) {
-            learner_flags::add_for_fit
-        } else {
-            learner_flags::add
+        let add = match name.to_str() {
+            Some("fit" | "tune") => learner_flags::add_for_fit,
+            Some("bench") => learner_flags::add_for_bench,
+            _ => learner_flags::add,
         };
         *command = add(std::mem::take(command), entry);
         if name == "infer" {

@@ -40,6 +40,8 @@ struct Row<'a> {
     source: String,
     cached: bool,
     fps: Option<f64>,
+    real_time_factor: Option<f64>,
+    p50_ms: Option<f64>,
     peak_mb: Option<f64>,
     measured_on: Option<&'a str>,
 }
@@ -75,7 +77,9 @@ fn row<'a>(zoo: &Zoo, item: Item<'a>) -> Row<'a> {
         licence: &variant.licence,
         source: item.public_source().map(ToString::to_string).unwrap_or_default(),
         cached: zoo.cached(&item.to_string()).is_some(),
-        fps: speed.map(|speed| speed.fps),
+        fps: speed.and_then(|speed| speed.fps),
+        real_time_factor: speed.and_then(|speed| speed.real_time_factor),
+        p50_ms: speed.and_then(|speed| speed.p50_ms),
         peak_mb: speed.map(|speed| speed.peak_mb),
         measured_on: speed.map(|speed| speed.on.as_str()),
     }

@@ -4,6 +4,7 @@ mod engine;
 mod library;
 mod provider;
 mod python;
+mod suited;
 
 pub use python::prefer_python;
 
@@ -18,6 +19,7 @@ use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
 use engine::OnnxRuntimeEngine;
 use library::{Library, Version};
+use suited::suited;
 
 /// How long ONNX Runtime's threads wait for work in a loop before they sleep; versions before this option was there
 /// take no notice of it.
@@ -140,7 +142,7 @@ impl OnnxRuntime {
     }
 
     fn open_on_cpu(&self, model: &[u8], options: &SessionOptions) -> Result<Session> {
-        self.builder(options)?.commit_from_memory(model).map_err(|error| {
+        self.builder(options)?.commit_from_memory(&suited(model)).map_err(|error| {
             let message = "ONNX Runtime cannot open the ONNX model";
             // It reports an operator that it has never heard of as a failure like any other.
             let unknown = error.message().contains("No Op registered");

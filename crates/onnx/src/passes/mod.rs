@@ -8,6 +8,7 @@ mod half_weights;
 mod hard_swish;
 mod identity;
 mod pad;
+mod prelu;
 mod rewriter;
 
 pub use constants::constants_to_initializers;
@@ -18,6 +19,7 @@ pub use half_weights::halve_weights;
 pub use hard_swish::fuse_hard_swish;
 pub use identity::remove_identities;
 pub use pad::fold_padding;
+pub use prelu::prelu_to_conv;
 pub use rewriter::Rewriter;
 
 use super::proto::GraphProto;

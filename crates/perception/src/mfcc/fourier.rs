@@ -33,7 +33,7 @@ struct Stage {
     radix: usize,
     count: usize,
     stride: usize,
-    /// `exp(-2πi p j / (radix * count))` at `p * radix + j`.
+    /// `exp(-2πi p j / (radix * count))` at `j * count + p`.
     twiddles: Planes,
     /// `exp(-2πi j / radix)`.
     roots: Planes,
@@ -70,9 +70,7 @@ impl RealFourier {
                 radix,
                 count: rest,
                 stride,
-                twiddles: Planes::turns(radix * rest, |at| {
-                    TAU * ((at / radix) * (at % radix)) as f64 / whole
-                }),
+                twiddles: Planes::turns(radix * rest, |at| TAU * ((at / rest) * (at % rest)) as f64 / whole),
                 roots: Planes::turns(radix, |at| TAU * at as f64 / radix as f64),
             });
             stride *= radix;
@@ -98,20 +96,29 @@ impl RealFourier {
             stage.run(&work.from, &mut work.to);
             std::mem::swap(&mut work.from, &mut work.to);
         }
-        power.clear();
-        power.extend((0..=half).map(|frequency| {
-            let [a, b] = work.from.at(frequency % half);
-            let [c, d] = work.from.at((half - frequency) % half);
-            let (even, odd) = ([a + c, b - d], [b + d, c - a]);
-            let [re, im] = product(odd, self.turns.at(frequency));
-            0.25 * ((even[0] + re).powi(2) + (even[1] + im).powi(2))
-        }));
+        power.resize(half + 1, 0.0);
+        let Planes { re, im } = &work.from;
+        power[0] = (re[0] + im[0]).powi(2);
+        power[half] = (re[0] - im[0]).powi(2);
+        let count = half - 1;
+        let (re, im, power) = (&re[1..][..count], &im[1..][..count], &mut power[1..][..count]);
+        let (turn_re, turn_im) = (&self.turns.re[1..][..count], &self.turns.im[1..][..count]);
+        for at in 0..count {
+            let mirrored = count - 1 - at;
+            let (even_re, even_im) = (re[at] + re[mirrored], im[at] - im[mirrored]);
+            let odd = [im[at] + im[mirrored], re[mirrored] - re[at]];
+            let [odd_re, odd_im] = product(odd, [turn_re[at], turn_im[at]]);
+            power[at] = 0.25 * ((even_re + odd_re).powi(2) + (even_im + odd_im).powi(2));
+        }
     }
 }
 
 impl Stage {
     fn run(&self, from: &Planes, to: &mut Planes) {
         let Self { radix, count, stride, .. } = *self;
+        if (radix, stride) == (4, 1) {
+            return self.butterflies_4(from, to);
+        }
         for group in 0..count {
             let to_re = &mut to.re[group * radix * stride..][..radix * stride];
             let to_im = &mut to.im[group * radix * stride..][..radix * stride];
@@ -128,7 +135,30 @@ impl Stage {
     }
 
     fn twiddle(&self, group: usize, part: usize) -> [f32; 2] {
-        self.twiddles.at(group * self.radix + part)
+        self.twiddles.at(part * self.count + group)
+    }
+
+    /// The first stage, where the groups are the neighbours.
+    fn butterflies_4(&self, from: &Planes, to: &mut Planes) {
+        let count = self.count;
+        let [a_re, b_re, c_re, d_re] = quarters(&from.re, count);
+        let [a_im, b_im, c_im, d_im] = quarters(&from.im, count);
+        let [_, turn_re_1, turn_re_2, turn_re_3] = quarters(&self.twiddles.re, count);
+        let [_, turn_im_1, turn_im_2, turn_im_3] = quarters(&self.twiddles.im, count);
+        let outputs = to.re.chunks_exact_mut(4).zip(to.im.chunks_exact_mut(4));
+        for (at, (to_re, to_im)) in outputs.enumerate().take(count) {
+            let input =
+                [[a_re[at], a_im[at]], [b_re[at], b_im[at]], [c_re[at], c_im[at]], [d_re[at], d_im[at]]];
+            let turns = [
+                [turn_re_1[at], turn_im_1[at]],
+                [turn_re_2[at], turn_im_2[at]],
+                [turn_re_3[at], turn_im_3[at]],
+            ];
+            let output = points_4(input, turns);
+            for part in 0..4 {
+                [to_re[part], to_im[part]] = output[part];
+            }
+        }
     }
 
     fn butterfly_2(&self, group: usize, input: [(&[f32], &[f32]); 2], to_re: &mut [f32], to_im: &mut [f32]) {
@@ -150,15 +180,13 @@ impl Stage {
         let (low, high) = to_im.split_at_mut(2 * self.stride);
         let ((im_0, im_1), (im_2, im_3)) = (low.split_at_mut(self.stride), high.split_at_mut(self.stride));
         for at in 0..self.stride {
-            let (sum_re, sum_im) = (a_re[at] + c_re[at], a_im[at] + c_im[at]);
-            let (gap_re, gap_im) = (a_re[at] - c_re[at], a_im[at] - c_im[at]);
-            let (other_re, other_im) = (b_re[at] + d_re[at], b_im[at] + d_im[at]);
-            // (b - d) times -i.
-            let (turned_re, turned_im) = (b_im[at] - d_im[at], d_re[at] - b_re[at]);
-            (re_0[at], im_0[at]) = (sum_re + other_re, sum_im + other_im);
-            [re_1[at], im_1[at]] = product([gap_re + turned_re, gap_im + turned_im], turns[0]);
-            [re_2[at], im_2[at]] = product([sum_re - other_re, sum_im - other_im], turns[1]);
-            [re_3[at], im_3[at]] = product([gap_re - turned_re, gap_im - turned_im], turns[2]);
+            let input =
+                [[a_re[at], a_im[at]], [b_re[at], b_im[at]], [c_re[at], c_im[at]], [d_re[at], d_im[at]]];
+            let output = points_4(input, turns);
+            [re_0[at], im_0[at]] = output[0];
+            [re_1[at], im_1[at]] = output[1];
+            [re_2[at], im_2[at]] = output[2];
+            [re_3[at], im_3[at]] = output[3];
         }
     }
 
@@ -188,6 +216,27 @@ impl Stage {
     }
 }
 
+/// Four parts of `count` numbers each.
+fn quarters(plane: &[f32], count: usize) -> [&[f32]; 4] {
+    [0, 1, 2, 3].map(|part| &plane[part * count..][..count])
+}
+
+/// A transform of four points, all but the first turned after it.
+#[inline(always)]
+fn points_4([a, b, c, d]: [[f32; 2]; 4], turns: [[f32; 2]; 3]) -> [[f32; 2]; 4] {
+    let (sum, gap) = ([a[0] + c[0], a[1] + c[1]], [a[0] - c[0], a[1] - c[1]]);
+    let other = [b[0] + d[0], b[1] + d[1]];
+    // (b - d) times -i.
+    let turned = [b[1] - d[1], d[0] - b[0]];
+    [
+        [sum[0] + other[0], sum[1] + other[1]],
+        product([gap[0] + turned[0], gap[1] + turned[1]], turns[0]),
+        product([sum[0] - other[0], sum[1] - other[1]], turns[1]),
+        product([gap[0] - turned[0], gap[1] - turned[1]], turns[2]),
+    ]
+}
+
+#[inline(always)]
 fn product(a: [f32; 2], b: [f32; 2]) -> [f32; 2] {
     [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
 }

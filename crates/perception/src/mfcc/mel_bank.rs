@@ -59,9 +59,24 @@ impl MelBank {
     pub fn sums(&self, spectrum: &[f32], sums: &mut [f32]) {
         for (band, sum) in self.bands.iter().zip(sums) {
             let weights = &self.weights[band.weights.clone()];
-            *sum = weights.iter().zip(&spectrum[band.bin..]).map(|(weight, value)| weight * value).sum();
+            *sum = weighted_sum(weights, &spectrum[band.bin..][..weights.len()]);
         }
     }
+}
+
+/// Sums in lanes, which the compiler makes vector instructions of.
+fn weighted_sum(weights: &[f32], values: &[f32]) -> f32 {
+    const LANES: usize = 8;
+    let mut lanes = [0.0; LANES];
+    let (weights, weights_left) = weights.as_chunks::<LANES>();
+    let (values, values_left) = values.as_chunks::<LANES>();
+    for (weights, values) in weights.iter().zip(values) {
+        for (lane, (weight, value)) in lanes.iter_mut().zip(weights.iter().zip(values)) {
+            *lane += weight * value;
+        }
+    }
+    let left: f32 = weights_left.iter().zip(values_left).map(|(weight, value)| weight * value).sum();
+    lanes.iter().sum::<f32>() + left
 }
 
 /// Where Slaney's scale changes from linear to logarithmic.

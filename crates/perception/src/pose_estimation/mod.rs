@@ -21,6 +21,7 @@ pub use lightweight_open_pose::LightweightOpenPoseFitParams;
 pub use lightweight_open_pose::{LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState};
 pub use movenet::{Movenet, MovenetParams};
 use opendr_engine::target::{Keypoint, Pose, Skeleton};
+pub(crate) use pose_tracks::PoseTracks;
 pub use posenet::{Posenet, PosenetParams};
 
 /// COCO's number of each of OpenDR's 18 joints; the neck (1) is made of the shoulders.

@@ -88,20 +88,30 @@ impl Learner for Movenet {
     }
 
     fn infer_into(&self, _: &mut (), image: &Image, poses: &mut PoseList) -> Result<()> {
+        self.find_with(&self.params, image, poses)
+    }
+}
+
+impl Movenet {
+    /// As [`Learner::infer_into`], by thresholds that are not this learner's own.
+    pub(crate) fn find_with(
+        &self,
+        params: &MovenetParams,
+        image: &Image,
+        poses: &mut PoseList,
+    ) -> Result<()> {
         poses.poses.clear();
         self.network.run(image, |outputs, geometry| {
             let row = if self.heads == Heads::One { ONE } else { SIX };
             let rows = outputs[0].values::<f32>()?.chunks_exact(row);
-            poses.poses.extend(rows.filter_map(|row| self.pose(row, geometry)));
+            poses.poses.extend(rows.filter_map(|row| self.pose(params, row, geometry)));
             Ok(())
         })?;
         poses.poses.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
         Ok(())
     }
-}
 
-impl Movenet {
-    fn pose(&self, row: &[f32], geometry: &InputGeometry) -> Option<Pose> {
+    fn pose(&self, params: &MovenetParams, row: &[f32], geometry: &InputGeometry) -> Option<Pose> {
         let side = self.side as f32;
         let joints: [Keypoint; 17] = array::from_fn(|joint| {
             let [y, x, confidence] = array::from_fn(|at| row[3 * joint + at]);
@@ -112,11 +122,11 @@ impl Movenet {
             Heads::One => joints.iter().map(|joint| joint.confidence).sum::<f32>() / 17.0,
             Heads::Six => row[SIX - 1],
         };
-        if confidence.is_nan() || confidence < self.params.threshold {
+        if confidence.is_nan() || confidence < params.threshold {
             return None;
         }
         let mut pose = Pose { confidence, ..Pose::default() };
-        opendr_from_coco(&mut pose, &joints, self.params.keypoint_threshold);
+        opendr_from_coco(&mut pose, &joints, params.keypoint_threshold);
         Some(pose)
     }
 }

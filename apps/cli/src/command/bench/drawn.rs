@@ -2,12 +2,13 @@
 
 use std::f32::consts::TAU;
 
-use opendr::data::{Audio, Image, Layout, PixelFormat, SkeletonSequence, Timeseries, Vector, Video};
-use opendr::target::{BoundingBox, BoundingBoxList};
+use opendr::data::{
+    Audio, Image, Layout, PixelFormat, Pixels, PointCloud, SkeletonSequence, Timeseries, Vector, Video,
+};
+use opendr::learner::Port;
+use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList};
 use opendr::{Error, Result, Value, ValueType};
 use serde_json::{Map, Value as Json};
-
-use super::seen::{HEIGHT, WIDTH};
 
 /// Samples a second, and seconds, of a sound.
 const SAMPLE_RATE: u32 = 16000;
@@ -17,26 +18,34 @@ const FRAMES: usize = 32;
 const CLIP_FRAMES: usize = 16;
 /// Boxes in a frame.
 const BOXES: usize = 25;
+/// Rings of a cloud of points, and points in each.
+const RINGS: usize = 64;
+const RING_POINTS: usize = 1800;
 
-/// Values of the type for a model with such `inputs` in its manifest: more than one where they belong to a stream.
+/// Values of a port of a model with such `inputs` in its manifest, pictures of `width` and `height`: more than one value
+/// where they belong to a stream.
 ///
 /// # Errors
 /// `Unsupported` for a type that nothing can be drawn of.
-pub fn values(kind: ValueType, inputs: &Map<String, Json>) -> Result<Vec<Value>> {
+pub fn values(port: &Port, size: [usize; 2], inputs: &Map<String, Json>) -> Result<Vec<Value>> {
+    let input = inputs.get(port.name);
     let number = |key: &str, otherwise: usize| {
-        let number = inputs.get(kind.port()).and_then(|input| input.get(key)).and_then(Json::as_u64);
+        let number = input.and_then(|input| input.get(key)?.as_u64());
         number.map_or(otherwise, |number| number as usize)
     };
+    let [width, height] = size;
     let size = |at: usize, otherwise: usize| {
-        let size = inputs.get(kind.port()).and_then(|input| input.get("size")?.get(at)?.as_u64());
+        let size = input.and_then(|input| input.get("size")?.get(at)?.as_u64());
         size.map_or(otherwise, |size| size as usize)
     };
-    Ok(match kind {
-        ValueType::Image => vec![picture()?.into()],
+    Ok(match port.value_type {
+        ValueType::Image if port.name == "depth" => vec![depth(width, height)?.into()],
+        ValueType::Image => vec![picture(width, height)?.into()],
         ValueType::Audio => {
-            let count = SAMPLE_RATE as usize * SOUND_S;
-            vec![Audio::new(wave(count, SAMPLE_RATE as f32 / 220.0), 1, SAMPLE_RATE)?.into()]
+            let rate = number("rate", SAMPLE_RATE as usize);
+            vec![Audio::new(wave(rate * SOUND_S, rate as f32 / 220.0), 1, rate as u32)?.into()]
         }
+        ValueType::PointCloud => vec![cloud(number("channels", 4))?.into()],
         ValueType::Timeseries => {
             let shape = [size(0, 140), size(1, 1)];
             vec![Timeseries::new(wave(shape.iter().product(), 70.0), shape)?.into()]
@@ -52,6 +61,7 @@ pub fn values(kind: ValueType, inputs: &Map<String, Json>) -> Result<Vec<Value>>
             vec![Video::new(wave(shape.iter().product(), 90.0), shape)?.into()]
         }
         ValueType::BoundingBoxList => (0..FRAMES).map(|frame| boxes(frame).into()).collect(),
+        ValueType::BoundingBox3DList => (0..FRAMES).map(|frame| boxes_3d(frame).into()).collect(),
         other => {
             let name = other.name();
             return Err(Error::unsupported(format!(
@@ -69,14 +79,38 @@ fn wave(count: usize, period: f32) -> Vec<f32> {
 }
 
 /// Gradients and squares.
-fn picture() -> Result<Image> {
+fn picture(width: usize, height: usize) -> Result<Image> {
     let pixel = |at: usize| {
-        let (x, y) = (at % WIDTH, at / WIDTH);
+        let (x, y) = (at % width, at / width);
         let square = if (x / 64 + y / 64) % 2 == 0 { 200 } else { 40 };
-        [(x * 255 / WIDTH) as u8, (y * 255 / HEIGHT) as u8, square]
+        [(x * 255 / width) as u8, (y * 255 / height) as u8, square]
     };
-    let samples: Vec<u8> = (0..WIDTH * HEIGHT).flat_map(pixel).collect();
-    Image::new(samples, WIDTH, HEIGHT, PixelFormat::Rgb, Layout::Hwc)
+    let samples: Vec<u8> = (0..width * height).flat_map(pixel).collect();
+    Image::new(samples, width, height, PixelFormat::Rgb, Layout::Hwc)
+}
+
+/// A floor that comes near below, in millimetres.
+fn depth(width: usize, height: usize) -> Result<Image> {
+    let samples: Vec<u16> =
+        (0..width * height).map(|at| 3000 - (at / width * 2000 / height) as u16).collect();
+    Image::new(Pixels::from(samples), width, height, PixelFormat::Grey, Layout::Hwc)
+}
+
+/// What a lidar of 64 beams sees on a plane 1.73 m below it, with a wall around.
+fn cloud(channels: usize) -> Result<PointCloud> {
+    let channels = channels.max(3);
+    let mut points = Vec::with_capacity(RINGS * RING_POINTS * channels);
+    for ring in 0..RINGS {
+        let down = (24.8 - 26.8 * ring as f32 / (RINGS - 1) as f32).to_radians();
+        let range = if down > 0.0 { (1.73 / down.sin()).min(50.0) } else { 50.0 };
+        for point in 0..RING_POINTS {
+            let (sine, cosine) = (TAU * point as f32 / RING_POINTS as f32).sin_cos();
+            let flat = range * down.cos();
+            points.extend([flat * cosine, flat * sine, -range * down.sin()]);
+            points.extend(std::iter::repeat_n(0.3, channels - 3));
+        }
+    }
+    PointCloud::new(points, [RINGS * RING_POINTS, channels])
 }
 
 /// Boxes that go to the right, each at its own pace.
@@ -89,22 +123,59 @@ fn boxes(frame: usize) -> BoundingBoxList {
     boxes.collect::<Vec<_>>().into()
 }
 
+/// Cars that drive off, each at its own pace.
+fn boxes_3d(frame: usize) -> BoundingBox3DList {
+    let boxes = (0..BOXES).map(|at| {
+        let (row, column) = (at / 5, at % 5);
+        BoundingBox3D {
+            name: 0.into(),
+            dimensions: [3.9, 1.56, 1.6],
+            location: [
+                column as f32 * 6.0 - 12.0,
+                1.7,
+                10.0 + row as f32 * 10.0 + frame as f32 * (0.2 + 0.1 * row as f32),
+            ],
+            confidence: 0.9,
+            ..BoundingBox3D::default()
+        }
+    });
+    boxes.collect::<Vec<_>>().into()
+}
+
 #[cfg(test)]
 mod tests {
     use serde_json::json;
 
     use super::*;
 
+    fn port(name: &'static str, value_type: ValueType) -> Port {
+        Port { name, doc: "", value_type, optional: false, init: false }
+    }
+
     #[test]
     fn values_have_the_size_that_the_model_names() {
         let inputs =
             json!({ "vector": { "size": [42] }, "skeleton_sequence": { "joints": 25, "channels": 3 } });
         let inputs = inputs.as_object().unwrap();
-        let one = |kind| values(kind, inputs).unwrap().remove(0);
+        let one = |kind: ValueType| values(&port(kind.port(), kind), [64, 32], inputs).unwrap().remove(0);
         assert!(matches!(one(ValueType::Vector), Value::Vector(vector) if vector.as_slice().len() == 42));
         assert!(
             matches!(one(ValueType::SkeletonSequence), Value::SkeletonSequence(all) if all.shape() == [1, 3, 32, 25, 1])
         );
-        assert!(values(ValueType::RlTarget, inputs).is_err());
+        assert!(
+            matches!(one(ValueType::PointCloud), Value::PointCloud(cloud) if cloud.as_slice().len() == 115_200 * 4)
+        );
+        assert!(values(&port("rl_target", ValueType::RlTarget), [64, 32], inputs).is_err());
+    }
+
+    #[test]
+    fn a_depth_lies_over_its_picture() {
+        let one = |name| values(&port(name, ValueType::Image), [64, 32], &Map::new()).unwrap().remove(0);
+        let [Value::Image(picture), Value::Image(depth)] = ["image", "depth"].map(one) else {
+            panic!("no pictures");
+        };
+        assert_eq!([depth.width(), depth.height()], [picture.width(), picture.height()]);
+        assert_eq!(depth.format(), PixelFormat::Grey);
+        assert!(matches!(depth.pixels(), Pixels::U16(_)));
     }
 }

@@ -12,7 +12,7 @@ use opendr::learner::{AnyLearner, Entry, Ports};
 use opendr::{ActingStream, Error, Progress, Result, Unit};
 use serde::Serialize;
 
-use self::seen::Seen;
+use self::seen::{Input, Seen};
 use crate::exit::Outcome;
 use crate::peak_memory::peak_memory_mb;
 use crate::progress_bar::Bar;
@@ -102,7 +102,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Measures a learner of pictures, sounds, series.
+/// Measures a learner of what is seen, heard or measured.
 fn seeing(
     learner: &mut dyn AnyLearner,
     spec: &str,
@@ -110,20 +110,18 @@ fn seeing(
     matches: &ArgMatches,
     bar: &Bar,
 ) -> Result<(Seen, Vec<Timings>)> {
-    let files = learner_flags::port_files(entry, matches)?;
-    let further: Vec<_> =
-        files.iter().map(|file| Ok((file.name(), file.value(0)?))).collect::<Result<_>>()?;
-    let (seen, values) = seen::values(spec, entry, matches, bar)?;
+    let (seen, inputs) = seen::inputs(spec, entry, matches, bar)?;
     let in_pieces = matches!(seen, Seen::Sound { .. }) && entry.capabilities.streaming;
-    let mut calls = values.iter().cycle();
+    let mut frame = 0;
     let timings = measure(matches, bar, || {
-        let Some(value) = calls.next() else {
-            return Err(Error::invalid_input("the sound is too short for a piece of it; name a longer one"));
-        };
-        let mut ports = Ports::one(value);
-        for (name, value) in &further {
-            ports = ports.with(name, value);
+        let mut ports = Ports::default();
+        for Input { port, values } in inputs.iter().filter(|input| frame == 0 || !input.port.init) {
+            let value = values.get(frame % values.len().max(1)).ok_or_else(|| {
+                Error::invalid_input("the sound is too short for a piece of it; name a longer one")
+            })?;
+            ports = ports.with(port.name, value);
         }
+        frame += 1;
         let ((), timings) = Timings::of(|| match in_pieces {
             true => learner.push(Some(&ports), &mut |_| ()),
             false => learner.infer(&ports).map(drop),

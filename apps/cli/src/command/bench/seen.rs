@@ -5,19 +5,21 @@ use std::path::{Path, PathBuf};
 use clap::ArgMatches;
 use opendr::data::Audio;
 use opendr::datasets::{open_value, value_extensions};
-use opendr::learner::Entry;
+use opendr::learner::{Entry, Port};
 use opendr::model::Model;
+use opendr::resampler::resampled;
 use opendr::zoo::ItemKind;
-use opendr::{Progress as _, Result, Value, ValueType, vision};
+use opendr::{Error, Progress as _, Result, Value, ValueType, vision};
 use serde::Serialize;
+use serde_json::{Map, Value as Json};
 
 use super::drawn;
-use crate::loading;
 use crate::progress_bar::Bar;
+use crate::{learner_flags, loading};
 
 /// Size of a picture of the zoo or of our own, pixels.
-pub const WIDTH: usize = 1920;
-pub const HEIGHT: usize = 1080;
+const WIDTH: usize = 1920;
+const HEIGHT: usize = 1080;
 /// How often a microphone hands on what it heard.
 const PIECES_A_SECOND: usize = 10;
 
@@ -35,41 +37,86 @@ pub enum Seen {
     Environment(String),
 }
 
-/// The values of the learner's first port and what they are.
-///
-/// # Errors
-/// What kept the file that the user named from being read, or `Unsupported` for a type that nothing can be drawn of.
-pub fn values(
-    spec: &str,
-    entry: &'static Entry,
-    matches: &ArgMatches,
-    bar: &Bar,
-) -> Result<(Seen, Vec<Value>)> {
-    let kind = entry.ports.first().map_or(ValueType::Image, |port| port.value_type);
-    let (source, value) = match matches.get_one::<PathBuf>("input") {
-        Some(path) => (path.display().to_string(), open_value(kind, path)?),
-        None => match sample(kind, matches, bar)? {
-            Some((source, Value::Image(image))) => (source, vision::resize(&image, WIDTH, HEIGHT)?.into()),
-            Some(found) => found,
-            None => return drawn_values(spec, kind, entry, matches, bar),
-        },
-    };
-    seen(source, vec![value], entry)
+/// The values of one port.
+pub struct Input {
+    pub port: &'static Port,
+    pub values: Vec<Value>,
 }
 
-fn drawn_values(
+/// The values of the learner's ports, and what the first are. A port that may be left out is, unless the user named a file.
+///
+/// # Errors
+/// What kept a file that the user named from being read, or `Unsupported` for a type that nothing can be drawn of.
+pub fn inputs(
     spec: &str,
-    kind: ValueType,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &Bar,
+) -> Result<(Seen, Vec<Input>)> {
+    let Some((first, further)) = entry.ports.split_first() else {
+        return Err(Error::unsupported(format!("{spec} takes nothing that it could be measured on")));
+    };
+    let described = described(spec, matches, bar)?;
+    let (seen, values) = first_values(first, &described, entry, matches, bar)?;
+    let size = match values.first() {
+        Some(Value::Image(image)) => [image.width(), image.height()],
+        _ => [WIDTH, HEIGHT],
+    };
+    let mut inputs = vec![Input { port: first, values }];
+    let files = learner_flags::port_files(entry, matches)?;
+    for port in further {
+        let values = match files.iter().find(|file| file.name() == port.name) {
+            Some(file) => vec![file.value(0)?],
+            None if port.optional && !port.init => continue,
+            None => drawn::values(port, size, &described)?,
+        };
+        inputs.push(Input { port, values });
+    }
+    Ok((seen, inputs))
+}
+
+fn first_values(
+    port: &Port,
+    described: &Map<String, Json>,
     entry: &'static Entry,
     matches: &ArgMatches,
     bar: &Bar,
 ) -> Result<(Seen, Vec<Value>)> {
+    let kind = port.value_type;
+    let (source, values) = match matches.get_one::<PathBuf>("input") {
+        Some(path) => (path.display().to_string(), vec![open_value(kind, path)?]),
+        None => match sample(kind, matches, bar)? {
+            Some((source, Value::Image(image))) => {
+                (source, vec![vision::resize(&image, WIDTH, HEIGHT)?.into()])
+            }
+            Some((source, Value::Audio(sound))) => {
+                let rate = described.get(port.name).and_then(|input| input.get("rate")?.as_u64());
+                (source, vec![at_rate(sound, rate)?.into()])
+            }
+            Some((source, value)) => (source, vec![value]),
+            None => ("drawn".to_owned(), drawn::values(port, [WIDTH, HEIGHT], described)?),
+        },
+    };
+    seen(source, values, entry)
+}
+
+/// What the model says of its inputs.
+fn described(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Map<String, Json>> {
     let container = match matches.get_one::<PathBuf>("model") {
         Some(path) => path.clone(),
         None => loading::pretrained(spec, matches, bar)?,
     };
-    let inputs = Model::open(&container)?.manifest().inputs.clone();
-    seen("drawn".to_owned(), drawn::values(kind, &inputs)?, entry)
+    Ok(Model::open(&container)?.manifest().inputs.clone())
+}
+
+/// A sound of one channel at the rate of the model.
+fn at_rate(sound: Audio, rate: Option<u64>) -> Result<Audio> {
+    match rate.and_then(|rate| u32::try_from(rate).ok()) {
+        Some(rate) if rate != sound.sample_rate() && sound.channels() == 1 => {
+            Audio::new(resampled(sound.as_slice(), sound.sample_rate(), rate)?, 1, rate)
+        }
+        _ => Ok(sound),
+    }
 }
 
 fn seen(source: String, values: Vec<Value>, entry: &'static Entry) -> Result<(Seen, Vec<Value>)> {

@@ -4,6 +4,7 @@
 //! follows the persons; the first verdict on a person stands at once, and another takes its place when it has held for
 //! `hold` seconds, so that one wrong pose raises no alarm and ends none.
 
+mod pose_finder;
 mod verdicts;
 
 use opendr_engine::data::Image;
@@ -13,9 +14,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, PoseList};
 use opendr_engine::{Device, Result, Task};
 
+use self::pose_finder::{PoseFinder, PoseFinderState};
 use self::verdicts::Verdicts;
 use super::Posture;
-use crate::pose_estimation::{LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]
@@ -29,7 +30,7 @@ pub struct FallDetectorParams {
     /// Joints below this score are missing.
     #[param(default = 0.1, range = 0.01..=1.0, live)]
     pub keypoint_threshold: f32,
-    /// Height of the pose network's input. Larger finds smaller persons.
+    /// Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size of its own.
     #[param(default = 368, range = 64..=2048, unit = "px", live)]
     pub base_height: usize,
 }
@@ -46,14 +47,14 @@ pub struct FallDetectorTargets {
 /// A loaded fall detector.
 pub struct FallDetector {
     params: FallDetectorParams,
-    poses: LightweightOpenPose,
+    poses: PoseFinder,
     classes: Classes,
 }
 
 /// What a stream remembers: its persons and the verdicts on them.
 #[derive(Default)]
 pub struct FallDetectorState {
-    poses: LightweightOpenPoseState,
+    poses: PoseFinderState,
     verdicts: Verdicts,
 }
 
@@ -68,7 +69,7 @@ impl Learner for FallDetector {
     type State = FallDetectorState;
 
     fn load(model: &Model, params: FallDetectorParams, device: Device) -> Result<Self> {
-        let poses = LightweightOpenPose::load(model, network_params(&params), device)?;
+        let poses = PoseFinder::load(model, &params, device)?;
         let postures = [Posture::Unknown, Posture::Fallen, Posture::Upright];
         let classes = postures.iter().map(|posture| posture.name()).collect();
         Ok(Self { params, poses, classes })
@@ -93,7 +94,7 @@ impl Learner for FallDetector {
         target: &mut FallDetectorTargets,
     ) -> Result<()> {
         let FallDetectorTargets { falls, poses } = target;
-        self.poses.follow_with(&network_params(&self.params), &mut state.poses, image, poses)?;
+        self.poses.follow(&self.params, &mut state.poses, image, poses)?;
         state.verdicts.begin_frame(&image.header);
         falls.boxes.clear();
         falls.classes.clone_from(&self.classes);
@@ -114,15 +115,5 @@ fn class_of(posture: Posture) -> i64 {
         Posture::Unknown => 0,
         Posture::Fallen => 1,
         Posture::Upright => 2,
-    }
-}
-
-/// What the pose network is told.
-fn network_params(params: &FallDetectorParams) -> LightweightOpenPoseParams {
-    LightweightOpenPoseParams {
-        threshold: params.threshold,
-        keypoint_threshold: params.keypoint_threshold,
-        base_height: params.base_height,
-        ..LightweightOpenPoseParams::default()
     }
 }
