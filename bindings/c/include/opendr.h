@@ -1809,7 +1809,7 @@ static inline opendr_status opendr_infer_hand_gesture(const opendr_learner *lear
  *   hold (a float 0..=60 s, may change while it runs, default 0.5): A posture takes the place of another when it was seen for so long.
  *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
  *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   base_height (an int 64..=2048 px, may change while it runs, default 368): Height of the pose network's input. Larger finds smaller persons.
+ *   base_height (an int 64..=2048 px, may change while it runs, default 368): Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size of its own.
  *
  * Inputs:
  *   image (Image)
@@ -2217,6 +2217,43 @@ static inline opendr_status opendr_infer_attention_neural_bag_of_feature(const o
     opendr_status status_;
     inputs_[0].name = "timeseries";
     inputs_[0].value = (const opendr_value *)timeseries;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * EdgeSpeechNetsLearner: EdgeSpeechNets tell which of a few words was spoken; in four sizes.
+ *
+ * Parameters:
+ *   architecture (a str, one of A, B, C, D, default A): Which network is trained; a loaded model has its own.
+ *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, as many a frame as the network takes.
+ *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
+ *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *
+ * Inputs:
+ *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_edge_speech_nets(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("edge_speech_nets", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_edge_speech_nets(const opendr_learner *learner,
+    const opendr_audio *audio,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
     outputs_[0].name = "category";
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);

@@ -32,8 +32,8 @@ class FallDetectorLearner(NativeLearner):
             one call of infer)
         keypoint_threshold: Joints below this score are missing. (default 0.1; 0.01 to 1; may change while
             running, also for one call of infer)
-        base_height: Height of the pose network's input. Larger finds smaller persons. (default 368; 64 to 2048
-            px; may change while running, also for one call of infer)
+        base_height: Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size
+            of its own. (default 368; 64 to 2048 px; may change while running, also for one call of infer)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Arguments of OpenDR that are taken and have no effect:
