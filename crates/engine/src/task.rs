@@ -43,6 +43,8 @@ impl Task {
 tasks! {
     /// Boxes with classes in a picture.
     ObjectDetection2d = "object_detection_2d";
+    /// Boxes with classes in space.
+    ObjectDetection3d = "object_detection_3d";
     /// Objects that keep their number from frame to frame.
     ObjectTracking2d = "object_tracking_2d";
     /// Objects that keep their number from moment to moment, in space.

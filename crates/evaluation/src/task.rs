@@ -9,7 +9,9 @@ use opendr_engine::{Error, Result, Task};
 pub fn metric_of(task: Task) -> Result<&'static str> {
     match task {
         Task::ObjectDetection2d => Ok("coco_detection"),
+        Task::ObjectDetection3d => Ok("kitti_detection"),
         Task::ObjectTracking2d => Ok("hota"),
+        Task::ObjectTracking3d => Ok("tracking_3d"),
         Task::FaceDetection => Ok("voc_detection"),
         Task::ImageClassification
         | Task::CompressiveLearning

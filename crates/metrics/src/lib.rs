@@ -30,6 +30,7 @@ mod report;
 mod roc;
 mod segmentation;
 mod success;
+mod tracking_3d;
 mod tracking_frame;
 mod transcription;
 mod verification;
@@ -61,6 +62,7 @@ pub use segmentation::{ClassPixels, Segmentation, SegmentationParams, Segmentati
 pub use success::{
     Episode, Interval, Success, SuccessParams, bootstrap_interval, interquartile_mean, wilson_interval,
 };
+pub use tracking_3d::{Tracking3d, Tracking3dParams};
 pub use tracking_frame::TrackingFrame;
 pub use transcription::{Transcription, TranscriptionParams, words_of_text};
 pub use verification::{FoldAccuracy, Verification, VerificationParams};

@@ -6,9 +6,6 @@ use opendr_engine::overlap::image_overlap;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Error, Result};
 
-/// Pairs of one picture, so that a hostile list cannot ask for all memory.
-const MOST_PAIRS: usize = 1 << 22;
-
 /// Identities of one picture and the overlap of every pair.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct TrackingFrame {
@@ -18,6 +15,9 @@ pub struct TrackingFrame {
 }
 
 impl TrackingFrame {
+    /// Pairs of one picture, so that a hostile list cannot ask for all memory.
+    pub(crate) const MOST_PAIRS: usize = 1 << 22;
+
     /// A picture from identities and `overlaps`, `[truth, found]`, last axis fastest, each 0 (apart) to 1 (equal).
     ///
     /// # Errors
@@ -147,9 +147,10 @@ fn check_boxes(whose: &str, boxes: &[(i64, [f64; 4])]) -> Result<()> {
 
 fn check_pairs(truth: usize, found: usize) -> Result<()> {
     match truth.checked_mul(found) {
-        Some(pairs) if pairs <= MOST_PAIRS => Ok(()),
+        Some(pairs) if pairs <= TrackingFrame::MOST_PAIRS => Ok(()),
         _ => Err(Error::invalid_input(format!(
-            "{truth} true and {found} found objects in one picture make more than {MOST_PAIRS} pairs; give fewer"
+            "{truth} true and {found} found objects in one picture make more than {} pairs; give fewer",
+            TrackingFrame::MOST_PAIRS
         ))),
     }
 }

@@ -52,9 +52,10 @@ pub use opendr_perception::{
     face_detection, face_recognition, facial_expression_recognition, facial_landmarks, fall_detection,
     gesture_recognition, grasp_detection, hand_pose_estimation, heart_anomaly_detection,
     image_classification, instance_segmentation, mfcc, multimodal_human_centric, object_detection_2d,
-    object_tracking_2d, object_tracking_3d, panoptic_segmentation, pose_estimation, regions, resampler,
-    semantic_segmentation, skeleton_based_action_recognition, speech_recognition, speech_transcription,
-    stereo_matching, suppression, tiling, tracking, voice_activity, voice_activity_detection,
+    object_detection_3d, object_tracking_2d, object_tracking_3d, panoptic_segmentation, pillars,
+    pose_estimation, regions, resampler, semantic_segmentation, skeleton_based_action_recognition,
+    speech_recognition, speech_transcription, stereo_matching, suppression, tiling, tracking, voice_activity,
+    voice_activity_detection,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

@@ -61,6 +61,15 @@ fn vectors(model: &Path) -> Vec<Vec<(&'static str, Value)>> {
     stamped(ValueType::Vector, [0.3, 1.0, 2.5].map(vector))
 }
 
+/// What a lidar sees of a street.
+fn street(number: usize) -> Value {
+    let sample = opendr::simulation::street::StreetScans::new(7, 3).get(number).unwrap();
+    match sample.data.into_iter().next() {
+        Some(Value::PointCloudWithCalibration(scan)) => scan.cloud.into(),
+        other => panic!("{other:?}"),
+    }
+}
+
 /// Three different data of a type, each with a stamp.
 fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Value)>> {
     let values: Vec<Value> = match kind {
@@ -70,6 +79,7 @@ fn calls(kind: ValueType, models: &models::Models) -> Vec<Vec<(&'static str, Val
         ValueType::BoundingBoxList => [0.0, 4.0, 8.0].map(|shift| boxes(shift).into()).into(),
         ValueType::BoundingBox3DList => [0.0, 0.4, 0.8].map(|shift| cars(shift).into()).into(),
         ValueType::Heatmap => [1.0, 0.7, 0.4].map(values).map(Value::from).into(),
+        ValueType::PointCloud => [0, 1, 2].map(street).into(),
         ValueType::Video => [3, 9, 30].map(clip).map(Value::from).into(),
         kind => {
             let (format, path) = match kind {

@@ -19,7 +19,9 @@ mod registry;
 mod sine_cosine;
 
 pub mod classic_control;
+pub mod lidar;
 pub mod raycast;
+pub mod street;
 pub mod uav_corridor;
 pub mod vector;
 pub mod wrappers;

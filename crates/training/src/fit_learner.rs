@@ -64,7 +64,7 @@ pub fn fit_learner<L: Learner, O: Objective>(
     fit_network(objective, network, params, dataset, Some(&mut validate), job)
 }
 
-/// Measures a container through the learner; the metric's first number counts.
+/// Measures a container through the learner; the metric's headline counts.
 fn score(
     mut learner: Box<dyn AnyLearner>,
     entry: &Entry,
@@ -79,15 +79,16 @@ fn score(
     let subject = Subject { learner: entry.spec.name.to_owned(), model: None, params: learner.params() };
     let evaluation = Evaluation { progress: job.progress, ..Evaluation::new(subject, metric, problems) };
     let outcome = evaluation.run(std::slice::from_mut(&mut learner), entry, dataset)?;
+    let name = outcome.report.headline;
     let numbers = outcome.report.statistics.scalars;
-    let (name, _) = metric.numbers[0];
-    let value = numbers.get(name).copied().ok_or_else(|| {
+    let value = numbers.get(&name).copied().ok_or_else(|| {
         Error::invalid_input(format!(
             "{} has no {name} on the validation data: is anything annotated?",
             metric.name
         ))
     })?;
-    Ok(Score { name: name.to_owned(), value, is_error: metric.is_error(name), numbers, picture })
+    let is_error = metric.is_error(&name);
+    Ok(Score { name, value, is_error, numbers, picture })
 }
 
 /// How many answers the log shows.

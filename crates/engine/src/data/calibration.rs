@@ -20,6 +20,17 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// For clouds that come without one: lidar and camera in one place, and the focal length and centre that KITTI's
+    /// pictures of 1242 x 375 pixels have.
+    pub fn nominal() -> Self {
+        Self {
+            header: Header::default(),
+            p2: [[721.5, 0.0, 609.6, 0.0], [0.0, 721.5, 172.9, 0.0], [0.0, 0.0, 1.0, 0.0]],
+            r0_rect: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+            tr_velo_to_cam: [[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0]],
+        }
+    }
+
     /// Reads a calibration file of KITTI's detection or tracking benchmark.
     ///
     /// # Errors

@@ -92,9 +92,9 @@ impl Obstacles {
             let Some((place, square)) = seen(at) else { continue };
             let Some(number) = self.components.labels()[square].checked_sub(1) else { continue };
             let extent = &mut self.extents[number as usize];
-            for axis in 0..3 {
-                extent.low[axis] = extent.low[axis].min(place[axis]);
-                extent.high[axis] = extent.high[axis].max(place[axis]);
+            for (axis, place) in place.into_iter().enumerate() {
+                extent.low[axis] = extent.low[axis].min(place);
+                extent.high[axis] = extent.high[axis].max(place);
             }
             let [x, y] = [at % width, at / width].map(|at| at as f32);
             let [left, top, right, bottom] = extent.pixels;

@@ -4,8 +4,10 @@ mod cluster;
 mod fast;
 mod hard;
 mod soft;
+mod standing;
 mod weighted;
 
+pub use standing::{StandingCandidate, suppress_standing};
 pub use weighted::merge_overlapping;
 
 /// A box before suppression.

@@ -196,11 +196,10 @@ impl NanoTrack {
         object.frame = object.frame.saturating_add(1);
         let Some(found) = found else { return Ok(0.0) };
         let picture = [image.width(), image.height()].map(|side| side as f32);
-        for axis in 0..2 {
-            object.middle[axis] =
-                (object.middle[axis] + found.offset[axis] / scale).clamp(0.0, picture[axis]);
+        for (axis, picture) in picture.into_iter().enumerate() {
+            object.middle[axis] = (object.middle[axis] + found.offset[axis] / scale).clamp(0.0, picture);
             let side = object.size[axis] * (1.0 - found.rate) + found.size[axis] / scale * found.rate;
-            object.size[axis] = side.clamp(SMALLEST, picture[axis].max(SMALLEST));
+            object.size[axis] = side.clamp(SMALLEST, picture.max(SMALLEST));
         }
         Ok(found.score)
     }

@@ -1,0 +1,157 @@
+//! Boxes in the frame of a lidar, and their way to and from the camera's.
+
+use crate::data::Calibration;
+use crate::overlap::{RotatedRectangle, StandingBox};
+use crate::target::BoundingBox3D;
+
+/// A box that stands upright in a lidar's frame: x ahead, y left, z up, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LidarBox {
+    /// The middle of its floor.
+    pub center: [f64; 3],
+    /// Length, width and height.
+    pub size: [f64; 3],
+    /// Where its front looks: from x towards y, radians.
+    pub yaw: f64,
+}
+
+/// Nearer to the camera than this a corner has no place in the picture, metres.
+const NEAREST: f64 = 0.1;
+
+impl LidarBox {
+    /// Its floor with where it begins and ends along z.
+    pub fn standing_box(&self) -> StandingBox {
+        let ([x, y, z], [length, width, height]) = (self.center, self.size);
+        let floor = RotatedRectangle { center: [x, y], size: [length, width], angle: self.yaw };
+        StandingBox { floor, vertical: [z, z + height] }
+    }
+
+    /// The eight corners, those of the floor first.
+    pub fn corners(&self) -> [[f64; 3]; 8] {
+        let (sin, cos) = self.yaw.sin_cos();
+        std::array::from_fn(|corner| {
+            let side = |bit: usize, size: f64| if corner >> bit & 1 == 0 { size / 2.0 } else { -size / 2.0 };
+            let (along, across) = (side(0, self.size[0]), side(1, self.size[1]));
+            let up = if corner < 4 { 0.0 } else { self.size[2] };
+            let [x, y, z] = self.center;
+            [x + cos * along - sin * across, y + sin * along + cos * across, z + up]
+        })
+    }
+
+    /// The box in the camera's frame, without name and score.
+    ///
+    /// `bbox2d` is about its corners in the picture, as far as `image_shape` (`[height, width]`) reaches where that is
+    /// known, and -1 everywhere for a box behind the camera; `truncated` is the share of it that lies outside, -1 where
+    /// the picture's size is not known. What hides it is not known (3).
+    pub fn to_camera(&self, calibration: &Calibration, image_shape: Option<[usize; 2]>) -> BoundingBox3D {
+        let [length, width, height] = self.size;
+        let location = calibration.camera_from_lidar(self.center);
+        let zero = calibration.camera_from_lidar([0.0; 3]);
+        let (sin, cos) = self.yaw.sin_cos();
+        let front = calibration.camera_from_lidar([cos, sin, 0.0]);
+        let rotation_y = (zero[2] - front[2]).atan2(front[0] - zero[0]);
+        let (bbox2d, truncated) = self.in_image(calibration, image_shape);
+        BoundingBox3D {
+            truncated: truncated as f32,
+            occluded: 3,
+            alpha: wrapped(rotation_y - location[0].atan2(location[2])) as f32,
+            bbox2d: bbox2d.map(|edge| edge as f32),
+            dimensions: [length, height, width].map(|side| side as f32),
+            location: location.map(|place| place as f32),
+            rotation_y: rotation_y as f32,
+            ..BoundingBox3D::default()
+        }
+    }
+
+    /// The box in the lidar's frame of one in the camera's; `None` where a number of it is not finite.
+    pub fn from_camera(found: &BoundingBox3D, calibration: &Calibration) -> Option<Self> {
+        let zero = calibration.camera_from_lidar([0.0; 3]);
+        let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|axis| {
+            let end = calibration.camera_from_lidar(axis);
+            [0, 1, 2].map(|row| end[row] - zero[row])
+        });
+        // The way back of a rotation is its transpose, whose rows these are.
+        let back = |place: [f64; 3]| axes.map(|[x, y, z]| x * place[0] + y * place[1] + z * place[2]);
+        let location = found.location.map(f64::from);
+        let center = back([0, 1, 2].map(|axis| location[axis] - zero[axis]));
+        let (sin, cos) = f64::from(found.rotation_y).sin_cos();
+        let front = back([cos, 0.0, -sin]);
+        let [length, height, width] = found.dimensions.map(f64::from);
+        let found = Self { center, size: [length, width, height], yaw: front[1].atan2(front[0]) };
+        found
+            .center
+            .iter()
+            .chain(&found.size)
+            .chain([&found.yaw])
+            .all(|part| part.is_finite())
+            .then_some(found)
+    }
+
+    fn in_image(&self, calibration: &Calibration, image_shape: Option<[usize; 2]>) -> ([f64; 4], f64) {
+        let mut edges = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+        for corner in self.corners() {
+            let place = calibration.camera_from_lidar(corner);
+            let Some([x, y]) = calibration.image_from_camera(place).filter(|_| place[2] > NEAREST) else {
+                continue;
+            };
+            edges = [edges[0].min(x), edges[1].min(y), edges[2].max(x), edges[3].max(y)];
+        }
+        if !edges.iter().all(|edge| edge.is_finite()) {
+            return ([-1.0; 4], 1.0);
+        }
+        let Some([height, width]) = image_shape else { return (edges, -1.0) };
+        let area = |[x0, y0, x1, y1]: [f64; 4]| (x1 - x0) * (y1 - y0);
+        let most = [width, height, width, height].map(|side| side.saturating_sub(1) as f64);
+        let inside = [0, 1, 2, 3].map(|edge| edges[edge].clamp(0.0, most[edge]));
+        let truncated = if area(edges) > 0.0 { 1.0 - area(inside) / area(edges) } else { 1.0 };
+        (if area(inside) > 0.0 { inside } else { [-1.0; 4] }, truncated)
+    }
+}
+
+/// An angle in [-pi, pi].
+fn wrapped(angle: f64) -> f64 {
+    angle.sin().atan2(angle.cos())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_car_ahead_by_hand() {
+        // 10 metres ahead, 2 to the left, looking ahead: in the camera 2 to the left, and -90 degrees about y.
+        let car = LidarBox { center: [10.0, 2.0, -1.7], size: [4.0, 1.6, 1.5], yaw: 0.0 };
+        let found = car.to_camera(&Calibration::nominal(), Some([375, 1242]));
+        assert_eq!((found.dimensions, found.location), ([4.0, 1.5, 1.6], [-2.0, 1.7, 10.0]));
+        assert!((f64::from(found.rotation_y) + std::f64::consts::FRAC_PI_2).abs() < 1e-6);
+        // Its nearest corners are 8 metres ahead; the left edge is 2.8 to the left there.
+        assert!((f64::from(found.bbox2d[0]) - (609.6 - 721.5 * 2.8 / 8.0)).abs() < 1e-3);
+        assert!((f64::from(found.bbox2d[3]) - (172.9 + 721.5 * 1.7 / 8.0)).abs() < 1e-3);
+        assert!(found.truncated.abs() < 1e-6);
+    }
+
+    #[test]
+    fn there_and_back() {
+        let mut calibration = Calibration::nominal();
+        calibration.tr_velo_to_cam = [[0.0, -1.0, 0.0, 0.1], [0.0, 0.0, -1.0, -0.08], [1.0, 0.0, 0.0, -0.27]];
+        let (sin, cos) = 0.01f64.sin_cos();
+        calibration.r0_rect = [[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]];
+        for yaw in [-3.0, -1.0, 0.3, 2.5] {
+            let car = LidarBox { center: [20.0, -3.0, -1.6], size: [4.2, 1.7, 1.5], yaw };
+            let again = LidarBox::from_camera(&car.to_camera(&calibration, None), &calibration).unwrap();
+            let apart = car.center.iter().zip(again.center).chain(car.size.iter().zip(again.size));
+            assert!(apart.map(|(a, b)| (a - b).abs()).all(|apart| apart < 1e-5), "{again:?}");
+            assert!(wrapped(car.yaw - again.yaw).abs() < 1e-5);
+            assert!(car.standing_box().overlap(&again.standing_box()) > 0.999);
+        }
+    }
+
+    #[test]
+    fn behind_the_camera_there_is_no_picture() {
+        let behind = LidarBox { center: [-10.0, 2.0, -1.7], size: [4.0, 1.6, 1.5], yaw: 0.0 };
+        let found = behind.to_camera(&Calibration::nominal(), Some([375, 1242]));
+        assert_eq!((found.bbox2d, found.truncated), ([-1.0; 4], 1.0));
+        let broken = BoundingBox3D { location: [f32::NAN; 3], ..BoundingBox3D::default() };
+        assert_eq!(LidarBox::from_camera(&broken, &Calibration::nominal()), None);
+    }
+}

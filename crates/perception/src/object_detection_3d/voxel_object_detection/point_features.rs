@@ -1,0 +1,105 @@
+//! The layer over points: features of pillars from all of their points.
+
+use opendr_engine::data::PointCloud;
+use opendr_engine::model::Model;
+use opendr_engine::{Device, Error, Result};
+use opendr_inference::{Session, TensorView};
+
+use super::{CHUNK, POINT_FILE};
+use crate::pillars::{PillarGrid, PillarPoint, Voxeliser};
+
+/// Runs over points, some thousand at a time.
+pub(super) struct PointFeatures {
+    session: Session,
+    learnt: usize,
+}
+
+/// Points that wait for the layer.
+#[derive(Default)]
+pub(super) struct Chunk {
+    features: Vec<f32>,
+    pillars: Vec<u32>,
+}
+
+impl PointFeatures {
+    /// Opens the container's layer, which makes `learnt` features of a point.
+    pub fn open(model: &Model, device: Device, learnt: usize) -> Result<Self> {
+        let session = Session::open(&model.file(POINT_FILE)?, device)?;
+        let ([input], [_]) = (session.inputs(), session.outputs()) else {
+            return Err(Error::format(format!(
+                "{POINT_FILE} has not one input and one output; train or get it anew"
+            )));
+        };
+        if input.dims[..] != [Some(CHUNK), Some(PillarPoint::FEATURES)] {
+            let wanted = [CHUNK, PillarPoint::FEATURES];
+            return Err(Error::format(format!(
+                "{POINT_FILE} takes {input} instead of {wanted:?}; train or get it anew"
+            )));
+        }
+        Ok(Self { session, learnt })
+    }
+
+    /// Writes the features of all pillars of `cloud`, the layer's and then the voxeliser's, one pillar after the other.
+    pub fn run(
+        &self,
+        cloud: &PointCloud,
+        grid: &PillarGrid,
+        voxeliser: &mut Voxeliser,
+        chunk: &mut Chunk,
+        features: &mut Vec<f32>,
+    ) -> Result<()> {
+        voxeliser.begin(grid);
+        features.clear();
+        chunk.clear();
+        for point in cloud.points() {
+            let Some(point) = voxeliser.add(grid, point) else { continue };
+            chunk.features.extend(point.features);
+            chunk.pillars.push(point.pillar);
+            if chunk.pillars.len() == CHUNK {
+                self.flush(chunk, voxeliser, features)?;
+            }
+        }
+        self.flush(chunk, voxeliser, features)?;
+        let channels = self.learnt + Voxeliser::STATISTICS;
+        for (pillar, told) in features.chunks_exact_mut(channels).zip(voxeliser.statistics()) {
+            pillar[self.learnt..].copy_from_slice(&told);
+        }
+        Ok(())
+    }
+
+    fn flush(&self, chunk: &mut Chunk, voxeliser: &Voxeliser, features: &mut Vec<f32>) -> Result<()> {
+        if chunk.pillars.is_empty() {
+            return Ok(());
+        }
+        let channels = self.learnt + Voxeliser::STATISTICS;
+        features.resize(voxeliser.cells().len() * channels, 0.0);
+        chunk.features.resize(CHUNK * PillarPoint::FEATURES, 0.0);
+        let input = TensorView::new(&[CHUNK, PillarPoint::FEATURES], &chunk.features[..])?;
+        self.session.run(&[input], |outputs| {
+            let given =
+                outputs.first().filter(|given| *given.shape() == [CHUNK, self.learnt]).ok_or_else(|| {
+                    let wanted = [CHUNK, self.learnt];
+                    Error::format(format!("{POINT_FILE} does not give {wanted:?}; train or get it anew"))
+                })?;
+            let given = given.values::<f32>()?;
+            for (point, pillar) in given.chunks_exact(self.learnt).zip(&chunk.pillars) {
+                let begin = *pillar as usize * channels;
+                let Some(most) = features.get_mut(begin..begin + self.learnt) else { continue };
+                // Features are not below 0, where a pillar begins.
+                for (most, value) in most.iter_mut().zip(point) {
+                    *most = if value > most { *value } else { *most };
+                }
+            }
+            Ok(())
+        })?;
+        chunk.clear();
+        Ok(())
+    }
+}
+
+impl Chunk {
+    fn clear(&mut self) {
+        self.features.clear();
+        self.pillars.clear();
+    }
+}

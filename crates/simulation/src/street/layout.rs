@@ -1,0 +1,285 @@
+//! What stands on a street.
+
+use std::f32::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+use opendr_engine::overlap::RotatedRectangle;
+use opendr_engine::target::LidarBox;
+use opendr_engine::{Random, Result};
+
+use super::CarShape;
+use crate::raycast::{Body, Scene, Shape, Vector};
+
+/// What a body of a street is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StreetKind {
+    /// Of the sizes of KITTI's cars.
+    Car,
+    /// A person on foot.
+    Pedestrian,
+    /// A box on wheels.
+    Truck,
+    /// Walls, poles and trunks.
+    Solid,
+    /// Crowns, hedges and bushes, which rays enter.
+    Leaves,
+    /// What all stand on.
+    Ground,
+}
+
+/// An object with a truth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StreetObject {
+    /// What it is.
+    pub kind: StreetKind,
+    /// Where it is, in the lidar's frame.
+    pub place: LidarBox,
+    /// Share of the light that its surface returns.
+    pub reflectance: f32,
+}
+
+/// A street, in the frame of the lidar.
+#[derive(Debug, Clone, Default)]
+pub struct Street {
+    /// What rays meet; the label of a body is the number of its entry in [`Street::objects`].
+    pub scene: Scene,
+    /// All that stands there.
+    pub objects: Vec<StreetObject>,
+    ground: Ground,
+    floors: Vec<RotatedRectangle>,
+}
+
+/// A plane a little out of level.
+#[derive(Debug, Clone, Copy, Default)]
+struct Ground {
+    height: f32,
+    slopes: [f32; 2],
+}
+
+impl Ground {
+    fn at(&self, x: f32, y: f32) -> f32 {
+        self.height + self.slopes[0] * x + self.slopes[1] * y
+    }
+}
+
+/// KITTI's mount, metres above the ground.
+const MOUNT: f32 = 1.73;
+/// Where objects may be: ahead, and to either side.
+const AHEAD: f32 = 62.0;
+const ASIDE: f32 = 30.0;
+/// The car that carries the lidar.
+const OWN: RotatedRectangle = RotatedRectangle { center: [0.0, 0.0], size: [6.0, 2.6], angle: 0.0 };
+/// Tries to find a free place.
+const TRIES: usize = 12;
+
+impl Street {
+    /// A street of `random`'s choice.
+    ///
+    /// # Errors
+    /// None that the choice of numbers allows.
+    pub fn new(random: &mut Random) -> Result<Self> {
+        let slopes = [0.008 * random.normal() as f32, 0.008 * random.normal() as f32];
+        let ground = Ground { height: -MOUNT + 0.03 * random.normal() as f32, slopes };
+        let mut street = Self { ground, floors: vec![OWN], ..Self::default() };
+        // Half of the turn's sine and cosine for a turn of the plane's normal; slopes are small.
+        let rotation = [1.0, slopes[1] / 2.0, -slopes[0] / 2.0, 0.0];
+        street.push(StreetKind::Ground, LidarBox { center: [0.0; 3], size: [0.0; 3], yaw: 0.0 }, random);
+        street.scene.add(Body::new(Shape::HalfSpace, [0.0, 0.0, ground.height], rotation, 0)?);
+
+        let road = match random.below(8) {
+            0 => random.uniform(-0.8, 0.8),
+            1 => FRAC_PI_2 + random.uniform(-0.2, 0.2),
+            _ => 0.1 * random.normal() as f32,
+        };
+        for _ in 0..4 + random.below(12) {
+            street.add_car(road, random)?;
+        }
+        for _ in 0..random.below(2) {
+            street.add_truck(road, random)?;
+        }
+        for _ in 0..random.below(6) {
+            street.add_pedestrian(random)?;
+        }
+        for _ in 0..random.below(5) {
+            street.add_wall(road, random)?;
+        }
+        for _ in 0..random.below(8) {
+            street.add_pole(random)?;
+        }
+        for _ in 0..random.below(6) {
+            street.add_tree(random)?;
+        }
+        for _ in 0..random.below(8) {
+            street.add_bush(road, random)?;
+        }
+        Ok(street)
+    }
+
+    /// Notes an object and gives its label.
+    fn push(&mut self, kind: StreetKind, place: LidarBox, random: &mut Random) -> u16 {
+        let reflectance = match kind {
+            StreetKind::Car | StreetKind::Truck => random.uniform(0.02, 0.9),
+            StreetKind::Ground => random.uniform(0.1, 0.4),
+            _ => random.uniform(0.05, 0.6),
+        };
+        self.objects.push(StreetObject { kind, place, reflectance });
+        u16::try_from(self.objects.len() - 1).unwrap_or(u16::MAX)
+    }
+
+    /// A free place of `size` (length, width, height) that `choose` (x, y, yaw) proposes; its floor is then taken.
+    fn place(
+        &mut self,
+        size: Vector,
+        margin: f32,
+        random: &mut Random,
+        mut choose: impl FnMut(&mut Random) -> [f32; 3],
+    ) -> Option<LidarBox> {
+        for _ in 0..TRIES {
+            let [x, y, yaw] = choose(random);
+            let around = [size[0] + margin, size[1] + margin].map(f64::from);
+            let center = [x, y].map(f64::from);
+            let floor = RotatedRectangle { center, size: around, angle: f64::from(yaw) };
+            if self.floors.iter().all(|other| floor.shared_area(other) == 0.0) {
+                self.floors.push(floor);
+                let z = f64::from(self.ground.at(x, y));
+                let yaw = f64::from(yaw);
+                return Some(LidarBox { center: [center[0], center[1], z], size: size.map(f64::from), yaw });
+            }
+        }
+        None
+    }
+
+    fn add_car(&mut self, road: f32, random: &mut Random) -> Result<()> {
+        let shape = CarShape::ALL[random.below(4)];
+        let higher = if shape == CarShape::Suv { 0.12 } else { 0.0 };
+        let size = [
+            (3.88 + 0.42 * random.normal() as f32).clamp(3.0, 5.2),
+            (1.63 + 0.1 * random.normal() as f32).clamp(1.4, 1.95),
+            (1.52 + higher + 0.1 * random.normal() as f32).clamp(1.3, 1.95),
+        ];
+        let lane = [0.0, 0.0, 3.5, -3.2, -4.5, 6.5, 9.5, -8.0][random.below(8)];
+        let parked_across = random.chance(0.12);
+        let anywhere = random.chance(0.2);
+        let place = self.place(size, 0.4, random, |random| {
+            let turned = if random.chance(0.5) { 0.0 } else { PI };
+            let yaw = road + turned + 0.04 * random.normal() as f32;
+            let yaw = if parked_across { yaw + FRAC_PI_2 } else { yaw };
+            if anywhere {
+                let yaw = if random.chance(0.5) { yaw } else { random.uniform(-PI, PI) };
+                return [random.uniform(3.0, 55.0), random.uniform(-24.0, 24.0), yaw];
+            }
+            let (sin, cos) = road.sin_cos();
+            let along = random.uniform(3.0, 55.0);
+            // A road that crosses does so ahead.
+            let (along, ahead) =
+                if cos.abs() < 0.5 { (along - 28.0, random.uniform(8.0, 30.0)) } else { (along, 0.0) };
+            let aside = lane + 0.3 * random.normal() as f32;
+            [ahead + along * cos - aside * sin, along * sin + aside * cos, yaw]
+        });
+        let Some(place) = place.filter(is_within) else { return Ok(()) };
+        let mesh = shape.mesh(size, random)?;
+        let label = self.push(StreetKind::Car, place, random);
+        self.add(Shape::Mesh(Arc::new(mesh)), place.center, place.yaw, label)
+    }
+
+    fn add_truck(&mut self, road: f32, random: &mut Random) -> Result<()> {
+        let size = [random.uniform(5.5, 11.0), random.uniform(2.2, 2.6), random.uniform(2.5, 3.6)];
+        let place = self.place(size, 0.4, random, |random| {
+            [random.uniform(8.0, 55.0), random.uniform(-12.0, 12.0), road]
+        });
+        let Some(place) = place else { return Ok(()) };
+        let label = self.push(StreetKind::Truck, place, random);
+        let half = [size[0] / 2.0, size[1] / 2.0, (size[2] - 0.4) / 2.0];
+        let [x, y, z] = place.center;
+        self.add(Shape::Box { half }, [x, y, z + 0.4 + f64::from(half[2])], place.yaw, label)
+    }
+
+    fn add_pedestrian(&mut self, random: &mut Random) -> Result<()> {
+        let height = (1.74 + 0.09 * random.normal() as f32).clamp(1.2, 2.0);
+        let size = [0.8, 0.6, height];
+        let place = self.place(size, 0.2, random, |random| {
+            [random.uniform(4.0, 45.0), random.uniform(-15.0, 15.0), random.uniform(-PI, PI)]
+        });
+        let Some(place) = place else { return Ok(()) };
+        let label = self.push(StreetKind::Pedestrian, place, random);
+        let [x, y, z] = place.center;
+        let body = height - 0.26;
+        let trunk = Shape::Cylinder { radius: random.uniform(0.18, 0.28), half_height: body / 2.0 };
+        self.add(trunk, [x, y, z + f64::from(body) / 2.0], 0.0, label)?;
+        self.add(Shape::Sphere { radius: 0.13 }, [x, y, z + f64::from(height) - 0.13], 0.0, label)
+    }
+
+    fn add_wall(&mut self, road: f32, random: &mut Random) -> Result<()> {
+        let high = if random.chance(0.5) { random.uniform(3.0, 9.0) } else { random.uniform(0.6, 2.2) };
+        let size = [random.uniform(3.0, 25.0), random.uniform(0.15, 4.0), high];
+        let across = if random.chance(0.3) { FRAC_PI_2 } else { 0.0 };
+        let place = self.place(size, 0.2, random, |random| {
+            let aside = random.uniform(6.0, 22.0) * if random.chance(0.5) { 1.0 } else { -1.0 };
+            [random.uniform(2.0, AHEAD), aside, road + across]
+        });
+        self.add_box(place, StreetKind::Solid, random)
+    }
+
+    fn add_pole(&mut self, random: &mut Random) -> Result<()> {
+        let (radius, height) = (random.uniform(0.04, 0.2), random.uniform(2.0, 7.0));
+        let place = self.place([2.0 * radius, 2.0 * radius, height], 0.2, random, anywhere);
+        let Some(place) = place else { return Ok(()) };
+        let label = self.push(StreetKind::Solid, place, random);
+        let [x, y, z] = place.center;
+        let shape = Shape::Cylinder { radius, half_height: height / 2.0 };
+        self.add(shape, [x, y, z + f64::from(height) / 2.0], 0.0, label)
+    }
+
+    fn add_tree(&mut self, random: &mut Random) -> Result<()> {
+        let (radius, trunk, crown) =
+            (random.uniform(0.1, 0.35), random.uniform(1.2, 3.0), random.uniform(0.8, 2.4));
+        let place = self.place([2.0 * radius, 2.0 * radius, trunk + 2.0 * crown], 0.3, random, anywhere);
+        let Some(place) = place else { return Ok(()) };
+        let [x, y, z] = place.center;
+        let label = self.push(StreetKind::Solid, place, random);
+        let shape = Shape::Cylinder { radius, half_height: trunk };
+        self.add(shape, [x, y, z + f64::from(trunk)], 0.0, label)?;
+        let label = self.push(StreetKind::Leaves, place, random);
+        self.add(Shape::Sphere { radius: crown }, [x, y, z + f64::from(trunk + crown)], 0.0, label)
+    }
+
+    fn add_bush(&mut self, road: f32, random: &mut Random) -> Result<()> {
+        if random.chance(0.5) {
+            let size = [random.uniform(0.8, 10.0), random.uniform(0.5, 1.8), random.uniform(0.5, 2.0)];
+            let place = self.place(size, 0.2, random, |random| {
+                let [x, y, _] = anywhere(random);
+                [x, y, road]
+            });
+            return self.add_box(place, StreetKind::Leaves, random);
+        }
+        let radius = random.uniform(0.4, 1.4);
+        let size = [2.0 * radius, 2.0 * radius, radius];
+        let Some(place) = self.place(size, 0.2, random, anywhere) else { return Ok(()) };
+        let label = self.push(StreetKind::Leaves, place, random);
+        self.add(Shape::Sphere { radius }, place.center, 0.0, label)
+    }
+
+    fn add_box(&mut self, place: Option<LidarBox>, kind: StreetKind, random: &mut Random) -> Result<()> {
+        let Some(place) = place else { return Ok(()) };
+        let label = self.push(kind, place, random);
+        // Some way into the ground, which slopes.
+        let [x, y, z] = place.center;
+        let half = place.size.map(|side| side as f32 / 2.0);
+        self.add(Shape::Box { half }, [x, y, z + place.size[2] / 2.0 - 0.2], place.yaw, label)
+    }
+
+    fn add(&mut self, shape: Shape, center: [f64; 3], yaw: f64, label: u16) -> Result<()> {
+        let (sin, cos) = (yaw as f32 / 2.0).sin_cos();
+        self.scene.add(Body::new(shape, center.map(|part| part as f32), [cos, 0.0, 0.0, sin], label)?);
+        Ok(())
+    }
+}
+
+fn anywhere(random: &mut Random) -> [f32; 3] {
+    [random.uniform(3.0, AHEAD), random.uniform(-ASIDE, ASIDE), random.uniform(-PI, PI)]
+}
+
+/// Whether a car is where the lidar looks.
+fn is_within(place: &LidarBox) -> bool {
+    place.center[0] > 2.0 && place.center[0] < f64::from(AHEAD) && place.center[1].abs() < f64::from(ASIDE)
+}

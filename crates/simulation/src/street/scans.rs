@@ -1,0 +1,154 @@
+//! Scans of streets as a data set.
+
+use opendr_engine::data::{Calibration, PointCloud, PointCloudWithCalibration};
+use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
+use opendr_engine::target::{BoundingBox3DList, Classes};
+use opendr_engine::{Error, Header, Random, Result};
+
+use super::{Street, StreetKind, StreetObject};
+use crate::lidar::{Echo, Return, SpinningLidar};
+use crate::raycast::{Hit, Scene, Vector};
+
+/// Scans of streets made at random, each with the boxes of its cars, pedestrians and trucks.
+///
+/// Sample `n` follows from the seed and `n` alone. The points are those that the camera sees, as KITTI annotates no others;
+/// boxes have what KITTI's rules ask for: place in the picture, truncation, and how much is hidden, measured by rays.
+#[derive(Debug, Clone)]
+pub struct StreetScans {
+    seed: u64,
+    count: usize,
+    lidar: SpinningLidar,
+    calibration: Calibration,
+}
+
+/// Height and width of KITTI's pictures.
+const IMAGE_SHAPE: [usize; 2] = [375, 1242];
+/// What the camera sees to either side, radians, and a little more.
+const HALF_VIEW: f32 = 0.76;
+/// An object that fewer rays meet is not known to be there.
+const LEAST_RETURNS: usize = 5;
+
+impl StreetScans {
+    /// `count` scans of the streets that follow from `seed`.
+    pub fn new(seed: u64, count: usize) -> Self {
+        let mut calibration = Calibration::nominal();
+        // The offsets of KITTI's rig.
+        calibration.tr_velo_to_cam = [[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, -0.08], [1.0, 0.0, 0.0, -0.27]];
+        Self { seed, count, lidar: SpinningLidar::hdl64e().facing(HALF_VIEW), calibration }
+    }
+
+    /// The same seen by another lidar.
+    #[must_use]
+    pub fn with_lidar(mut self, lidar: SpinningLidar) -> Self {
+        self.lidar = lidar;
+        self
+    }
+
+    fn boxes(&self, street: &Street, returns: &[Return]) -> Result<BoundingBox3DList> {
+        let mut seen = vec![0_usize; street.objects.len()];
+        for label in returns.iter().map(|seen| usize::from(seen.label)) {
+            seen.get_mut(label).into_iter().for_each(|count| *count += 1);
+        }
+        let rays = self.lidar.directions(&mut Random::new(0))?;
+        let mut boxes = Vec::new();
+        for (label, object) in street.objects.iter().enumerate() {
+            let Some(name) = name_of(object.kind) else { continue };
+            let mut found = object.place.to_camera(&self.calibration, Some(IMAGE_SHAPE));
+            // Nothing of it is in the picture.
+            if found.truncated >= 0.9 || seen[label] == 0 {
+                continue;
+            }
+            found.name = name.into();
+            found.confidence = 1.0;
+            found.occluded = self.hidden(street, label, seen[label], &rays)?;
+            boxes.push(found);
+        }
+        Ok(BoundingBox3DList { classes: self.classes(), ..boxes.into() })
+    }
+
+    /// 0 to 3 by the share of the rays that would meet it if it stood alone.
+    fn hidden(&self, street: &Street, label: usize, seen: usize, rays: &[Vector]) -> Result<i32> {
+        let mut alone = Scene::default();
+        let own = street.scene.bodies().iter().filter(|body| usize::from(body.label()) == label);
+        own.for_each(|body| alone.add(body.clone()));
+        let place = &street.objects[label].place;
+        let [x, y] = [place.center[0], place.center[1]].map(|part| part as f32);
+        let distance = x.hypot(y).max(0.1);
+        // The tangent of half the angle under which it is seen, at most 45 degrees: what is nearer covers all.
+        let reach = (place.size[0].hypot(place.size[1]) / 2.0) as f32;
+        let most = (reach / (distance - reach).max(0.1)).min(1.0);
+        let [cos, sin] = [x / distance, y / distance];
+        let is_near = |[dx, dy, _]: &Vector| (dy * cos - dx * sin).abs() <= most * (dx * cos + dy * sin);
+        let rays: Vec<Vector> = rays.iter().copied().filter(is_near).collect();
+        let mut hits = vec![None; rays.len()];
+        alone.hits([0.0; 3], &rays, self.lidar.range, &mut hits)?;
+        let all = hits.iter().flatten().count().max(1);
+        // Some returns are lost anyhow.
+        let share = seen as f64 / all as f64 / 0.85;
+        Ok(match share {
+            _ if seen < LEAST_RETURNS => 3,
+            share if share > 0.75 => 0,
+            share if share > 0.4 => 1,
+            share if share > 0.12 => 2,
+            _ => 3,
+        })
+    }
+}
+
+fn name_of(kind: StreetKind) -> Option<&'static str> {
+    match kind {
+        StreetKind::Car => Some("Car"),
+        StreetKind::Pedestrian => Some("Pedestrian"),
+        StreetKind::Truck => Some("Truck"),
+        StreetKind::Solid | StreetKind::Leaves | StreetKind::Ground => None,
+    }
+}
+
+/// How the surface of an object answers.
+fn echo(object: &StreetObject, hit: &Hit, [.., z]: Vector, lost: f32) -> Echo {
+    let [.., floor] = object.place.center;
+    let height = (z - floor as f32) / object.place.size[2].max(0.1) as f32;
+    // Glass: the upper part of a car, but for its roof.
+    let is_glass = object.kind == StreetKind::Car && height > 0.66 && hit.normal[2].abs() < 0.9;
+    let noise = match object.kind {
+        StreetKind::Leaves => 0.2,
+        _ => 0.02,
+    };
+    let far = hit.distance / 120.0;
+    let lost = lost + if is_glass { 0.5 } else { 0.3 * far * far };
+    Echo { noise, lost, reflectance: object.reflectance }
+}
+
+impl Dataset for StreetScans {}
+
+impl DatasetIterator for StreetScans {
+    fn len(&self) -> usize {
+        self.count
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        if index >= self.count {
+            return Err(Error::not_found(format!("no street {index}; there are {}", self.count)));
+        }
+        let mut random = Random::at([self.seed, index as u64]);
+        let street = Street::new(&mut random)?;
+        let lost = random.uniform(0.0, 0.15);
+        let returns = self.lidar.scan(&street.scene, &mut random, |hit, place| {
+            match street.objects.get(usize::from(hit.label)) {
+                Some(object) => echo(object, hit, place, lost),
+                None => Echo { noise: 0.0, lost: 1.0, reflectance: 0.0 },
+            }
+        })?;
+        let boxes = self.boxes(&street, &returns)?;
+        let points: Vec<f32> = returns.iter().flat_map(|seen| seen.point).collect();
+        let header = Header::new(index as i64 + 1, "lidar");
+        let cloud = PointCloud::new(points, [returns.len(), 4])?.with_header(header.clone());
+        let cloud = PointCloudWithCalibration::new(cloud, self.calibration.clone(), Some(IMAGE_SHAPE));
+        let target = BoundingBox3DList { header, ..boxes };
+        Ok(Sample { data: vec![cloud.into()], target: Some(target.into()) })
+    }
+
+    fn classes(&self) -> Classes {
+        ["Car", "Pedestrian", "Truck"].into_iter().collect()
+    }
+}
