@@ -244,7 +244,7 @@ fn classes_of_pixels_come_from_the_finest_look() {
     else {
         return;
     };
-    let mut score = |learner: &mut dyn AnyLearner| {
+    let score = |learner: &mut dyn AnyLearner| {
         let answer = learner.infer(&Ports::one(&four)).unwrap();
         let Some(Value::Heatmap(map)) = answer.first() else { panic!("{answer:?}") };
         assert_eq!(map.shape(), [2 * height, 2 * width]);

@@ -48,11 +48,11 @@ fn main() -> Result<()> {
     let mut handle = Handle::<Bisenet>::new(BisenetParams::default(), Device::Cpu)?;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
     println!("{}", handle.fit(&fit_params, (&scenes as &dyn DatasetIterator).into(), None, &job)?);
-    measure(&handle, &Streets { first: KEPT_APART, count: 100 })
+    measure(&mut handle, &Streets { first: KEPT_APART, count: 100 })
 }
 
 /// Intersection over union of each class over all pixels.
-fn measure(handle: &Handle<Bisenet>, scenes: &Streets) -> Result<()> {
+fn measure(handle: &mut Handle<Bisenet>, scenes: &Streets) -> Result<()> {
     let mut counts = [[0_u64; CLASSES.len()]; CLASSES.len()];
     for index in 0..scenes.len() {
         let sample = scenes.get(index)?;

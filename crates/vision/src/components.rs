@@ -171,10 +171,10 @@ mod tests {
                     if std::mem::replace(&mut flooded[at], count) == count {
                         continue;
                     }
-                    for other in 0..width * height {
+                    for (other, &number) in flooded.iter().enumerate() {
                         let apart = [(at % width).abs_diff(other % width), (at / width).abs_diff(other / width)];
                         let near = if corners { apart[0].max(apart[1]) } else { apart[0] + apart[1] };
-                        if near == 1 && same(at, other) && flooded[other] == 0 {
+                        if near == 1 && same(at, other) && number == 0 {
                             stack.push(other);
                         }
                     }

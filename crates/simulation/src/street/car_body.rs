@@ -75,7 +75,7 @@ impl CarShape {
     pub fn mesh(self, [length, width, height]: Vector, random: &mut Random) -> Result<Mesh> {
         let profile = self.profile().map(|[along, up]| {
             let vary = |random: &mut Random| random.uniform(-0.02, 0.02);
-            let fixed = up < 0.3 || up > 0.99;
+            let fixed = !(0.3..=0.99).contains(&up);
             let (along_by, up_by) = (vary(random), vary(random));
             let along = if fixed { along } else { (along + along_by).clamp(0.0, 1.0) };
             [(along - 0.5) * length, if fixed { up } else { (up + up_by).min(1.0) } * height]

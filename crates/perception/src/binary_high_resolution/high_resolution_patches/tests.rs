@@ -47,7 +47,7 @@ fn learns_one_batch_by_heart() {
     let objective = Patches { params: &params, most: 4 };
     let samples = (0..Rings.len()).map(|index| Rings.get(index).unwrap()).collect();
     let network =
-        |device: &burn::tensor::Device| super::network::PatchNetwork::new(PatchArchitecture::Vgg720p, device);
+        |device: &burn::tensor::Device| network::PatchNetwork::new(PatchArchitecture::Vgg720p, device);
     let [before, after] = losses_on_one_batch(&objective, network, samples, 0.002);
     assert!(after < 0.1 * before, "{before} {after}");
 }
