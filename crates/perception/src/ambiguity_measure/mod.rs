@@ -52,7 +52,7 @@ const MOST_PIXELS: usize = 1 << 26;
 
 impl Learner for AmbiguityMeasure {
     const SPEC: Spec = Spec::new("ambiguity_measure", Task::AmbiguityMeasure)
-        .class("AmbiguityMeasure")
+        .class("AmbiguityMeasureLearner")
         .about("Tells whether a map of values leaves a doubt where the best place is.");
     type Params = AmbiguityMeasureParams;
     type Input<'a> = &'a Heatmap;

@@ -82,6 +82,6 @@ mod tests {
         assert!(AnchorKind::of_class("Tram", 0).is_err());
         let anchor = kinds[1].at([3.0, -2.0]);
         assert_eq!(anchor.center[..2], [3.0, -2.0]);
-        assert!((anchor.yaw - std::f32::consts::FRAC_PI_2).abs() < 1e-4);
+        assert!((anchor.yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-4);
     }
 }
