@@ -10,6 +10,8 @@ const MAGIC: &str = "7767517";
 const MAX_LAYERS: usize = 20_000;
 /// Keys of lists are this much below zero, and then their own number.
 const LISTS: i64 = -23_300;
+/// A layer has no other.
+const KEYS: std::ops::Range<i64> = 0..32;
 
 /// A parameter of a layer: one number or several.
 #[derive(Debug, Clone, PartialEq)]
@@ -83,7 +85,7 @@ fn layer(line: &str) -> Option<Layer<'_>> {
 fn parameter(word: &str) -> Option<(i64, Parameter)> {
     let (key, value) = word.split_once('=')?;
     let key: i64 = key.parse().ok()?;
-    if key > LISTS {
+    if KEYS.contains(&key) {
         let value = match value.parse() {
             Ok(value) => Parameter::Int(value),
             Err(_) => Parameter::Float(value.parse().ok()?),
@@ -93,7 +95,8 @@ fn parameter(word: &str) -> Option<(i64, Parameter)> {
     let mut values = value.split(',');
     let count: usize = values.next()?.parse().ok()?;
     let values = values.map(|value| value.parse().ok()).collect::<Option<Vec<f32>>>()?;
-    (values.len() == count).then_some((LISTS.checked_sub(key)?, Parameter::List(values)))
+    let key = LISTS.checked_sub(key).filter(|key| KEYS.contains(key))?;
+    (values.len() == count).then_some((key, Parameter::List(values)))
 }
 
 impl Parameters {
@@ -184,6 +187,8 @@ mod tests {
             "7767517\n1 1\nInput in 0 1 in 0=x\n",
             "7767517\n1 1\nInput in 0 1 in -23310=3,1.0\n",
             "7767517\n1 1\nInput in 0 1 in -9223372036854775808=0\n",
+            "7767517\n1 1\nInput in 0 1 in 32=0\n",
+            "7767517\n1 1\nInput in 0 1 in -1=0\n",
         ];
         for case in cases {
             assert!(layers(case).is_err(), "{case:?}");

@@ -2,11 +2,13 @@
 
 use std::borrow::Cow;
 
-use opendr_onnx::passes::prelu_to_conv;
+use opendr_onnx::passes::{prelu_to_conv, transposed_conv_to_conv};
 use opendr_onnx::{bytes_from_model, model_from_bytes};
 
 /// The first version of the format whose constants need not be inputs.
 const FREE_CONSTANTS: i64 = 4;
+/// The first version of the operators that has all of what transposed convolutions become.
+const DEPTH_TO_SPACE: i64 = 11;
 
 /// The model with the same results and other operators, where those are faster; else as it was, errors included.
 pub(super) fn suited(model: &[u8]) -> Cow<'_, [u8]> {
@@ -15,9 +17,14 @@ pub(super) fn suited(model: &[u8]) -> Cow<'_, [u8]> {
 
 fn rewritten(model: &[u8]) -> Option<Vec<u8>> {
     // Reading a model takes longer than looking whether it has what is rewritten.
-    if !model.windows(5).any(|bytes| bytes == b"PRelu") {
+    let has = |name: &[u8]| model.windows(name.len()).any(|bytes| bytes == name);
+    if !has(b"PRelu") && !has(b"ConvTranspose") {
         return None;
     }
     let mut model = model_from_bytes(model).ok().filter(|model| model.ir_version >= FREE_CONSTANTS)?;
-    prelu_to_conv(model.graph.as_mut()?).then(|| bytes_from_model(&model))
+    let operators = model.opset_import.iter().find(|set| set.domain.is_empty())?.version;
+    let graph = model.graph.as_mut()?;
+    let slopes = prelu_to_conv(graph);
+    let transposed = operators >= DEPTH_TO_SPACE && transposed_conv_to_conv(graph);
+    (slopes || transposed).then(|| bytes_from_model(&model))
 }

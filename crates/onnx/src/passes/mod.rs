@@ -10,6 +10,8 @@ mod identity;
 mod pad;
 mod prelu;
 mod rewriter;
+mod split;
+mod transposed_conv;
 
 pub use constants::constants_to_initializers;
 pub use conv_affine::fold_affine_into_conv;
@@ -21,6 +23,7 @@ pub use identity::remove_identities;
 pub use pad::fold_padding;
 pub use prelu::prelu_to_conv;
 pub use rewriter::Rewriter;
+pub use transposed_conv::transposed_conv_to_conv;
 
 use super::proto::GraphProto;
 

@@ -1,7 +1,8 @@
 //! Slopes of channels as convolutions.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
+use super::split::{Split, split_nodes};
 use crate::array::{Array, Data};
 use crate::operator::Operator;
 use crate::proto::{GraphProto, NodeProto};
@@ -21,22 +22,10 @@ pub fn prelu_to_conv(graph: &mut GraphProto) -> bool {
     if slopes.is_empty() {
         return false;
     }
-    let mut names: HashSet<String> = graph.node.iter().flat_map(|node| node.output.iter().cloned()).collect();
-    names.extend(graph.initializer.iter().map(|tensor| tensor.name.clone()));
-    names.extend(graph.input.iter().map(|input| input.name.clone()));
-    let mut nodes = Vec::with_capacity(graph.node.len() + 3 * slopes.len());
-    for (index, node) in std::mem::take(&mut graph.node).into_iter().enumerate() {
-        let split = slopes.get(&index).and_then(|slope| match slope.as_slice() {
-            [one] => leaky(&node, *one),
-            slope => split(&node, slope, &mut names, graph),
-        });
-        match split {
-            Some(split) => nodes.extend(split),
-            None => nodes.push(node),
-        }
-    }
-    graph.node = nodes;
-    true
+    split_nodes(graph, |index, node| match slopes.get(&index)?.as_slice() {
+        [one] => leaky(node, *one),
+        slope => split(node, slope),
+    })
 }
 
 /// The slopes of each activation that can be rewritten, by the place of its node.
@@ -85,44 +74,29 @@ fn slopes_of(graph: &GraphProto) -> HashMap<usize, Vec<f32>> {
     places.filter_map(|(index, node)| Some((index, slope(node)?))).collect()
 }
 
-fn leaky(node: &NodeProto, slope: f32) -> Option<Vec<NodeProto>> {
-    let leaky = Operator::new("LeakyRelu").float("alpha", slope).into_node(&node.name);
-    let (input, output) = (vec![node.input.first()?.clone()], node.output.clone());
-    Some(vec![NodeProto { input, output, ..leaky }])
+fn leaky(node: &NodeProto, slope: f32) -> Option<Split> {
+    let ([x, _], [output]) = (node.input.as_slice(), node.output.as_slice()) else { return None };
+    Some(Split::default().node(Operator::new("LeakyRelu").float("alpha", slope), &[x], output))
 }
 
-fn split(
-    node: &NodeProto,
-    slope: &[f32],
-    names: &mut HashSet<String>,
-    graph: &mut GraphProto,
-) -> Option<Vec<NodeProto>> {
+fn split(node: &NodeProto, slope: &[f32]) -> Option<Split> {
     let ([x, _], [output]) = (node.input.as_slice(), node.output.as_slice()) else { return None };
-    let new = ["positive", "below", "above", "slope", "rest"].map(|part| format!("{output}/{part}"));
-    if new.iter().any(|name| names.contains(name)) {
-        return None;
-    }
-    let [positive, below, above, scale, rest] = &new;
-    let of_slope = |of: fn(f32) -> f32, name: &str| {
+    let [positive, below, above, scale, rest] =
+        &["positive", "below", "above", "slope", "rest"].map(|part| format!("{output}/{part}"));
+    let of_slope = |of: fn(f32) -> f32| {
         let data = slope.iter().map(|slope| of(*slope)).collect();
-        Array::new(vec![slope.len(), 1, 1, 1], Data::Float(data))?.to_tensor(name).ok()
+        Array::new(vec![slope.len(), 1, 1, 1], Data::Float(data))
     };
-    graph.initializer.extend([of_slope(|slope| slope, scale)?, of_slope(|slope| 1.0 - slope, rest)?]);
     let channels = i64::try_from(slope.len()).ok()?;
     let conv = || Operator::new("Conv").int("group", channels).ints("kernel_shape", [1, 1]);
-    let make = |operator: Operator, input: &[&String], output: &String| NodeProto {
-        input: input.iter().map(|&input| input.clone()).collect(),
-        output: vec![output.clone()],
-        ..operator.into_node(output)
-    };
-    let nodes = vec![
-        make(Operator::new("Relu"), &[x], positive),
-        make(conv(), &[x, scale], below),
-        make(conv(), &[positive, rest], above),
-        make(Operator::new("Add"), &[above, below], output),
-    ];
-    names.extend(new);
-    Some(nodes)
+    let split = Split::default()
+        .constant(scale, &of_slope(|slope| slope)?)?
+        .constant(rest, &of_slope(|slope| 1.0 - slope)?)?
+        .node(Operator::new("Relu"), &[x], positive)
+        .node(conv(), &[x, scale], below)
+        .node(conv(), &[positive, rest], above)
+        .node(Operator::new("Add"), &[above, below], output);
+    Some(split)
 }
 
 #[cfg(test)]

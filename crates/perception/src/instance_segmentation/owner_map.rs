@@ -92,7 +92,9 @@ impl OwnerMap {
                 }
             }
         }
-        counts.push((width * height - begun) as u32);
+        if begun < width * height {
+            counts.push((width * height - begun) as u32);
+        }
         let side =
             |side: usize| u32::try_from(side).map_err(|_| Error::invalid_input("the picture is too large"));
         Rle::new(side(height)?, side(width)?, counts)

@@ -7,8 +7,10 @@ use opendr_vision::stereo::StereoCamera;
 /// What counts as an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ObstacleOptions {
-    /// Of the camera, which looks level, above the floor, metres.
+    /// Of the camera above the floor, metres.
     pub camera_height: f32,
+    /// How far the camera looks down, radians.
+    pub camera_pitch: f32,
     /// Lowest and highest place above the floor, metres.
     pub heights: [f32; 2],
     /// Metres ahead and to each side.
@@ -41,8 +43,8 @@ struct Extent {
 }
 
 impl Obstacles {
-    /// Writes the obstacles in a map of depths, metres, `width` a row, 0 being unknown: the nearest first, in the camera's
-    /// frame, class 0, with the score 1.
+    /// Writes the obstacles in a map of depths, metres, `width` a row, 0 being unknown: the nearest first, class 0, with the
+    /// score 1, in the frame of a level camera at the same place: x right, y down, z ahead along the floor.
     pub fn find(
         &mut self,
         camera: &StereoCamera,
@@ -55,20 +57,23 @@ impl Obstacles {
         let farthest = options.farthest.clamp(SIDE, 100.0);
         let rows = (farthest / SIDE).ceil() as usize;
         let columns = 2 * rows;
+        let (sine, cosine) = options.camera_pitch.sin_cos();
         // A pixel's place and square, where it may belong to an obstacle.
         let seen = |at: usize| {
             let (x, y) = (at % width, at / width);
-            let depth = depths[at];
-            let place = camera.point([x as f32 + 0.5, y as f32 + 0.5], depth);
+            let [right, below, depth] = camera.point([x as f32 + 0.5, y as f32 + 0.5], depths[at]);
+            let place = [right, below * cosine + depth * sine, depth * cosine - below * sine];
+            let ahead = place[2];
             let height = options.camera_height - place[1];
             let [lowest, highest] = options.heights;
-            let counts = depth > 0.0 && depth < farthest && height >= lowest && height <= highest;
+            let is_near = depth > 0.0 && ahead > 0.0 && ahead < farthest;
+            let counts = is_near && height >= lowest && height <= highest;
             let column = (place[0] + farthest) / SIDE;
             let is_beside = !(column >= 0.0 && column < columns as f32);
             if !counts || is_beside {
                 return None;
             }
-            Some((place, ((depth / SIDE) as usize).min(rows - 1) * columns + column as usize))
+            Some((place, ((ahead / SIDE) as usize).min(rows - 1) * columns + column as usize))
         };
         self.counts.clear();
         self.counts.resize(rows * columns, 0);
@@ -128,7 +133,7 @@ mod tests {
     const CAMERA: StereoCamera =
         StereoCamera { focal: 100.0, baseline: 0.1, centre: [80.0, 60.0], offset: 0.0 };
     const OPTIONS: ObstacleOptions =
-        ObstacleOptions { camera_height: 1.0, heights: [0.2, 2.0], farthest: 10.0 };
+        ObstacleOptions { camera_height: 1.0, camera_pitch: 0.0, heights: [0.2, 2.0], farthest: 10.0 };
 
     /// A floor, a near box on the left and a farther one on the right.
     fn depths() -> Vec<f32> {
@@ -156,6 +161,23 @@ mod tests {
             "{near:?}"
         );
         assert!((far.dimensions[0] - 0.76).abs() < 0.01 && (far.location[0] - 1.2).abs() < 0.01, "{far:?}");
+    }
+
+    /// A floor alone is none, however the camera looks at it, if that is told.
+    #[test]
+    fn a_floor_below_a_camera_that_looks_down_is_no_obstacle() {
+        let pitch = 0.3_f32;
+        let depth = |at: usize| {
+            let below = ((at / 160) as f32 + 0.5 - 60.0) / 100.0;
+            1.0 / (below * pitch.cos() + pitch.sin())
+        };
+        let depths: Vec<f32> = (0..160 * 120).map(|at| depth(at).max(0.0)).collect();
+        let mut boxes = Vec::new();
+        let mut finder = Obstacles::default();
+        finder.find(&CAMERA, &depths, 160, &ObstacleOptions { camera_pitch: pitch, ..OPTIONS }, &mut boxes);
+        assert!(boxes.is_empty(), "{boxes:?}");
+        finder.find(&CAMERA, &depths, 160, &OPTIONS, &mut boxes);
+        assert!(!boxes.is_empty());
     }
 
     #[test]

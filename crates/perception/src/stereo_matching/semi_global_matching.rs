@@ -51,9 +51,12 @@ pub struct SemiGlobalMatchingParams {
     /// How much further right the right principal point lies (Middlebury's doffs).
     #[param(default = 0.0, range = -1e4..=1e4, unit = "px", live)]
     pub disparity_offset: f32,
-    /// How high the cameras are above the floor, looking level. Obstacles need it.
+    /// How high the cameras are above the floor. Obstacles need it.
     #[param(default = 0.0, range = 0.0..=100.0, unit = "m", live)]
     pub camera_height: f32,
+    /// How far the cameras look down.
+    #[param(default = 0.0, range = -89.0..=89.0, unit = "deg", live)]
+    pub camera_pitch: f32,
     /// What rises less above the floor is no obstacle.
     #[param(default = 0.2, range = 0.0..=100.0, unit = "m", live)]
     pub min_height: f32,
@@ -81,7 +84,8 @@ pub struct SemiGlobalMatchingTargets {
     pub disparity: Heatmap,
     /// Distance ahead of each pixel, metres; 0 where nothing is known. Empty without focal length and baseline.
     pub depth: Heatmap,
-    /// What stands on the floor, nearest first. None without focal length, baseline and camera height.
+    /// What stands on the floor, nearest first, seen from a level camera at the same place. None without focal length, baseline
+    /// and camera height.
     pub obstacles: BoundingBox3DList,
 }
 
@@ -184,6 +188,7 @@ impl SemiGlobalMatching {
         let params = &self.params;
         ObstacleOptions {
             camera_height: params.camera_height,
+            camera_pitch: params.camera_pitch.to_radians(),
             heights: [params.min_height, params.max_height],
             farthest: params.max_distance,
         }
