@@ -14,6 +14,8 @@ pub fn metric_of(task: Task) -> Result<&'static str> {
         Task::ObjectTracking3d => Ok("tracking_3d"),
         Task::FaceDetection => Ok("voc_detection"),
         Task::ImageClassification
+        | Task::AmbiguityMeasure
+        | Task::BinaryHighResolution
         | Task::CompressiveLearning
         | Task::FaceRecognition
         | Task::FacialExpressionRecognition => Ok("classification"),

@@ -111,18 +111,21 @@ fn persons_of_coco_are_found() {
     assert!(overlap >= 0.65 && 2 * found >= there, "{overlap} {found}/{there}");
 }
 
+/// MediaPipe 0.10.9's own runs of the two networks say 0.545 and 0.551 of the picture; both count the helmet before her,
+/// which DeepLab does not.
 #[test]
 fn the_astronaut_is_told_from_her_background() {
     let Some(models) = Models::find() else { return };
     let Some(deeplab) = labels(&models, "deeplab", "astronaut.png") else { return };
-    for spec in ["selfie_segmentation", "selfie_segmentation/landscape"] {
+    for (spec, wanted) in [("selfie_segmentation", 0.545), ("selfie_segmentation/landscape", 0.551)] {
         let Some(labels) = labels(&models, spec, "astronaut.png") else { return };
+        let share = labels.iter().filter(|label| **label == 1).count() as f64 / labels.len() as f64;
         // Pascal's person is class 15.
-        let pairs = || labels.iter().zip(&deeplab).map(|(one, other)| (*one == 1, *other == 15));
-        let both = pairs().filter(|(one, other)| *one && *other).count() as f64;
-        let any = pairs().filter(|(one, other)| *one || *other).count() as f64;
-        println!("{spec}: IoU with DeepLab's person {:.3}", both / any);
-        assert!(both / any > 0.85, "{spec}: {}", both / any);
+        let persons = deeplab.iter().zip(&labels).filter(|(label, _)| **label == 15);
+        let (all, found) =
+            persons.fold((0.0, 0.0), |(all, found), (_, label)| (all + 1.0, found + f64::from(*label)));
+        println!("{spec}: {share:.4} of the picture, {:.4} of DeepLab's person", found / all);
+        assert!((share - wanted).abs() < 0.01 && found / all > 0.95, "{spec}: {share} {}", found / all);
     }
 }
 

@@ -50,6 +50,15 @@ pub(crate) fn category_from_probabilities(
     highest_wins(category, classes)
 }
 
+/// Fills `category` with class 1 where something `holds`, else 0; `probability` is that of class 1.
+pub(crate) fn category_of_two(category: &mut Category, holds: bool, probability: f32, classes: &Classes) {
+    category.class = i64::from(holds);
+    category.description = classes.name(category.class).cloned();
+    category.confidence = Some(if holds { probability } else { 1.0 - probability });
+    category.probabilities.clear();
+    category.probabilities.extend([1.0 - probability, probability]);
+}
+
 fn highest_wins(category: &mut Category, classes: &Classes) -> Result<()> {
     let (scores, names) = (category.probabilities.len(), classes.len());
     if scores == 0 || !(names == 0 || names == scores) {

@@ -14,6 +14,8 @@ use opendr_engine::{Device, Error, Pool, Result, Task};
 
 use persistence::{Peak, Persistence};
 
+use crate::category_scores::category_of_two;
+
 /// What a user may set.
 #[derive(Debug, Clone, Params)]
 pub struct AmbiguityMeasureParams {
@@ -108,13 +110,7 @@ impl Learner for AmbiguityMeasure {
         // The highest peak is the first, with the weight 1.
         let doubt = 1.0 - 1.0 / sum;
         let is_ambiguous = doubt >= threshold && peaks.len() > 1;
-        let category = &mut targets.category;
-        category.class = i64::from(is_ambiguous);
-        category.description = self.classes.name(category.class).cloned();
-        let sure = if is_ambiguous { doubt } else { 1.0 - doubt };
-        category.confidence = Some(sure as f32);
-        category.probabilities.clear();
-        category.probabilities.extend([1.0 - doubt, doubt].map(|share| share as f32));
+        category_of_two(&mut targets.category, is_ambiguous, doubt as f32, &self.classes);
         Ok(())
     }
 }

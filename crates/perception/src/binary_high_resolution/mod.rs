@@ -4,4 +4,6 @@ mod high_resolution_patches;
 
 #[cfg(feature = "training")]
 pub use high_resolution_patches::HighResolutionPatchesFitParams;
-pub use high_resolution_patches::{HighResolutionPatches, HighResolutionPatchesParams, PatchArchitecture};
+pub use high_resolution_patches::{
+    HighResolutionPatches, HighResolutionPatchesParams, HighResolutionPatchesTargets, PatchArchitecture,
+};

@@ -13,6 +13,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
 
+use crate::category_scores::category_of_two;
 use crate::speech_recognition::Sound;
 use crate::voice_activity::{SAMPLE_RATE, Speech, VoiceNetwork, VoiceRule, VoiceStream};
 
@@ -49,18 +50,10 @@ impl SileroVad {
         VoiceRule::from_milliseconds(self.params.threshold, self.params.min_silence_duration_ms, 0)
     }
 
-    fn fill(&self, category: &mut Category, speaks: bool, probability: f32) {
-        category.class = i64::from(speaks);
-        category.description = self.classes.name(category.class).cloned();
-        category.probabilities.clear();
-        category.probabilities.extend([1.0 - probability, probability]);
-        category.confidence = Some(if speaks { probability } else { 1.0 - probability });
-    }
-
     fn answer(&self, speech: &mut Speech, probability: f32) -> Category {
         self.rule().next(speech, probability);
         let mut category = Category::default();
-        self.fill(&mut category, speech.is_active(), probability);
+        category_of_two(&mut category, speech.is_active(), probability, &self.classes);
         category
     }
 }
@@ -99,7 +92,7 @@ impl Learner for SileroVad {
             Ok(())
         })?;
         highest = highest.max(self.network.flush(&mut stream)?.unwrap_or(0.0));
-        self.fill(category, highest >= self.params.threshold, highest);
+        category_of_two(category, highest >= self.params.threshold, highest, &self.classes);
         Ok(())
     }
 }

@@ -15,13 +15,14 @@ mod objective;
 mod tests;
 
 use opendr_engine::data::Image;
-use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::learner::{Learner, Spec, Targets};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
-use opendr_engine::target::{Classes, Heatmap};
+use opendr_engine::target::{Category, Classes, Heatmap};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_vision::Preprocess;
 
+use crate::category_scores::category_of_two;
 use crate::picture_network::PictureNetwork;
 
 #[cfg(feature = "training")]
@@ -54,6 +55,17 @@ pub struct HighResolutionPatchesParams {
     pub architecture: PatchArchitecture,
 }
 
+/// What is told of a picture.
+#[derive(Default, Targets)]
+pub struct HighResolutionPatchesTargets {
+    /// Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is
+    /// (8x, 8y).
+    pub map: Heatmap,
+    /// Class 1 where one of the patches is rather that than class 0, by the probability of the best; of a picture of a patch's
+    /// size its class.
+    pub category: Category,
+}
+
 /// A loaded network.
 pub struct HighResolutionPatches {
     params: HighResolutionPatchesParams,
@@ -78,9 +90,7 @@ impl Learner for HighResolutionPatches {
         );
     type Params = HighResolutionPatchesParams;
     type Input<'a> = &'a Image;
-    /// Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is
-    /// (8x, 8y).
-    type Target = Heatmap;
+    type Target = HighResolutionPatchesTargets;
     type State = ();
 
     fn load(model: &Model, params: HighResolutionPatchesParams, device: Device) -> Result<Self> {
@@ -101,7 +111,12 @@ impl Learner for HighResolutionPatches {
         self.classes.clone()
     }
 
-    fn infer_into(&self, _: &mut (), image: &Image, map: &mut Heatmap) -> Result<()> {
+    fn infer_into(
+        &self,
+        _: &mut (),
+        image: &Image,
+        HighResolutionPatchesTargets { map, category }: &mut HighResolutionPatchesTargets,
+    ) -> Result<()> {
         // What is smaller than a patch is stretched to one.
         let side = self.params.architecture.side();
         let size = [image.width(), image.height()].map(|length| length.max(side));
@@ -121,7 +136,9 @@ impl Learner for HighResolutionPatches {
             for (score, (nothing, something)) in scores.iter_mut().zip(nothing.iter().zip(something)) {
                 *score = 1.0 / (1.0 + (nothing - something).exp());
             }
+            let best = scores.iter().copied().fold(0.0, f32::max);
             map.classes.clone_from(&self.classes);
+            category_of_two(category, best > 0.5, best, &self.classes);
             Ok(())
         })
     }

@@ -78,9 +78,15 @@ fn fit_makes_what_infer_loads_and_finds_rings_in_large_pictures() {
     (fit_params.training.epochs, fit_params.training.batch_size, fit_params.training.lr) = (30, 8, 0.005);
     let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
     let mut handle = Handle::<HighResolutionPatches>::new(Default::default(), Device::Cpu).unwrap();
-    handle.fit(&fit_params, DatasetRef::from(&Rings as &dyn DatasetIterator), None, &job).unwrap();
+    let rings = || DatasetRef::from(&Rings as &dyn DatasetIterator);
+    handle.fit(&fit_params, rings(), Some(rings()), &job).unwrap();
+    for index in 0..Rings.len() {
+        let Some(Value::Image(patch)) = Rings.get(index).unwrap().data.pop() else { panic!("no picture") };
+        assert_eq!(handle.infer(&patch).unwrap().category.class, (index % 2) as i64);
+    }
     let image = picture(77, [640, 360], &[[200, 120]]);
-    let map = handle.infer(&image).unwrap();
+    let HighResolutionPatchesTargets { map, category } = handle.infer(&image).unwrap();
+    assert_eq!(category.class, 1);
     // (640 - 64) / 8 + 1, but for the ends.
     let (rows, columns) = (map.shape()[0], map.shape()[1]);
     assert!((36..=38).contains(&rows) && (71..=73).contains(&columns), "{rows}x{columns}");
@@ -91,7 +97,7 @@ fn fit_makes_what_infer_loads_and_finds_rings_in_large_pictures() {
     assert!(off.iter().all(|off| *off <= 24) && scores[best] > 0.8, "{middle:?}: {}", scores[best]);
     assert!(scores.iter().filter(|score| **score > 0.5).count() < scores.len() / 10);
     let tiny = handle.infer(&picture(3, [1, 1], &[])).unwrap();
-    assert_eq!(tiny.shape(), [1, 1]);
+    assert_eq!(tiny.map.shape(), [1, 1]);
     let calls = (0..3).map(|index| vec![Value::from(picture(index, [80, 70], &[[40, 40]]))]).collect();
     check::<HighResolutionPatches>(&job.model(), &output.join("scratch"), calls);
     std::fs::remove_dir_all(&output).ok();
