@@ -1045,6 +1045,87 @@ static inline opendr_status opendr_infer_single_shot_detector(const opendr_learn
 }
 
 /*
+ * TiledDetectionLearner: Looks at large pictures in tiles with any detector, where it is worth it, within a time budget.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.35): Detections below this score are dropped; the detector is not asked for any below 0.1.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.5): Boxes of one class from different tiles that overlap more than this (intersection over union) are one object.
+ *   max_detections (an int 1..=2000, may change while it runs, default 500): At most this many boxes a picture.
+ *   tile (an int 32..=4096 px, may change while it runs, default 256): Side of a tile in the picture. What is looked for should fill a tenth of it or more.
+ *   tile_overlap (an int 0..=2048 px, may change while it runs, default 48): What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
+ *   whole (a bool, may change while it runs, default true): Whether the whole picture is looked at, too: for what is larger than a tile.
+ *   time_budget (a float 0..=60000 ms, may change while it runs, default 0): Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that depend on nothing but the pictures.
+ *   max_tiles (an int 0..=100000, may change while it runs, default 0): At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
+ *   detail_threshold (a float 0..=255, may change while it runs, default 16): A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
+ *   change_threshold (a float 0..=255, may change while it runs, default 6): A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then its last answer holds. 0: always.
+ *   memory (an int 0..=1000, may change while it runs, default 5): For so many pictures the answer of a tile that changed holds, if there was no time to look again.
+ *   rotation (an int 0..=1000, may change while it runs, default 4): In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
+ *   parallel_tiles (an int 0..=64, default 0): Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores, at most four.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_tiled_detection(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("tiled_detection", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_tiled_detection(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * VoxelObjectDetection3DLearner: PointPillars finds boxes in the scan of a lidar; it trains on classes of your own.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.3): Boxes below this score are dropped. OpenDR's default of 0 tells every box that the network thinks of.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.1): Boxes of one class whose floors overlap more than this (intersection over union) are one object.
+ *   max_candidates (an int 1..=10000, may change while it runs, default 400): So many of the best boxes are looked at before overlapping ones are thinned out.
+ *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a scan.
+ *
+ * Inputs:
+ *   point_cloud (PointCloud): What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.
+ *
+ * Outputs:
+ *   boxes_3d (BoundingBox3DList)
+ */
+static inline opendr_status opendr_load_voxel_object_detection_3d(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("voxel_object_detection_3d", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_voxel_object_detection_3d(const opendr_learner *learner,
+    const opendr_point_cloud *point_cloud,
+    opendr_bounding_box_3d_list **boxes_3d) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "point_cloud";
+    inputs_[0].value = (const opendr_value *)point_cloud;
+    outputs_[0].name = "boxes_3d";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes_3d != NULL) *boxes_3d = (opendr_bounding_box_3d_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * SortLearner: SORT follows what a detector finds by motion and overlap alone, at next to no cost.
  *
  * Parameters:
@@ -1248,6 +1329,45 @@ static inline opendr_status opendr_infer_fair_mot(const opendr_learner *learner,
     outputs_[0].name = "tracks";
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * SiamRPNLearner: NanoTrack follows one object of any kind from a box in the first frame.
+ *
+ * Parameters:
+ *   window_influence (a float 0..=1, may change while it runs, default 0.455): How much a place far from where the object was is marked down.
+ *   penalty (a float 0..=1, may change while it runs, default 0.138): How much another size or shape than before is marked down.
+ *   size_rate (a float 0..=1, may change while it runs, default 0.348): How fast the size of the box follows what is seen.
+ *
+ * Inputs:
+ *   image (Image): The frame.
+ *   init_box (BoundingBoxList): What is to be followed from this frame on: its first box. Given with the first call of a stream, else NULL.
+ *
+ * Outputs:
+ *   tracks (TrackingAnnotationList)
+ */
+static inline opendr_status opendr_load_nano_track(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("nano_track", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_nano_track(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_bounding_box_list *init_box,
+    opendr_tracking_annotation_list **tracks) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "init_box";
+    inputs_[1].value = (const opendr_value *)init_box;
+    outputs_[0].name = "tracks";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
     if (tracks != NULL) *tracks = (opendr_tracking_annotation_list *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
@@ -1908,6 +2028,341 @@ static inline opendr_status opendr_infer_deeplab(const opendr_learner *learner,
     status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
     if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * BisenetLearner: BiSeNet tells the class of every pixel; it is trained on a user's own masks.
+ *
+ * Parameters:
+ *   full_size (a bool, may change while it runs, default true): Whether the map has the size of the picture; else it has the network's.
+ *   num_classes (an int 2..=255, default none): Classes. None: as many as the data name.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_bisenet(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("bisenet", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_bisenet(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * SelfieSegmentationLearner: Tells a person near the camera from what is behind.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.5): Pixels from this probability on are a person's.
+ *   probabilities (a bool, may change while it runs, default false): Whether the map holds probabilities, for blending, instead of classes.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_selfie_segmentation(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("selfie_segmentation", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_selfie_segmentation(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * EfficientPsLearner: Tells class and object of every pixel, by fusing DeepLab, CenterNet and BodyPix.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.3): Objects below this score are dropped.
+ *   box_masks (a bool, may change while it runs, default true): Whether objects of classes that no map of classes knows are the whole of their boxes; else they are left out.
+ *   min_overlap (a float 0..=1, may change while it runs, default 0.1): Objects are dropped of whose box the map of classes confirms a smaller share.
+ *   min_leftover (a float 0..=1, may change while it runs, default 0.1): Regions of a countable class outside of all boxes are objects from this share of the picture on.
+ *   min_stuff (a float 0..=1, may change while it runs, default 0.02): Regions that are not countable are told from this share of the picture on.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   instance (Heatmap): 1000 times the class and the number of the object in its class, from 1; 0 where the class is not countable. 255000 where nothing is known.
+ *   semantic (Heatmap): The class of each pixel; 255 where nothing is known.
+ */
+static inline opendr_status opendr_load_efficient_ps(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("efficient_ps", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_efficient_ps(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **instance,
+    opendr_heatmap **semantic) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "instance";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "semantic";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
+    if (instance != NULL) *instance = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (semantic != NULL) *semantic = (opendr_heatmap *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
+ * BodyPixLearner: BodyPix finds persons with the pixels of each.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.2): Persons below this score are dropped.
+ *   mask_threshold (a float 0.01..=0.99, may change while it runs, default 0.5): Pixels from this score on belong to a person.
+ *   peak_threshold (a float 0.01..=0.99, may change while it runs, default 0.4): Joints below this score start no person.
+ *   nms_radius (a float 0..=200 px, may change while it runs, default 30): Joints of one kind nearer than this belong to one person, in pixels of the network's input.
+ *   max_detections (an int 1..=100, may change while it runs, default 20): At most this many persons a picture.
+ *   resolution (an int 65..=1537 px, may change while it runs, default 513): Longer side of the network's input. Larger finds smaller persons.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_bodypix(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("bodypix", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_bodypix(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * SemiGlobalMatchingLearner: Tells the distance of what two cameras see, by semi-global matching.
+ *
+ * Parameters:
+ *   min_disparity (an int 0..=4096 px, may change while it runs, default 0): The least disparity that is looked for.
+ *   num_disparities (an int 1..=1024 px, may change while it runs, default 64): How many disparities are looked for; rounded up to a multiple of 16.
+ *   p1 (an int 0..=193, may change while it runs, default 8): What a step of one pixel in disparity costs, in differing neighbours of 62.
+ *   p2 (an int 0..=193, may change while it runs, default 40): What a larger step costs.
+ *   uniqueness_ratio (an int 0..=99 %, may change while it runs, default 5): By how many percent the second best disparity must be worse.
+ *   disp12_max_diff (an int -1..=1000 px, may change while it runs, default 1): How far the right picture may disagree; -1 does not ask it.
+ *   speckle_window_size (an int 0..=1000000 px, may change while it runs, default 100): Islands of at most so many pixels are forgotten.
+ *   speckle_range (a float 0..=1000 px, may change while it runs, default 1): Neighbours belong to one island where they differ by at most so much.
+ *   fill (a bool, may change while it runs, default false): Whether holes are filled from the background in their row.
+ *   focal_length (a float 0..=1000000 px, may change while it runs, default 0): Focal length of the rectified pair. Depths need it.
+ *   baseline (a float 0..=1000 m, may change while it runs, default 0): Between the cameras. Depths need it.
+ *   disparity_offset (a float -10000..=10000 px, may change while it runs, default 0): How much further right the right principal point lies (Middlebury's doffs).
+ *   camera_height (a float 0..=100 m, may change while it runs, default 0): How high the cameras are above the floor. Obstacles need it.
+ *   camera_pitch (a float -89..=89 deg, may change while it runs, default 0): How far the cameras look down.
+ *   min_height (a float 0..=100 m, may change while it runs, default 0.2): What rises less above the floor is no obstacle.
+ *   max_height (a float 0..=100 m, may change while it runs, default 2): What hangs higher above the floor is no obstacle.
+ *   max_distance (a float 0.1..=100 m, may change while it runs, default 10): What is farther is no obstacle.
+ *
+ * Inputs:
+ *   left (Image): Of the left camera.
+ *   right (Image): Of the right camera.
+ *
+ * Outputs:
+ *   disparity (Heatmap): Disparity of each pixel of the left picture, pixels; 0 where nothing is known.
+ *   depth (Heatmap): Distance ahead of each pixel, metres; 0 where nothing is known. Empty without focal length and baseline.
+ *   obstacles (BoundingBox3DList): What stands on the floor, nearest first, seen from a level camera at the same place. None without focal length, baseline and camera height.
+ */
+static inline opendr_status opendr_load_semi_global_matching(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("semi_global_matching", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_semi_global_matching(const opendr_learner *learner,
+    const opendr_image *left,
+    const opendr_image *right,
+    opendr_heatmap **disparity,
+    opendr_heatmap **depth,
+    opendr_bounding_box_3d_list **obstacles) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[3];
+    opendr_status status_;
+    inputs_[0].name = "left";
+    inputs_[0].value = (const opendr_value *)left;
+    inputs_[1].name = "right";
+    inputs_[1].value = (const opendr_value *)right;
+    outputs_[0].name = "disparity";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "depth";
+    outputs_[1].value = NULL;
+    outputs_[2].name = "obstacles";
+    outputs_[2].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 3);
+    if (disparity != NULL) *disparity = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (depth != NULL) *depth = (opendr_heatmap *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    if (obstacles != NULL) *obstacles = (opendr_bounding_box_3d_list *)outputs_[2].value;
+    else opendr_value_free(&outputs_[2].value);
+    return status_;
+}
+
+/*
+ * AmbiguityMeasureLearner: Tells whether a map of values leaves a doubt where the best place is.
+ *
+ * Parameters:
+ *   threshold (a float 0..=0.999999, may change while it runs, default 0.5): A map is ambiguous where what is left beside the best peak has this probability.
+ *   temperature (a float 0.000001..=1000000, may change while it runs, default 1): Of the softmax; larger ones make maps more ambiguous.
+ *
+ * Inputs:
+ *   heatmap (Heatmap)
+ *
+ * Outputs:
+ *   category (Category): Class 1 where it is ambiguous, else 0; the probabilities are those of the best peak and of all others.
+ *   peaks (Heatmap): `[peaks, 4]`: row, column, value and probability of each peak, the most persistent first.
+ */
+static inline opendr_status opendr_load_ambiguity_measure(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("ambiguity_measure", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_ambiguity_measure(const opendr_learner *learner,
+    const opendr_heatmap *heatmap,
+    opendr_category **category,
+    opendr_heatmap **peaks) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "heatmap";
+    inputs_[0].value = (const opendr_value *)heatmap;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "peaks";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (peaks != NULL) *peaks = (opendr_heatmap *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
+ * TiledSegmentationLearner: Tells the class of every pixel of large pictures in tiles, within a time budget.
+ *
+ * Parameters:
+ *   tile (an int 32..=4096 px, may change while it runs, default 512): Side of a tile in the picture. What is looked for should fill a tenth of it or more.
+ *   tile_overlap (an int 0..=2048 px, may change while it runs, default 64): What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
+ *   whole (a bool, may change while it runs, default true): Whether the whole picture is looked at, too: for what is larger than a tile.
+ *   time_budget (a float 0..=60000 ms, may change while it runs, default 0): Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that depend on nothing but the pictures.
+ *   max_tiles (an int 0..=100000, may change while it runs, default 0): At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
+ *   detail_threshold (a float 0..=255, may change while it runs, default 16): A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
+ *   change_threshold (a float 0..=255, may change while it runs, default 6): A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then its last answer holds. 0: always.
+ *   memory (an int 0..=1000, may change while it runs, default 5): For so many pictures the answer of a tile that changed holds, if there was no time to look again.
+ *   rotation (an int 0..=1000, may change while it runs, default 4): In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
+ *   parallel_tiles (an int 0..=64, default 0): Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores, at most four.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_tiled_segmentation(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("tiled_segmentation", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_tiled_segmentation(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * BinaryHighResolutionLearner: Tells where a picture of full high definition shows what it has learned to look for; it trains.
+ *
+ * Parameters:
+ *   architecture (a str, one of VGG_720p, VGG_1080p, default VGG_720p): The network that is trained; a loaded model is of the one it was trained as.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   map (Heatmap): Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is (8x, 8y).
+ *   category (Category): Class 1 where one of the patches is rather that than class 0, by the probability of the best; of a picture of a patch's size its class.
+ */
+static inline opendr_status opendr_load_binary_high_resolution(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("binary_high_resolution", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_binary_high_resolution(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **map,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "map";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "category";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
+    if (map != NULL) *map = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (category != NULL) *category = (opendr_category *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
     return status_;
 }
 

@@ -1,5 +1,7 @@
 """Perception: a module a task."""
 
+from opendr.perception import ambiguity_measure as ambiguity_measure
+from opendr.perception import binary_high_resolution as binary_high_resolution
 from opendr.perception import compressive_learning as compressive_learning
 from opendr.perception import face_detection as face_detection
 from opendr.perception import face_recognition as face_recognition
@@ -11,13 +13,17 @@ from opendr.perception import grasp_detection as grasp_detection
 from opendr.perception import hand_pose_estimation as hand_pose_estimation
 from opendr.perception import heart_anomaly_detection as heart_anomaly_detection
 from opendr.perception import image_classification as image_classification
+from opendr.perception import instance_segmentation as instance_segmentation
 from opendr.perception import multimodal_human_centric as multimodal_human_centric
 from opendr.perception import object_detection_2d as object_detection_2d
+from opendr.perception import object_detection_3d as object_detection_3d
 from opendr.perception import object_tracking_2d as object_tracking_2d
 from opendr.perception import object_tracking_3d as object_tracking_3d
+from opendr.perception import panoptic_segmentation as panoptic_segmentation
 from opendr.perception import pose_estimation as pose_estimation
 from opendr.perception import semantic_segmentation as semantic_segmentation
 from opendr.perception import skeleton_based_action_recognition as skeleton_based_action_recognition
 from opendr.perception import speech_recognition as speech_recognition
 from opendr.perception import speech_transcription as speech_transcription
+from opendr.perception import stereo_matching as stereo_matching
 from opendr.perception import voice_activity_detection as voice_activity_detection

@@ -234,3 +234,64 @@ class SingleShotDetectorLearner(NativeLearner):
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., nms_thresh: float = ..., max_candidates: int = ..., nms_topk: int = ..., max_detections: int = ..., post_nms: int = ..., suppression: Literal['hard', 'soft', 'fast', 'cluster'] = ..., custom_nms: Literal['hard', 'soft', 'fast', 'cluster'] = ..., keep_size: Any = ..., extract_maps: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> Iterator[BoundingBoxList]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., img_size: int = ..., fitting: Literal['stretch', 'letterbox'] = ..., classes: list[Any] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., backbone_weights: Optional[str] = ..., freeze: int = ..., least_score: float = ..., augment: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+
+class TiledDetectionLearner(NativeLearner):
+    """Looks at large pictures in tiles with any detector, where it is worth it, within a time budget.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image.
+
+    and gives: BoundingBoxList.
+
+    Args:
+        threshold: Detections below this score are dropped; the detector is not asked for any below 0.1. (default
+            0.35; 0 to 1; may change while running, also for one call of infer)
+        iou_threshold: Boxes of one class from different tiles that overlap more than this (intersection over
+            union) are one object. (default 0.5; 0 to 1; may change while running, also for one call of infer)
+        max_detections: At most this many boxes a picture. (default 500; 1 to 2000; may change while running, also
+            for one call of infer)
+        tile: Side of a tile in the picture. What is looked for should fill a tenth of it or more. (default 256;
+            32 to 4096 px; may change while running, also for one call of infer)
+        tile_overlap: What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a
+            tile counts. (default 48; 0 to 2048 px; may change while running, also for one call of infer)
+        whole: Whether the whole picture is looked at, too: for what is larger than a tile. (default True; may
+            change while running, also for one call of infer)
+        time_budget: Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no
+            limit, and answers that depend on nothing but the pictures. (default 0.0; 0 to 60000 ms; may change
+            while running, also for one call of infer)
+        max_tiles: At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
+            (default 0; 0 to 100000; may change while running, also for one call of infer)
+        detail_threshold: A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is
+            empty; 0: no tile is. (default 16.0; 0 to 255; may change while running, also for one call of infer)
+        change_threshold: A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more
+            than this, 0..=255; until then its last answer holds. 0: always. (default 6.0; 0 to 255; may change
+            while running, also for one call of infer)
+        memory: For so many pictures the answer of a tile that changed holds, if there was no time to look again.
+            (default 5; 0 to 1000; may change while running, also for one call of infer)
+        rotation: In every so-manyth picture the tile that was not looked at for longest is, be there anything or
+            not; 0: never. (default 4; 0 to 1000; may change while running, also for one call of infer)
+        parallel_tiles: Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as
+            many as there are cores, at most four. (default 0; 0 to 64)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    tile: int
+    tile_overlap: int
+    whole: bool
+    time_budget: float
+    max_tiles: int
+    detail_threshold: float
+    change_threshold: float
+    memory: int
+    rotation: int
+    parallel_tiles: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_detections: int = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ..., parallel_tiles: int = ...) -> None: ...
+    @overload
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> BoundingBoxList: ...  # type: ignore[overload-overlap]
+    @overload
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> list[BoundingBoxList]: ...
+    @overload
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> Iterator[BoundingBoxList]: ...

@@ -242,3 +242,41 @@ class ObjectTracking2DFairMotLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> list[TrackingAnnotationList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> Iterator[TrackingAnnotationList]: ...
+
+class SiamRPNLearner(NativeLearner):
+    """NanoTrack follows one object of any kind from a box in the first frame.
+
+    Task: object_tracking_2d. ``infer`` takes:
+
+        image: Image. The frame.
+        init_box: BoundingBoxList (with the first input of a stream). What is to be followed from this frame on:
+            its first box.
+
+    and gives: TrackingAnnotationList.
+
+    Args:
+        window_influence: How much a place far from where the object was is marked down. (default 0.455; 0 to 1;
+            may change while running, also for one call of infer)
+        penalty: How much another size or shape than before is marked down. (default 0.138; 0 to 1; may change
+            while running, also for one call of infer)
+        size_rate: How fast the size of the box follows what is seen. (default 0.348; 0 to 1; may change while
+            running, also for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Arguments of OpenDR that are taken and have no effect:
+        n_epochs: no effect: it belongs to training, which this learner does not have.
+        num_workers: no effect: it belongs to training, which this learner does not have.
+        warmup_epochs: no effect: it belongs to training, which this learner does not have.
+        lr: no effect: it belongs to training, which this learner does not have.
+        weight_decay: no effect: it belongs to training, which this learner does not have.
+        momentum: no effect: it belongs to training, which this learner does not have.
+        cls_weight: no effect: it belongs to training, which this learner does not have.
+        loc_weight: no effect: it belongs to training, which this learner does not have.
+        batch_size: no effect: it belongs to training, which this learner does not have.
+    """
+
+    window_influence: float
+    penalty: float
+    size_rate: float
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, window_influence: float = ..., penalty: float = ..., size_rate: float = ..., n_epochs: Any = ..., num_workers: Any = ..., warmup_epochs: Any = ..., weight_decay: Any = ..., momentum: Any = ..., cls_weight: Any = ..., loc_weight: Any = ...) -> None: ...
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], init_box: Optional[BoundingBoxList] = ..., *, window_influence: float = ..., penalty: float = ..., size_rate: float = ..., n_epochs: Any = ..., num_workers: Any = ..., warmup_epochs: Any = ..., lr: Any = ..., weight_decay: Any = ..., momentum: Any = ..., cls_weight: Any = ..., loc_weight: Any = ..., batch_size: Any = ...) -> TrackingAnnotationList: ...

@@ -88,6 +88,29 @@ impl Gallery {
         Ok(Self { dimension, persons: persons.collect::<Result<_>>()? })
     }
 
+    /// The names, by class number.
+    pub fn names(&self) -> Classes {
+        self.persons.iter().map(|person| person.name.as_str()).collect()
+    }
+
+    /// The number of the person with the picture closest to `embedding`, and their cosine; -1 where nobody is known.
+    pub fn nearest(&self, embedding: &[f32]) -> (usize, f32) {
+        let mut nearest = (0, -1.0);
+        for (at, person) in self.persons.iter().enumerate() {
+            for other in person.embeddings.chunks_exact(self.dimension.max(1)) {
+                let cosine = other.iter().zip(embedding).map(|(a, b)| a * b).sum::<f32>();
+                if cosine > nearest.1 {
+                    nearest = (at, cosine);
+                }
+            }
+        }
+        nearest
+    }
+}
+
+/// What taking references needs.
+#[cfg(any(feature = "training", test))]
+impl Gallery {
     /// The files of the container, which names the persons as its classes.
     pub fn to_files(&self) -> Result<[(&'static str, Vec<u8>); 2]> {
         let pictures = self.persons.iter().map(|person| person.embeddings.len() / self.dimension.max(1));
@@ -108,11 +131,6 @@ impl Gallery {
         self.dimension
     }
 
-    /// The names, by class number.
-    pub fn names(&self) -> Classes {
-        self.persons.iter().map(|person| person.name.as_str()).collect()
-    }
-
     /// Adds a picture of somebody; an embedding of length 1.
     pub fn add(&mut self, name: &str, embedding: &[f32]) {
         let at = self.persons.iter().position(|person| person.name == name).unwrap_or_else(|| {
@@ -120,20 +138,6 @@ impl Gallery {
             self.persons.len() - 1
         });
         self.persons[at].embeddings.extend_from_slice(embedding);
-    }
-
-    /// The number of the person with the picture closest to `embedding`, and their cosine; -1 where nobody is known.
-    pub fn nearest(&self, embedding: &[f32]) -> (usize, f32) {
-        let mut nearest = (0, -1.0);
-        for (at, person) in self.persons.iter().enumerate() {
-            for other in person.embeddings.chunks_exact(self.dimension.max(1)) {
-                let cosine = other.iter().zip(embedding).map(|(a, b)| a * b).sum::<f32>();
-                if cosine > nearest.1 {
-                    nearest = (at, cosine);
-                }
-            }
-        }
-        nearest
     }
 }
 
