@@ -53,9 +53,9 @@ pub use opendr_perception::{
     gesture_recognition, grasp_detection, hand_pose_estimation, heart_anomaly_detection,
     image_classification, instance_segmentation, mfcc, multimodal_human_centric, object_detection_2d,
     object_detection_3d, object_tracking_2d, object_tracking_3d, panoptic_segmentation, pillars,
-    pose_estimation, regions, resampler, semantic_segmentation, skeleton_based_action_recognition,
-    speech_recognition, speech_transcription, stereo_matching, suppression, tiling, tracking, voice_activity,
-    voice_activity_detection,
+    pose_estimation, range_image, regions, resampler, semantic_segmentation,
+    skeleton_based_action_recognition, speech_recognition, speech_transcription, stereo_matching,
+    suppression, tiling, tracking, voice_activity, voice_activity_detection,
 };
 pub use pipeline::Pipeline;
 pub use registry::registry;

@@ -23,7 +23,7 @@ use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetec
 use opendr_perception::object_detection_3d::VoxelObjectDetection3d;
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
-use opendr_perception::panoptic_segmentation::EfficientPs;
+use opendr_perception::panoptic_segmentation::{EfficientLps, EfficientPs};
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
 };
@@ -74,6 +74,7 @@ pub fn registry() -> &'static Registry {
             Bisenet,
             SelfieSegmentation,
             EfficientPs,
+            EfficientLps,
             BodyPix,
             SemiGlobalMatching,
             AmbiguityMeasure,

@@ -25,6 +25,7 @@ pub mod object_tracking_3d;
 pub mod panoptic_segmentation;
 pub mod pillars;
 pub mod pose_estimation;
+pub mod range_image;
 pub mod regions;
 pub mod resampler;
 pub mod semantic_segmentation;

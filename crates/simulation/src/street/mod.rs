@@ -7,9 +7,11 @@
 mod car_body;
 mod layout;
 mod scans;
+mod segments;
 #[cfg(test)]
 mod tests;
 
 pub use car_body::CarShape;
 pub use layout::{Street, StreetKind, StreetObject};
 pub use scans::StreetScans;
+pub use segments::StreetSegments;

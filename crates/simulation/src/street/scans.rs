@@ -44,6 +44,27 @@ impl StreetScans {
         self
     }
 
+    /// A street, what came back of it, and that as points.
+    pub(super) fn scan(&self, index: usize) -> Result<(Street, Vec<Return>, PointCloudWithCalibration)> {
+        if index >= self.count {
+            return Err(Error::not_found(format!("no street {index}; there are {}", self.count)));
+        }
+        let mut random = Random::at([self.seed, index as u64]);
+        let street = Street::new(&mut random)?;
+        let lost = random.uniform(0.0, 0.15);
+        let returns = self.lidar.scan(&street.scene, &mut random, |hit, place| {
+            match street.objects.get(usize::from(hit.label)) {
+                Some(object) => echo(object, hit, place, lost),
+                None => Echo { noise: 0.0, lost: 1.0, reflectance: 0.0 },
+            }
+        })?;
+        let points: Vec<f32> = returns.iter().flat_map(|seen| seen.point).collect();
+        let header = Header::new(index as i64 + 1, "lidar");
+        let cloud = PointCloud::new(points, [returns.len(), 4])?.with_header(header);
+        let cloud = PointCloudWithCalibration::new(cloud, self.calibration.clone(), Some(IMAGE_SHAPE));
+        Ok((street, returns, cloud))
+    }
+
     fn boxes(&self, street: &Street, returns: &[Return]) -> Result<BoundingBox3DList> {
         let mut seen = vec![0_usize; street.objects.len()];
         for label in returns.iter().map(|seen| usize::from(seen.label)) {
@@ -127,24 +148,9 @@ impl DatasetIterator for StreetScans {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        if index >= self.count {
-            return Err(Error::not_found(format!("no street {index}; there are {}", self.count)));
-        }
-        let mut random = Random::at([self.seed, index as u64]);
-        let street = Street::new(&mut random)?;
-        let lost = random.uniform(0.0, 0.15);
-        let returns = self.lidar.scan(&street.scene, &mut random, |hit, place| {
-            match street.objects.get(usize::from(hit.label)) {
-                Some(object) => echo(object, hit, place, lost),
-                None => Echo { noise: 0.0, lost: 1.0, reflectance: 0.0 },
-            }
-        })?;
+        let (street, returns, cloud) = self.scan(index)?;
         let boxes = self.boxes(&street, &returns)?;
-        let points: Vec<f32> = returns.iter().flat_map(|seen| seen.point).collect();
-        let header = Header::new(index as i64 + 1, "lidar");
-        let cloud = PointCloud::new(points, [returns.len(), 4])?.with_header(header.clone());
-        let cloud = PointCloudWithCalibration::new(cloud, self.calibration.clone(), Some(IMAGE_SHAPE));
-        let target = BoundingBox3DList { header, ..boxes };
+        let target = BoundingBox3DList { header: cloud.cloud.header.clone(), ..boxes };
         Ok(Sample { data: vec![cloud.into()], target: Some(target.into()) })
     }
 

@@ -1,0 +1,108 @@
+//! Scans of streets with a label for each point.
+
+use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
+use opendr_engine::target::{Classes, Heatmap};
+use opendr_engine::{Error, Result};
+
+use super::{StreetKind, StreetScans};
+
+/// The scans of [`StreetScans`], each point with 1000 times its class and, of cars, pedestrians and trucks, the number of its object
+/// in its class, from 1.
+#[derive(Debug, Clone)]
+pub struct StreetSegments {
+    scans: StreetScans,
+}
+
+/// The classes, and whether they are countable.
+const CLASSES: [(&str, bool); 6] = [
+    ("car", true),
+    ("pedestrian", true),
+    ("truck", true),
+    ("solid", false),
+    ("leaves", false),
+    ("ground", false),
+];
+
+impl StreetSegments {
+    /// The numbers of the countable classes.
+    pub const THINGS: [u32; 3] = [0, 1, 2];
+
+    /// `count` scans of the streets that follow from `seed`.
+    pub fn new(seed: u64, count: usize) -> Self {
+        Self { scans: StreetScans::new(seed, count) }
+    }
+}
+
+fn class_of(kind: StreetKind) -> usize {
+    match kind {
+        StreetKind::Car => 0,
+        StreetKind::Pedestrian => 1,
+        StreetKind::Truck => 2,
+        StreetKind::Solid => 3,
+        StreetKind::Leaves => 4,
+        StreetKind::Ground => 5,
+    }
+}
+
+impl Dataset for StreetSegments {}
+
+impl DatasetIterator for StreetSegments {
+    fn len(&self) -> usize {
+        self.scans.len()
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let (street, returns, cloud) = self.scans.scan(index)?;
+        let mut counts = [0; CLASSES.len()];
+        let labels: Vec<u32> = street
+            .objects
+            .iter()
+            .map(|object| {
+                let class = class_of(object.kind);
+                counts[class] += 1;
+                1000 * class as u32 + if CLASSES[class].1 { counts[class] } else { 0 }
+            })
+            .collect();
+        let label = |label: u16| {
+            let found = labels.get(usize::from(label)).copied();
+            found.ok_or_else(|| Error::internal("a return of no object"))
+        };
+        let labels = returns.iter().map(|seen| label(seen.label)).collect::<Result<Vec<_>>>()?;
+        let mut map = Heatmap::from_labels(labels, &[returns.len()])?;
+        map.classes = self.classes();
+        map.header = cloud.cloud.header.clone();
+        Ok(Sample { data: vec![cloud.into()], target: Some(map.into()) })
+    }
+
+    fn classes(&self) -> Classes {
+        CLASSES.iter().map(|(name, _)| *name).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::Value;
+    use opendr_engine::target::HeatmapValues;
+
+    use super::*;
+
+    #[test]
+    fn every_point_has_a_label_and_cars_have_numbers() {
+        let segments = StreetSegments::new(3, 2);
+        let Sample { data, target } = segments.get(1).unwrap();
+        let Some(Value::PointCloudWithCalibration(scan)) = data.first() else { panic!() };
+        let Some(Value::Heatmap(map)) = target else { panic!() };
+        let HeatmapValues::Labels(labels) = map.values() else { panic!() };
+        assert_eq!(labels.len(), scan.cloud.len());
+        assert!(labels.iter().all(|label| *label < 6000 && (label / 1000 < 3) == (label % 1000 > 0)));
+        let share = |class: u32| {
+            labels.iter().filter(|label| **label / 1000 == class).count() as f64 / labels.len() as f64
+        };
+        assert!(share(5) > 0.2 && share(0) > 0.0, "{} {}", share(5), share(0));
+        // What is low is the ground.
+        let low =
+            scan.cloud.points().zip(labels.iter()).filter(|(point, _)| point[2] < -1.6 && point[0] < 8.0);
+        assert!(low.clone().count() > 100 && low.filter(|(_, label)| **label == 5000).count() > 100);
+        assert!(segments.get(2).is_err());
+    }
+}
