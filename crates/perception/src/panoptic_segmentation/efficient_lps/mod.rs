@@ -16,6 +16,7 @@ mod objects;
 #[cfg(feature = "training")]
 mod tests;
 
+use opendr_engine::data::PointCloud;
 use opendr_engine::learner::{Learner, Spec, Targets};
 use opendr_engine::model::{Manifest, Model};
 use opendr_engine::params::Params;
@@ -103,7 +104,7 @@ fn view_of(manifest: &Manifest) -> Result<RangeView> {
 }
 
 /// Writes what the network sees of a scan, `[channels, rows, columns]`.
-fn paint(image: &RangeImage, cloud: &opendr_engine::data::PointCloud, canvas: &mut Vec<f32>) {
+fn paint(image: &RangeImage, cloud: &PointCloud, canvas: &mut Vec<f32>) {
     let (points, channels) = (cloud.as_slice(), cloud.channels());
     let pixels = image.points().len();
     canvas.clear();
@@ -120,15 +121,8 @@ fn paint(image: &RangeImage, cloud: &opendr_engine::data::PointCloud, canvas: &m
 }
 
 /// Takes the picture of a scan.
-fn project(image: &mut RangeImage, view: &RangeView, cloud: &opendr_engine::data::PointCloud) -> Result<()> {
-    if !cloud.is_empty() && cloud.channels() < 3 {
-        return Err(Error::invalid_input(format!(
-            "points of {} numbers; give x, y, z and, if there is one, the reflectance",
-            cloud.channels()
-        )));
-    }
+fn project(image: &mut RangeImage, view: &RangeView, cloud: &PointCloud) {
     image.project(view, cloud.points().map(|point| [point[0], point[1], point[2]]));
-    Ok(())
 }
 
 impl Learner for EfficientLps {
@@ -176,7 +170,7 @@ impl Learner for EfficientLps {
     fn infer_into(&self, _: &mut (), scan: Scan<'_>, targets: &mut EfficientLpsTargets) -> Result<()> {
         let work = &mut *self.work.take();
         let cloud = scan.cloud();
-        project(&mut work.image, &self.view, cloud)?;
+        project(&mut work.image, &self.view, cloud);
         paint(&work.image, cloud, &mut work.canvas);
         let shape = [1, CHANNELS, self.view.rows, self.view.columns];
         self.network.run(&[TensorView::new(&shape, &work.canvas[..])?], |outputs| {

@@ -67,7 +67,7 @@ impl Collate for ScanCollator {
             _ => return Err(Error::invalid_input("the sample has no labels of points; give it some")),
         };
         let (mut image, mut canvas) = (RangeImage::default(), Vec::new());
-        project(&mut image, &self.view, scan.cloud())?;
+        project(&mut image, &self.view, scan.cloud());
         paint(&image, scan.cloud(), &mut canvas);
         for point in image.points() {
             let class = match *point {
