@@ -171,7 +171,6 @@ fn wrong(kind: ValueType) -> Vec<(&'static str, Value)> {
             vec![
                 ("no points", cloud(vec![], 4)),
                 ("one point", cloud(vec![12.0, 1.0, -1.0], 3)),
-                ("points of two numbers", cloud(tone(200), 2)),
                 ("points of seven numbers", cloud(tone(700), 7)),
                 ("no numbers", cloud(vec![f32::NAN; 400], 4)),
                 ("infinite points", cloud(vec![f32::INFINITY; 400], 4)),
