@@ -6,7 +6,7 @@ mod models;
 use std::f32::consts::TAU;
 
 use opendr::data::{
-    Audio, Image, Layout, Observation, PixelFormat, SkeletonSequence, Timeseries, Vector, Video,
+    Audio, Image, Layout, Observation, PixelFormat, PointCloud, SkeletonSequence, Timeseries, Vector, Video,
 };
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
 use opendr::params::ParamMap;
@@ -161,6 +161,22 @@ fn wrong(kind: ValueType) -> Vec<(&'static str, Value)> {
             vec![
                 ("nothing", BoundingBox3DList::default().into()),
                 ("an odd box", BoundingBox3DList::from(vec![odd]).into()),
+            ]
+        }
+        ValueType::PointCloud => {
+            let cloud = |numbers: Vec<f32>, channels: usize| {
+                let shape = [numbers.len() / channels, channels];
+                PointCloud::new(numbers, shape).unwrap().into()
+            };
+            vec![
+                ("no points", cloud(vec![], 4)),
+                ("one point", cloud(vec![12.0, 1.0, -1.0], 3)),
+                ("points of seven numbers", cloud(tone(700), 7)),
+                ("no numbers", cloud(vec![f32::NAN; 400], 4)),
+                ("infinite points", cloud(vec![f32::INFINITY; 400], 4)),
+                ("points far away", cloud(vec![-1e38; 400], 4)),
+                ("points in one place", cloud([12.0, 1.0, -1.0, 0.3].repeat(100_000), 4)),
+                ("five million points", cloud(tone(5_000_000 * 3), 3)),
             ]
         }
         other => panic!("no wrong input of the type {}; say what may come", other.name()),

@@ -3,7 +3,8 @@
 //! After OpenDR's learner of this name (Manousis et al., "Enabling High-Resolution Pose Estimation in Real Time Using
 //! Active Perception", ICIP 2023), whose network is Lightweight OpenPose's. Persons of 40 pixels in a 4K picture leave no
 //! trace in the coarse heat maps; so regions also come from where the picture has detail, and from where persons were in
-//! the frame before. What does not fit into one frame's share of time is looked at in the next ones, in turn.
+//! the frame before. What does not fit into one frame's share of time is looked at in the next ones, in turn; until then its persons stay
+//! as they were seen.
 
 mod search;
 #[cfg(test)]
@@ -37,7 +38,7 @@ pub struct HighResolutionPoseEstimationParams {
     /// Height of the network's input for the whole picture.
     #[param(default = 360, range = 64..=2048, unit = "px", live)]
     pub first_pass_height: usize,
-    /// Height of the network's input for a part of it, at most; small parts are magnified four times.
+    /// Height of the network's input for a part of it, at most; small parts are magnified three times.
     #[param(default = 540, range = 64..=2048, unit = "px", live)]
     pub second_pass_height: usize,
     /// How parts of the picture are chosen.
@@ -49,13 +50,16 @@ pub struct HighResolutionPoseEstimationParams {
     /// Where the coarse heat maps are above this, a closer look is worth it.
     #[param(default = 0.1, range = 0.01..=1.0, live)]
     pub heatmap_threshold: f32,
-    /// Where brightness differs by more than this within 8 pixels of the coarse picture, a closer look is worth it too,
+    /// Where brightness differs by more than this within 4 pixels of the coarse picture, a closer look is worth it too,
     /// 0..=255; 256 switches it off.
     #[param(default = 32.0, range = 1.0..=256.0, live)]
     pub detail_threshold: f32,
     /// At most this many parts are looked at in one picture; the others follow in the next frames.
     #[param(default = 4, range = 1..=64, live)]
     pub max_regions: usize,
+    /// The parts that are looked at in one picture have at most so many pixels for the network, but for the first of them.
+    #[param(default = 200_000, range = 1..=100_000_000, unit = "px", live)]
+    pub max_pixels: usize,
     /// Persons below this score are dropped.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub threshold: f32,
@@ -93,9 +97,21 @@ pub struct HighResolutionPoseEstimationState {
     size: [usize; 2],
     tracks: PoseTracks,
     persons: Vec<Region>,
-    turn: usize,
+    /// Of known persons and of other parts.
+    turns: [usize; 2],
+    /// Persons that only a closer look shows, as it showed them last.
+    held: Vec<Held>,
+    before: Vec<Held>,
 }
 
+struct Held {
+    pose: Pose,
+    /// Frames since.
+    age: u32,
+}
+
+/// A person is told for so many frames without a closer look.
+const MOST_HELD: u32 = 10;
 /// Joints nearer to each other than this share of the smaller person's extent are those of one person.
 const SAME_PERSON: f32 = 0.25;
 
@@ -158,7 +174,8 @@ impl Learner for HighResolutionPoseEstimation {
                 grid.mark(|column, row| maps.highest(column, row) > params.heatmap_threshold);
             })
         })?;
-        self.search.choose(params, size, &state.persons, &mut state.turn, looks);
+        self.search.choose(params, size, &state.persons, &mut state.turns, looks);
+        let seen = poses.poses.len();
         for look in looks.iter() {
             let Region { x, y, width, height } = look.region;
             let Some(part) = view.crop(x, y, width, height) else { continue };
@@ -171,6 +188,7 @@ impl Learner for HighResolutionPoseEstimation {
                 add_person(&mut poses.poses, pose);
             }
         }
+        state.hold(&mut poses.poses, seen, looks);
         state.persons.clear();
         let boxes = poses.poses.iter().filter_map(Pose::bounding_box);
         let corners = boxes.map(|[left, top, width, height]| [left, top, left + width, top + height]);
@@ -181,6 +199,28 @@ impl Learner for HighResolutionPoseEstimation {
         }
         poses.poses.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
         Ok(())
+    }
+}
+
+impl HighResolutionPoseEstimationState {
+    /// Adds the persons that were there and that nobody looked for in this frame; of `poses`, the first pass has seen the first
+    /// `seen`.
+    fn hold(&mut self, poses: &mut Vec<Pose>, seen: usize, looks: &[Look]) {
+        std::mem::swap(&mut self.held, &mut self.before);
+        self.held.clear();
+        self.held.extend(poses.iter().skip(seen).map(|pose| Held { pose: pose.clone(), age: 0 }));
+        for Held { pose, age } in self.before.drain(..) {
+            let Some([left, top, width, height]) = pose.bounding_box() else { continue };
+            let (x, y) = (left + width / 2.0, top + height / 2.0);
+            let is_looked_at = looks.iter().any(|look| {
+                let [x0, y0, x1, y1] = look.region.corners();
+                (x0..x1).contains(&x) && (y0..y1).contains(&y)
+            });
+            if age < MOST_HELD && !is_looked_at && !poses.iter().any(|other| is_same(other, &pose)) {
+                poses.push(pose.clone());
+                self.held.push(Held { pose, age: age + 1 });
+            }
+        }
     }
 }
 

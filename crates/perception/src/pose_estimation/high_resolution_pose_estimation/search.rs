@@ -25,16 +25,15 @@ struct Scratch {
     detail: CellGrid,
     coarse: CoarsePicture,
     regions: Vec<Region>,
+    known: Vec<Look>,
 }
 
 /// Parts are magnified at most so many times: beyond, there is nothing more to see.
-const MOST_MAGNIFIED: usize = 4;
-/// And so many times where much of a picture has detail.
-const TILE_MAGNIFIED: usize = 3;
+const MOST_MAGNIFIED: usize = 3;
 /// A second pass that magnifies less than this, compared with the first, shows nothing new.
 const LEAST_GAIN: f32 = 1.2;
 /// Sides of the coarse picture's cells.
-const CELL: usize = 8;
+const CELL: usize = 4;
 /// More groups of cells than this are noise.
 const MOST_GROUPS: usize = 256;
 
@@ -48,7 +47,7 @@ impl Search {
         looks: &mut Vec<Look>,
         first: impl FnOnce(&mut CellGrid) -> Result<()>,
     ) -> Result<()> {
-        let Scratch { grid, detail, coarse, regions } = &mut *self.scratch.take();
+        let Scratch { grid, detail, coarse, regions, .. } = &mut *self.scratch.take();
         let size = [view.width(), view.height()];
         looks.clear();
         grid.reset(0, 0);
@@ -69,7 +68,7 @@ impl Search {
         detail.take_regions(size, MOST_GROUPS, regions);
         grow(regions, params.percentage_around_crop, size);
         // Where there is much of it, tiles of it follow, magnified as far as small persons need.
-        let tile = (params.second_pass_height / TILE_MAGNIFIED).max(CELL);
+        let tile = (params.second_pass_height / MOST_MAGNIFIED).max(CELL);
         let tiles = |region: &Region| {
             let is_large = region.width.max(region.height) > 2 * tile;
             region.tiles(tile, tile / 3).filter(move |_| is_large)
@@ -81,36 +80,73 @@ impl Search {
         Ok(())
     }
 
-    /// Leaves as many looks as there may be: around the persons of the frame before, then the others, in turn.
+    /// Leaves as many looks as there may be: half of them around the persons of the frame before, and the others; both in turn.
     pub fn choose(
         &self,
         params: &HighResolutionPoseEstimationParams,
         size: [usize; 2],
         persons: &[Region],
-        turn: &mut usize,
+        turns: &mut [usize; 2],
         looks: &mut Vec<Look>,
     ) {
-        if looks.len() <= params.max_regions {
-            *turn = 0;
+        let Scratch { regions, known, .. } = &mut *self.scratch.take();
+        let all = Share { looks: params.max_regions, pixels: params.max_pixels };
+        if all.taken(looks) == looks.len() {
+            *turns = [0; 2];
             return;
         }
-        let Scratch { regions, .. } = &mut *self.scratch.take();
         regions.clear();
         regions.extend(persons.iter().copied());
         grow(regions, params.percentage_around_crop, size);
-        // Half of the looks are for known persons, so that others can be found.
-        regions.truncate(params.max_regions / 2);
         looks.retain(|look| !regions.iter().any(|region| region.joined(&look.region) == *region));
-        let left = params.max_regions - regions.len();
-        if !looks.is_empty() {
-            let begin = *turn % looks.len();
-            looks.rotate_left(begin);
-            *turn = begin + left;
-        }
-        looks.truncate(left);
-        looks
+        known.clear();
+        known
             .extend(regions.iter().map(|region| Look { region: *region, height: height_of(region, params) }));
+        let half = Share { looks: all.looks / 2, pixels: all.pixels / 2 };
+        take(known, if looks.is_empty() { &all } else { &half }, &mut turns[0]);
+        let left = Share {
+            looks: all.looks.saturating_sub(known.len()),
+            pixels: all.pixels.saturating_sub(known.iter().map(Look::pixels).sum()),
+        };
+        take(looks, &left, &mut turns[1]);
+        looks.append(known);
     }
+}
+
+impl Look {
+    /// How many pixels the network sees.
+    fn pixels(&self) -> usize {
+        self.height * (self.height * self.region.width).div_ceil(self.region.height.max(1))
+    }
+}
+
+/// What there is time for.
+struct Share {
+    looks: usize,
+    pixels: usize,
+}
+
+impl Share {
+    /// How many of `looks`, from the first on, there is time for; one at least, if any.
+    fn taken(&self, looks: &[Look]) -> usize {
+        let mut pixels = 0;
+        let fitting = looks.iter().take(self.looks).take_while(|look| {
+            pixels += look.pixels();
+            pixels <= self.pixels
+        });
+        fitting.count().max(1).min(looks.len()).min(self.looks)
+    }
+}
+
+/// Leaves those whose turn it is.
+fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
+    if looks.is_empty() {
+        return;
+    }
+    let begin = *turn % looks.len();
+    looks.rotate_left(begin);
+    looks.truncate(share.taken(looks));
+    *turn = begin + looks.len();
 }
 
 /// Marks the cells of the coarse picture in which brightness differs.
