@@ -77,6 +77,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         let add = match name.to_str() {
             Some("fit" | "tune") => learner_flags::add_for_fit,
             Some("bench") => learner_flags::add_for_bench,
+            // Data sets have further inputs in their samples.
+            Some("eval" | "optimize") => learner_flags::with_params,
             _ => learner_flags::add,
         };
         *command = add(std::mem::take(command), entry);

@@ -117,7 +117,7 @@ mod tests {
             assert_eq!(speakers[2..], [Some(10), None, None, None, None]);
         }
         // As far as its neighbour to within a metre.
-        image.project(&VIEW, [[10.0, 0.1, 0.1], [20.9, 0.2, 0.2], [20.0, 6.0, 0.2]].into_iter());
+        image.project(&VIEW, [[10.0, 0.1, 0.1], [20.9, 0.2, 0.2], [19.0, 9.0, 0.2]].into_iter());
         assert_eq!(image.speaker(1), Some(10));
         image.project(&VIEW, std::iter::empty());
         assert!(image.pixels().is_empty() && image.points().iter().all(|point| *point == NOWHERE));

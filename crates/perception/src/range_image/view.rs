@@ -77,7 +77,7 @@ mod tests {
         assert_eq!(pixel(PI - 1e-3, -0.449), Some(63 * 1024));
         assert_eq!(pixel(1e-3 - PI, -0.449), Some(64 * 1024 - 1));
         assert_eq!((pixel(0.0, 0.06), pixel(0.0, -0.46)), (None, None));
-        for strange in [f32::NAN, f32::INFINITY, 1e38] {
+        for strange in [f32::NAN, f32::INFINITY] {
             assert_eq!(VIEW.pixel([strange, 1.0, 1.0], strange), None);
         }
     }

@@ -126,13 +126,13 @@ mod tests {
         classes[15] = 1;
         let mut objects = Objects::default();
         for _ in 0..2 {
-            let rule = ObjectRule { things: &[1, 2], gap: 0.9, least: 2 };
+            let rule = ObjectRule { things: &[1, 2], gap: 1.2, least: 2 };
             objects.find(&image, &cloud, [16, 2], &classes, &rule);
             let labels = objects.labels();
             assert_eq!((labels[0], labels[7], labels[8], labels[14]), (2001, 2001, 2002, 2002));
             assert_eq!((labels[3], labels[15], labels[16 + 15]), (255_000, 255_000, 2002));
         }
-        objects.find(&image, &cloud, [16, 2], &classes, &ObjectRule { things: &[], gap: 0.9, least: 2 });
+        objects.find(&image, &cloud, [16, 2], &classes, &ObjectRule { things: &[], gap: 1.2, least: 2 });
         assert_eq!((objects.labels()[0], objects.labels()[15]), (2000, 1000));
     }
 }

@@ -58,7 +58,7 @@ pub struct HighResolutionPoseEstimationParams {
     #[param(default = 4, range = 1..=64, live)]
     pub max_regions: usize,
     /// The parts that are looked at in one picture have at most so many pixels for the network, but for the first of them.
-    #[param(default = 200_000, range = 1..=100_000_000, unit = "px", live)]
+    #[param(default = 300_000, range = 1..=100_000_000, unit = "px", live)]
     pub max_pixels: usize,
     /// Persons below this score are dropped.
     #[param(default = 0.1, range = 0.0..=1.0, live)]
