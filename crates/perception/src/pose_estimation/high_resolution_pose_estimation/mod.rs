@@ -174,7 +174,7 @@ impl Learner for HighResolutionPoseEstimation {
                 grid.mark(|column, row| maps.highest(column, row) > params.heatmap_threshold);
             })
         })?;
-        self.search.choose(params, size, &state.persons, &mut state.turns, looks);
+        let is_all = self.search.choose(params, size, &state.persons, &mut state.turns, looks);
         let seen = poses.poses.len();
         for look in looks.iter() {
             let Region { x, y, width, height } = look.region;
@@ -187,6 +187,10 @@ impl Learner for HighResolutionPoseEstimation {
                 }
                 add_person(&mut poses.poses, pose);
             }
+        }
+        if is_all {
+            // Who is not seen now is not there.
+            state.held.clear();
         }
         state.hold(&mut poses.poses, seen, looks);
         state.persons.clear();

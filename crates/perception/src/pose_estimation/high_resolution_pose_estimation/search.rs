@@ -81,6 +81,7 @@ impl Search {
     }
 
     /// Leaves as many looks as there may be: half of them around the persons of the frame before, and the others; both in turn.
+    /// Says whether that is all of them.
     pub fn choose(
         &self,
         params: &HighResolutionPoseEstimationParams,
@@ -88,12 +89,12 @@ impl Search {
         persons: &[Region],
         turns: &mut [usize; 2],
         looks: &mut Vec<Look>,
-    ) {
+    ) -> bool {
         let Scratch { regions, known, .. } = &mut *self.scratch.take();
         let all = Share { looks: params.max_regions, pixels: params.max_pixels };
         if all.taken(looks) == looks.len() {
             *turns = [0; 2];
-            return;
+            return true;
         }
         regions.clear();
         regions.extend(persons.iter().copied());
@@ -110,6 +111,7 @@ impl Search {
         };
         take(looks, &left, &mut turns[1]);
         looks.append(known);
+        false
     }
 }
 
