@@ -19,7 +19,9 @@ use opendr_perception::heart_anomaly_detection::{AttentionNeuralBagOfFeature, Ga
 use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::instance_segmentation::BodyPix;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
-use opendr_perception::object_detection_2d::{CenterNet, Nanodet, SingleShotDetector, TiledDetection};
+use opendr_perception::object_detection_2d::{
+    CenterNet, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection,
+};
 use opendr_perception::object_detection_3d::VoxelObjectDetection3d;
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort};
 use opendr_perception::object_tracking_3d::Ab3dmot;
@@ -46,6 +48,7 @@ pub fn registry() -> &'static Registry {
             Nanodet,
             SingleShotDetector,
             TiledDetection,
+            Seq2SeqNms,
             VoxelObjectDetection3d,
             Sort,
             ByteTrack,

@@ -2,8 +2,11 @@
 
 mod centernet;
 mod nanodet;
+mod seq2seq_nms;
 pub mod single_shot_detector;
 mod tiled_detection;
+#[cfg(feature = "training")]
+mod wanted_classes;
 
 pub use centernet::{CenterNet, CenterNetParams};
 pub use nanodet::{Nanodet, NanodetParams};
@@ -11,8 +14,13 @@ pub use nanodet::{Nanodet, NanodetParams};
 pub use nanodet::{NanodetFitParams, NanodetFreeze, NanodetNetwork};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_vision::InputGeometry;
+#[cfg(feature = "training")]
+pub use seq2seq_nms::Seq2SeqNmsFitParams;
+pub use seq2seq_nms::{NmsVariant, Seq2SeqNms, Seq2SeqNmsInputs, Seq2SeqNmsParams};
 pub use single_shot_detector::{SingleShotDetector, SingleShotDetectorParams};
 pub use tiled_detection::{TiledDetection, TiledDetectionParams, TiledDetectionState};
+#[cfg(feature = "training")]
+pub(crate) use wanted_classes::wanted_classes;
 
 use crate::suppression::Candidate;
 

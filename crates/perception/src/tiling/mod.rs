@@ -18,7 +18,7 @@ mod tile_picture;
 use opendr_engine::params::Params;
 
 pub use looking::{Allowance, look_side_by_side};
-pub use picture_learner::{DETECTORS, Open, PictureLearner, SEGMENTERS, open_copies};
+pub use picture_learner::{DETECTORS, Open, PictureLearner, SEGMENTERS, open_copies, open_picture_learner};
 pub use pieces::{Cut, Piece, merge_pieces};
 pub use schedule::{Tile, Tiles};
 pub use tile_picture::TilePicture;

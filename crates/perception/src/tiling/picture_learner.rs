@@ -66,6 +66,28 @@ where
     Ok(Box::new(L::load(model, params, device)?))
 }
 
+/// Opens a container with whichever of the learners `known` it is made for.
+///
+/// # Errors
+/// `Unsupported` when it is made for another learner; else as [`Learner::load`].
+pub fn open_picture_learner<T>(
+    model: &Model,
+    known: &[(&str, Open<T>)],
+    wishes: &ParamMap,
+    device: Device,
+) -> Result<Box<dyn PictureLearner<T>>> {
+    let learner = model.manifest().learner.as_str();
+    let open = known.iter().find(|(known, _)| *known == learner).map(|(_, open)| open).ok_or_else(|| {
+        let known: Vec<_> = known.iter().map(|(name, _)| *name).collect();
+        Error::unsupported(format!(
+            "{} is a model of {learner:?}, which cannot be used here; these can: {}",
+            model.path().display(),
+            known.join(", ")
+        ))
+    })?;
+    open(model, wishes, device)
+}
+
 /// More copies of a network than this cost memory and bring nothing.
 const MOST_COPIES: usize = 4;
 
@@ -83,15 +105,11 @@ pub fn open_copies<T>(
     device: Device,
 ) -> Result<Vec<Box<dyn PictureLearner<T>>>> {
     let part = model.part(name)?;
-    let learner = part.manifest().learner.as_str();
-    let open = known.iter().find(|(known, _)| *known == learner).map(|(_, open)| open).ok_or_else(|| {
-        let known: Vec<_> = known.iter().map(|(name, _)| *name).collect();
-        Error::unsupported(format!(
-            "the part {name:?} is a model of {learner:?}, which cannot look at tiles; these can: {}",
-            known.join(", ")
-        ))
-    })?;
     let threads = default_threads()?;
     let copies = if copies == 0 { threads.clamp(1, MOST_COPIES) } else { copies };
-    (0..copies).map(|_| with_threads((threads / copies).max(1), || open(&part, wishes, device))).collect()
+    (0..copies)
+        .map(|_| {
+            with_threads((threads / copies).max(1), || open_picture_learner(&part, known, wishes, device))
+        })
+        .collect()
 }

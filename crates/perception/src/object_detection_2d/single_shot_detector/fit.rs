@@ -6,7 +6,6 @@ use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
-use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_training::weights::WeightTable;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
@@ -18,6 +17,7 @@ use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
 use super::objective::DetectionObjective;
 use super::{SingleShotDetector, SingleShotDetectorParams};
 use crate::frozen_layers::{FrozenLayers, is_on_processor};
+use crate::object_detection_2d::wanted_classes;
 
 opendr_engine::choices! {
     /// MobileNetV1 and how many times the paper's channels it has.
@@ -193,27 +193,5 @@ fn weights_at(path: &Path) -> Result<WeightTable> {
         WeightTable::from_bytes(&Model::open(path)?.onnx()?)
     } else {
         WeightTable::from_file(path)
-    }
-}
-
-/// The classes to train: those that are wanted, or all that the data set has.
-fn wanted_classes(wanted: &[String], of_dataset: &Classes) -> Result<Classes> {
-    if let Some(unknown) =
-        wanted.iter().find(|name| !of_dataset.is_empty() && of_dataset.index(name).is_none())
-    {
-        let names: Vec<_> = of_dataset.iter().take(10).collect();
-        return Err(Error::invalid_param(format!(
-            "the data set has no class {unknown:?}; it has {} classes: {}{}",
-            of_dataset.len(),
-            names.join(", "),
-            if of_dataset.len() > names.len() { ", ..." } else { "" }
-        )));
-    }
-    match (wanted, of_dataset.is_empty()) {
-        ([], true) => {
-            Err(Error::invalid_param("the data set names no classes; give their names in `classes`"))
-        }
-        ([], false) => Ok(of_dataset.clone()),
-        (wanted, _) => Ok(wanted.iter().map(String::as_str).collect()),
     }
 }
