@@ -1090,6 +1090,45 @@ static inline opendr_status opendr_infer_tiled_detection(const opendr_learner *l
 }
 
 /*
+ * Seq2SeqNMSLearner: Tells which of a detector's overlapping boxes to keep, by how they lie and look; it trains.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.1): Boxes whose new score is below this are dropped.
+ *   iou_filtering (a float 0..=1, may change while it runs, default 0.8): Of boxes that overlap more than this (intersection over union) only the best is looked at.
+ *   max_dt_boxes (an int 1..=1000, may change while it runs, default 400): So many of the best boxes are looked at.
+ *
+ * Inputs:
+ *   image (Image): The picture.
+ *   detections (BoundingBoxList): Its boxes before suppression; boxes of classes that the model does not know are left out.
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_seq2seq_nms(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("seq2seq_nms", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_seq2seq_nms(const opendr_learner *learner,
+    const opendr_image *image,
+    const opendr_bounding_box_list *detections,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    inputs_[1].name = "detections";
+    inputs_[1].value = (const opendr_value *)detections;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * VoxelObjectDetection3DLearner: PointPillars finds boxes in the scan of a lidar; it trains on classes of your own.
  *
  * Parameters:
@@ -1740,12 +1779,13 @@ static inline opendr_status opendr_infer_lightweight_open_pose(const opendr_lear
  *
  * Parameters:
  *   first_pass_height (an int 64..=2048 px, may change while it runs, default 360): Height of the network's input for the whole picture.
- *   second_pass_height (an int 64..=2048 px, may change while it runs, default 540): Height of the network's input for a part of it, at most; small parts are magnified four times.
+ *   second_pass_height (an int 64..=2048 px, may change while it runs, default 540): Height of the network's input for a part of it, at most; small parts are magnified three times.
  *   method (a str, one of adaptive, primary, may change while it runs, default adaptive): How parts of the picture are chosen.
  *   percentage_around_crop (a float 0..=2, may change while it runs, default 0.3): What is added around a part on each side, as a share of its longer side.
  *   heatmap_threshold (a float 0.01..=1, may change while it runs, default 0.1): Where the coarse heat maps are above this, a closer look is worth it.
- *   detail_threshold (a float 1..=256, may change while it runs, default 32): Where brightness differs by more than this within 8 pixels of the coarse picture, a closer look is worth it too, 0..=255; 256 switches it off.
+ *   detail_threshold (a float 1..=256, may change while it runs, default 32): Where brightness differs by more than this within 4 pixels of the coarse picture, a closer look is worth it too, 0..=255; 256 switches it off.
  *   max_regions (an int 1..=64, may change while it runs, default 4): At most this many parts are looked at in one picture; the others follow in the next frames.
+ *   max_pixels (an int 1..=100000000 px, may change while it runs, default 300000): The parts that are looked at in one picture have at most so many pixels for the network, but for the first of them.
  *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
  *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
  *   upsample_ratio (an int 1..=8, may change while it runs, default 4): Steps between the cells of the heat maps in which joints are looked for.
@@ -2139,6 +2179,54 @@ static inline opendr_status opendr_infer_efficient_ps(const opendr_learner *lear
     else opendr_value_free(&outputs_[0].value);
     if (semantic != NULL) *semantic = (opendr_heatmap *)outputs_[1].value;
     else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
+ * EfficientLpsLearner: Tells class and object of every point of a lidar's scan; it trains on labelled scans.
+ *
+ * Parameters:
+ *   things (a list, default ): The classes whose objects are told apart; a model brings those that it was trained with.
+ *   projected (a bool, may change while it runs, default false): Whether the answers are maps of the range image's size instead of a number for each point.
+ *   max_gap (a float 0.01..=10 m, may change while it runs, default 0.8): Points of neighbouring pixels farther apart than this are of two objects.
+ *   min_points (an int 1..=100000, may change while it runs, default 5): Objects of fewer pixels are not told.
+ *
+ * Inputs:
+ *   point_cloud (PointCloud): What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.
+ *
+ * Outputs:
+ *   instance (Heatmap): Of each point (`[points]`) or pixel (`[rows, columns]`): 1000 times the class and the number of the object in its class, from 1; 0 where the class is not countable. 255000 where nothing is known.
+ *   semantic (Heatmap): The class; 255 where nothing is known.
+ *   depth (Heatmap): Metres, `[rows, columns]`, 0 where there is nothing; empty unless `projected`.
+ */
+static inline opendr_status opendr_load_efficient_lps(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("efficient_lps", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_efficient_lps(const opendr_learner *learner,
+    const opendr_point_cloud *point_cloud,
+    opendr_heatmap **instance,
+    opendr_heatmap **semantic,
+    opendr_heatmap **depth) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[3];
+    opendr_status status_;
+    inputs_[0].name = "point_cloud";
+    inputs_[0].value = (const opendr_value *)point_cloud;
+    outputs_[0].name = "instance";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "semantic";
+    outputs_[1].value = NULL;
+    outputs_[2].name = "depth";
+    outputs_[2].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 3);
+    if (instance != NULL) *instance = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (semantic != NULL) *semantic = (opendr_heatmap *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    if (depth != NULL) *depth = (opendr_heatmap *)outputs_[2].value;
+    else opendr_value_free(&outputs_[2].value);
     return status_;
 }
 

@@ -295,3 +295,88 @@ class TiledDetectionLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> list[BoundingBoxList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> Iterator[BoundingBoxList]: ...
+
+class Seq2SeqNMSLearner(NativeLearner):
+    """Tells which of a detector's overlapping boxes to keep, by how they lie and look; it trains.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        image: Image. The picture.
+        detections: BoundingBoxList. Its boxes before suppression; boxes of classes that the model does not know
+            are left out.
+
+    and gives: BoundingBoxList.
+
+    Args:
+        threshold: Boxes whose new score is below this are dropped. (default 0.1; 0 to 1; may change while
+            running, also for one call of infer)
+        iou_filtering: Of boxes that overlap more than this (intersection over union) only the best is looked at.
+            (default 0.8; 0 to 1; may change while running, also for one call of infer)
+        max_dt_boxes: So many of the best boxes are looked at. (default 400; 1 to 1000; may change while running,
+            also for one call of infer; in OpenDR top_k)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        epochs: How often the data set is gone through. (default 8; 1 to 1e+06; in OpenDR iters)
+        max_steps: Optimiser steps after which training ends, whatever the number of epochs; 0 for no limit.
+            (default 0; 0 to 1e+09)
+        batch_size: Samples a batch. (default 8; 1 to 65536)
+        accumulate: Batches whose gradients are added up for one step of the optimiser. (default 1; 1 to 4096; in
+            OpenDR batches_per_iter)
+        lr: Learning rate at its highest. (default 0.0001; 0 to 100)
+        optimizer: What turns gradients into steps. (default 'adamw'; one of 'adamw', 'adam', 'sgd', 'rmsprop'; in
+            OpenDR optimizer_name)
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0001; 0 to 10)
+        lr_schedule: How the learning rate goes on after the warm-up. (default 'cosine'; one of 'constant',
+            'step', 'cosine', 'linear')
+        warmup_steps: Steps over which the learning rate rises from `warmup_ratio` of itself. (default 0; 0 to
+            1e+08)
+        warmup_ratio: What share of the learning rate the warm-up begins with. (default 0.1; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 1e-06; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default []; in OpenDR drop_after_epoch)
+        lr_gamma: What `step` multiplies the learning rate with. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Gradients whose norm over all weights is above this are scaled down to it; 0 for no limit.
+            (default 10.0; 0 to 1e+09)
+        ema: Share of itself that the moving average of the weights keeps each step, e.g. 0.999; it is what is
+            validated and saved. 0 for no average. (default 0.0; 0 to 0.999999)
+        early_stop: Validations without a better metric after which training ends; 0 for never. (default 0; 0 to
+            100000)
+        val_after: Epochs between validations. (default 1; 1 to 1e+06)
+        checkpoint_after_iter: Steps between checkpoints; 0 for none but those by the clock. (default 0; 0 to
+            1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for none by the clock. (default 10.0; 0 to 10000 min)
+        checkpoints_kept: Checkpoints that are kept beside the best. (default 2; 1 to 1000)
+        log_after: Steps between lines of the log. (default 10; 1 to 1e+06)
+        num_workers: Threads that read and augment samples. (default 2; 0 to 1024)
+        seed: What first weights, order, augmentation and dropout follow from. (default 0)
+        variant: How large the network is; going on from a model, its own. (default 'medium'; one of 'medium',
+            'light', 'full')
+        dropout: Share of features that are left out at random. (default 0.025; 0 to 0.9)
+        classes: The classes whose boxes are suppressed, by their names in the data set; all of it when empty.
+            (default [])
+        nms_gt_iou: From this intersection over union on, a box can stand for an object. (default 0.5; 0.05 to
+            0.95)
+        positive_weight: How much a box counts that stands for an object, against one that does not. (default 2.0;
+            0.01 to 100)
+        detector: A container of a detector that finds boxes in the pictures, its suppression switched off:
+            NanoDet, CenterNet, SSD, or a finder of faces. (default None)
+        versions: With a detector: so many versions of each picture, all but the first mirrored, cropped and
+            recoloured at random. (default 1; 1 to 1000)
+
+    Arguments of OpenDR that are taken and have no effect:
+        app_feats: no effect: boxes are always described by FMoD.
+        fmod_map_type: no effect: FMoD always looks at edges.
+        fmod_map_bin: no effect: a place has an edge or has none.
+        app_input_dim: no effect: it follows from the variant.
+        temp_path: no effect: what fit writes lies in its output folder.
+        checkpoint_load_iter: no effect: fit goes on from the last checkpoint of its output folder.
+    """
+
+    iou_filtering: float
+    max_dt_boxes: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., variant: Literal['medium', 'light', 'full'] = ..., dropout: float = ..., classes: list[Any] = ..., nms_gt_iou: float = ..., positive_weight: float = ..., detector: Optional[str] = ..., versions: int = ..., iou_filtering: float = ..., max_dt_boxes: int = ..., top_k: int = ..., app_feats: Any = ..., fmod_map_type: Any = ..., fmod_map_bin: Any = ..., app_input_dim: Any = ...) -> None: ...
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], detections: BoundingBoxList, *, threshold: float = ..., iou_filtering: float = ..., max_dt_boxes: int = ..., top_k: int = ..., app_feats: Any = ..., fmod_map_type: Any = ..., fmod_map_bin: Any = ..., app_input_dim: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> BoundingBoxList: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., variant: Literal['medium', 'light', 'full'] = ..., dropout: float = ..., classes: list[Any] = ..., nms_gt_iou: float = ..., positive_weight: float = ..., detector: Optional[str] = ..., versions: int = ...) -> dict[str, Any]: ...  # type: ignore[override]

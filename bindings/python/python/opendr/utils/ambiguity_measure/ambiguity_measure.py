@@ -19,6 +19,7 @@ class AmbiguityMeasure:
 
     def __init__(self, threshold: float = 0.5, temperature: float = 1.0) -> None:
         self._learner = AmbiguityMeasureLearner(threshold=threshold, temperature=temperature)
+        self._learner.load()
 
     def get_ambiguity_measure(
         self, heatmap: np.ndarray[Any, Any]
