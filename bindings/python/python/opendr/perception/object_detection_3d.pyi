@@ -33,7 +33,7 @@ class VoxelObjectDetection3DLearner(NativeLearner):
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Parameters of ``fit``, for one call or, given here, for all of them:
-        classes: The classes to find, of `Car`, `Pedestrian` and `Cyclist`. (default ['Car'])
+        classes: The classes to find, of `Car`, `Pedestrian` and `Cyclist`; cars when empty. (default [])
         ahead: How far it looks ahead. (default 51.2; 4 to 200 m)
         aside: How far it looks to either side. (default 25.6; 2 to 100 m)
         pillar: Side of a pillar. (default 0.32; 0.05 to 5 m)

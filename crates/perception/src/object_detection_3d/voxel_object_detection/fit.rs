@@ -19,8 +19,8 @@ use crate::trainable_weights::network_from_base;
 /// How a user may train it.
 #[derive(Debug, Clone, Params)]
 pub struct VoxelObjectDetection3dFitParams {
-    /// The classes to find, of `Car`, `Pedestrian` and `Cyclist`.
-    #[param(default = vec!["Car".to_owned()])]
+    /// The classes to find, of `Car`, `Pedestrian` and `Cyclist`; cars when empty.
+    #[param(default = Vec::new())]
     pub classes: Vec<String>,
     /// How far it looks ahead.
     #[param(default = 51.2, range = 4.0..=200.0, unit = "m")]
@@ -92,9 +92,12 @@ impl VoxelObjectDetection3dFitParams {
                 self.ahead, self.aside, sides[0], sides[1], self.pillar
             )));
         }
-        let classes: Classes = self.classes.iter().map(String::as_str).collect();
+        let classes: Classes = match &self.classes[..] {
+            [] => ["Car"].into_iter().collect(),
+            names => names.iter().map(String::as_str).collect(),
+        };
         let mut anchors = Vec::new();
-        for (number, name) in self.classes.iter().enumerate() {
+        for (number, name) in classes.iter().enumerate() {
             anchors.extend(AnchorKind::of_class(name, number)?);
         }
         AnchorKind::check(&anchors, classes.len())?;
