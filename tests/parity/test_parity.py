@@ -28,6 +28,7 @@ INPUTS = {
     "Image": ["data/photos/zidane.jpg", "data/photos/t1.jpg"],
     "Audio": [f"{CLIPS}/yes/0bac8a71_nohash_0.wav", f"{CLIPS}/_silence_/1024.wav"],
     "Timeseries": ["data/ecg/ECG5000_TRAIN.txt:0", "data/ecg/ECG5000_TRAIN.txt:499"],
+    "PointCloud": ["data/kitti/object_vis/velodyne/000000.bin", "data/kitti/object_vis/velodyne/000001.bin"],
     "Vector": ["wave:42:0.3", "wave:42:1.1"],
     "SkeletonSequence": ["wave:32x15x2:0.05", "wave:32x15x2:0.7"],
 }
@@ -181,7 +182,7 @@ def by_command(case):
             given.mkdir()
             for number, call in enumerate(case.calls()):
                 shutil.copy(call[port], given / f"{number}.png")
-        command += [f"--{port}", str(given)]
+        command += [f"--{port.replace('_', '-')}", str(given)]
     return [outputs_of(line) for line in printed(command)]
 
 
