@@ -12,7 +12,6 @@
 //! # }
 //! ```
 
-mod element;
 mod fill;
 mod layer;
 mod names;

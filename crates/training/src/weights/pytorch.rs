@@ -7,7 +7,6 @@ use burn_store::pytorch_reader::{DType, PytorchError, PytorchReader, Tensor};
 use opendr_engine::{Error, Result};
 
 use crate::weights::WeightTable;
-use crate::weights::element::Element;
 
 /// The floating-point tensors of a checkpoint; those within dictionaries are named `KEY.NAME`.
 pub(super) fn table_from_pytorch(path: &Path) -> Result<WeightTable> {
@@ -34,12 +33,12 @@ pub(super) fn table_from_pytorch(path: &Path) -> Result<WeightTable> {
     Ok(table)
 }
 
-fn element_of(kind: DType) -> Option<Element> {
+fn element_of(kind: DType) -> Option<FloatType> {
     match kind {
-        DType::F64 => Some(Element::F64),
-        DType::F32 => Some(Element::F32),
-        DType::F16 => Some(Element::F16),
-        DType::BF16 => Some(Element::Bf16),
+        DType::F64 => Some(FloatType::F64),
+        DType::F32 => Some(FloatType::F32),
+        DType::F16 => Some(FloatType::F16),
+        DType::BF16 => Some(FloatType::Bf16),
         _ => None,
     }
 }

@@ -8,7 +8,6 @@ use std::path::Path;
 use burn::module::Module;
 use opendr_engine::{Error, Result, ResultExt};
 
-use crate::weights::element::Element;
 use crate::weights::fill::fill;
 use crate::weights::slot::slots;
 use crate::weights::{Report, Rules, names, onnx, order, pytorch, safetensors};
@@ -123,7 +122,7 @@ impl WeightTable {
         &mut self,
         name: String,
         shape: Vec<usize>,
-        element: Element,
+        element: FloatType,
         bytes: &[u8],
     ) -> Result<()> {
         Self::checked_numbers(self.numbers, bytes.len() / element.bytes(), &name)?;

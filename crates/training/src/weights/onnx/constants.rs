@@ -7,7 +7,6 @@ use opendr_onnx::element_count;
 use opendr_onnx::proto::{DataType, GraphProto, NodeProto, TensorProto};
 
 use super::attribute;
-use crate::weights::element::Element;
 
 /// How long a chain of nodes from a constant may be.
 const MAX_CHAIN: usize = 4;
@@ -145,12 +144,12 @@ fn floats(tensor: &TensorProto) -> Option<Vec<f32>> {
         DataType::Double if raw.is_empty() => {
             tensor.double_data.iter().map(|number| *number as f32).collect()
         }
-        DataType::Float16 if raw.is_empty() => Element::F16.numbers(&halves()),
-        DataType::Bfloat16 if raw.is_empty() => Element::Bf16.numbers(&halves()),
-        DataType::Float => Element::F32.numbers(raw),
-        DataType::Double => Element::F64.numbers(raw),
-        DataType::Float16 => Element::F16.numbers(raw),
-        DataType::Bfloat16 => Element::Bf16.numbers(raw),
+        DataType::Float16 if raw.is_empty() => FloatType::F16.numbers(&halves()),
+        DataType::Bfloat16 if raw.is_empty() => FloatType::Bf16.numbers(&halves()),
+        DataType::Float => FloatType::F32.numbers(raw),
+        DataType::Double => FloatType::F64.numbers(raw),
+        DataType::Float16 => FloatType::F16.numbers(raw),
+        DataType::Bfloat16 => FloatType::Bf16.numbers(raw),
         _ => return None,
     })
 }

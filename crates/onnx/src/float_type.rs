@@ -1,18 +1,22 @@
-//! Elements of weights as they lie in files.
+//! Floating-point numbers as they lie in files of weights.
 
-use opendr_onnx::float_from_half;
+use crate::float_from_half;
 
-/// The element types that weights are stored in; integers of checkpoints are counters and no weights.
+/// How wide the numbers of a file are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Element {
+pub enum FloatType {
+    /// 64 bits.
     F64,
+    /// 32 bits.
     F32,
+    /// 16 bits, of which five are the exponent.
     F16,
+    /// The upper 16 bits of 32.
     Bf16,
 }
 
-impl Element {
-    /// Bytes of one element.
+impl FloatType {
+    /// Bytes of one number.
     pub fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,
@@ -44,15 +48,15 @@ mod tests {
     #[test]
     fn every_width_reads_the_same_number() {
         for number in [0.0f32, 1.0, -2.5, 0.375] {
-            assert_eq!(Element::F32.numbers(&number.to_le_bytes()), [number]);
-            assert_eq!(Element::F64.numbers(&f64::from(number).to_le_bytes()), [number]);
+            assert_eq!(FloatType::F32.numbers(&number.to_le_bytes()), [number]);
+            assert_eq!(FloatType::F64.numbers(&f64::from(number).to_le_bytes()), [number]);
             let brain = (number.to_bits() >> 16) as u16;
-            assert_eq!(Element::Bf16.numbers(&brain.to_le_bytes()), [number]);
+            assert_eq!(FloatType::Bf16.numbers(&brain.to_le_bytes()), [number]);
         }
         let halves =
             [(0x0000, 0.0), (0x3c00, 1.0), (0xc100, -2.5), (0x0001, 5.9604645e-8), (0x7bff, 65504.0)];
         for (bits, number) in halves {
-            assert_eq!(Element::F16.numbers(&u16::to_le_bytes(bits)), [number]);
+            assert_eq!(FloatType::F16.numbers(&u16::to_le_bytes(bits)), [number]);
         }
         assert!(float_from_half(0x7e00).is_nan() && float_from_half(0xfc00) == f32::NEG_INFINITY);
     }
