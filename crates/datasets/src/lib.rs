@@ -51,7 +51,7 @@ pub use any::{FormatEntry, Recognition};
 pub use camvid::CamVid;
 pub use check::check;
 pub use cityscapes::Cityscapes;
-pub use coco::{Coco, CocoPanoptic, coco_results};
+pub use coco::{Coco, CocoInfrared, CocoPanoptic, coco_results};
 pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use hands::Hands;

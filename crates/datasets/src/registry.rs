@@ -15,6 +15,7 @@ pub const fn formats() -> &'static [FormatEntry] {
 #[rustfmt::skip] // One line a format.
 const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::CocoPanoptic>(),
+    FormatEntry::of::<crate::CocoInfrared>(),
     FormatEntry::of::<crate::Coco>(),
     FormatEntry::of::<crate::Yolo>(),
     FormatEntry::of::<crate::Voc>(),

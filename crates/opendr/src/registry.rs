@@ -20,7 +20,7 @@ use opendr_perception::image_classification::ImageClassifier;
 use opendr_perception::instance_segmentation::BodyPix;
 use opendr_perception::multimodal_human_centric::{AudiovisualEmotion, RgbdHandGesture};
 use opendr_perception::object_detection_2d::{
-    CenterNet, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection,
+    CenterNet, Gem, Nanodet, Seq2SeqNms, SingleShotDetector, TiledDetection,
 };
 use opendr_perception::object_detection_3d::VoxelObjectDetection3d;
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort};
@@ -49,6 +49,7 @@ pub fn registry() -> &'static Registry {
             SingleShotDetector,
             TiledDetection,
             Seq2SeqNms,
+            Gem,
             VoxelObjectDetection3d,
             Sort,
             ByteTrack,

@@ -1,6 +1,7 @@
 //! Boxes with classes in a picture.
 
 mod centernet;
+mod gem;
 mod nanodet;
 mod seq2seq_nms;
 pub mod single_shot_detector;
@@ -9,6 +10,9 @@ mod tiled_detection;
 mod wanted_classes;
 
 pub use centernet::{CenterNet, CenterNetParams};
+#[cfg(feature = "training")]
+pub use gem::GemFitParams;
+pub use gem::{Gem, GemInputs, GemParams, GemTargets};
 pub use nanodet::{Nanodet, NanodetParams};
 #[cfg(feature = "training")]
 pub use nanodet::{NanodetFitParams, NanodetFreeze, NanodetNetwork};

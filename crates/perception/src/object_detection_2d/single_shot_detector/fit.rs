@@ -6,12 +6,12 @@ use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
-use opendr_engine::{Error, Result, ResultExt, Statistics};
+use opendr_engine::{Result, ResultExt, Statistics};
 use opendr_training::weights::WeightTable;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
-use super::anchors::Anchors;
-use super::layout::{Fitting, ImageLayout, Layout};
+use super::layout::Fitting;
+use super::layout_wish::LayoutWish;
 use super::matching::Matching;
 use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
 use super::objective::DetectionObjective;
@@ -34,7 +34,8 @@ opendr_engine::choices! {
 }
 
 impl Backbone {
-    fn width(self) -> f64 {
+    /// How many times the paper's channels it has.
+    pub fn width(self) -> f64 {
         match self {
             Self::MobileNet025 => 0.25,
             Self::MobileNet050 => 0.5,
@@ -95,9 +96,6 @@ pub struct SingleShotDetectorFitParams {
     pub training: TrainingParams,
 }
 
-/// Distances of the cells of the levels.
-const STRIDES: [usize; 4] = [8, 16, 32, 64];
-
 impl Fit for SingleShotDetector {
     type FitParams = SingleShotDetectorFitParams;
 
@@ -129,24 +127,15 @@ impl Fit for SingleShotDetector {
 
 impl SingleShotDetectorFitParams {
     fn objective(&self, base: Option<&Model>, dataset: &dyn DatasetIterator) -> Result<DetectionObjective> {
-        if !self.img_size.is_multiple_of(32) {
-            let below = self.img_size / 32 * 32;
-            return Err(Error::invalid_param(format!(
-                "img_size = {} is no multiple of 32; give {below} or {}",
-                self.img_size,
-                below + 32
-            )));
-        }
-        let anchors = match base {
-            Some(model) => Layout::from_manifest(model.manifest())?.anchors,
-            None => {
-                let strides: Vec<_> = STRIDES.into_iter().filter(|stride| *stride >= self.stride).collect();
-                Anchors::new(&strides, &self.anchor_scales, &self.aspect_ratios)
-            }
+        let wish = LayoutWish {
+            img_size: self.img_size,
+            fitting: self.fitting,
+            stride: self.stride,
+            anchor_scales: &self.anchor_scales,
+            aspect_ratios: &self.aspect_ratios,
         };
-        anchors.check()?;
         Ok(DetectionObjective {
-            layout: Layout { image: ImageLayout::new(self.img_size, self.fitting), anchors },
+            layout: wish.layout(base)?,
             classes: wanted_classes(&self.classes, &dataset.classes())?,
             matching: Matching::default(),
             least_score: self.least_score,

@@ -15,7 +15,7 @@ const GAMMA: i32 = 2;
 const BETA: f64 = 1.0;
 
 /// Scores and offsets of a batch.
-pub(super) struct DetectionLoss {
+pub(crate) struct DetectionLoss {
     /// Of the scores, for each object.
     pub scores: Tensor<1>,
     /// Of the offsets, for each object.

@@ -11,14 +11,17 @@ pub mod decode;
 mod fit;
 mod layout;
 #[cfg(feature = "training")]
-mod loss;
+mod layout_wish;
+mod levels;
+#[cfg(feature = "training")]
+pub(crate) mod loss;
 pub mod matching;
 #[cfg(feature = "training")]
-mod network;
+pub(crate) mod network;
 #[cfg(feature = "training")]
 mod objective;
 #[cfg(feature = "training")]
-mod targets;
+pub(crate) mod targets;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod tests;
@@ -29,16 +32,18 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_inference::TensorView;
 
 use crate::object_detection_2d::boxes_from_candidates;
 use crate::picture_network::PictureNetwork;
 use crate::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
-use anchors::AnchorLevel;
-use decode::LevelMaps;
 #[cfg(feature = "training")]
 pub use fit::{Backbone, SingleShotDetectorFitParams};
 pub use layout::{Fitting, ImageLayout, Layout};
+#[cfg(feature = "training")]
+pub(crate) use layout_wish::LayoutWish;
+pub(crate) use levels::Levels;
+#[cfg(feature = "training")]
+pub(crate) use levels::output_names;
 #[cfg(feature = "training")]
 pub use objective::DetectionObjective;
 
@@ -67,7 +72,7 @@ pub struct SingleShotDetector {
     params: SingleShotDetectorParams,
     classes: Classes,
     network: PictureNetwork,
-    levels: Vec<Level>,
+    levels: Levels,
     scratch: Pool<Scratch>,
 }
 
@@ -75,21 +80,6 @@ pub struct SingleShotDetector {
 struct Scratch {
     candidates: Vec<Candidate>,
     marks: Vec<bool>,
-}
-
-/// The anchors of one feature map, and where its outputs stand.
-struct Level {
-    anchors: AnchorLevel,
-    columns: usize,
-    rows: usize,
-    scores: usize,
-    offsets: usize,
-}
-
-/// The names of the outputs of a level: logits of the scores, `[1, kinds * classes, rows, columns]`, and offsets,
-/// `[1, kinds * 4, rows, columns]`.
-fn output_names(level: usize) -> [String; 2] {
-    [format!("scores_{level}"), format!("offsets_{level}")]
 }
 
 impl Learner for SingleShotDetector {
@@ -114,13 +104,7 @@ impl Learner for SingleShotDetector {
             return Err(Error::format("the model names no classes; train or get it anew"));
         }
         let network = PictureNetwork::open(model, device, |_| image.preprocess())?;
-        let level = |(number, anchors): (usize, AnchorLevel)| -> Result<Level> {
-            let [columns, rows] = image.size().map(|size| anchors.cells(size));
-            let [scores, offsets] = output_names(number);
-            let (scores, offsets) = (network.output(&scores)?, network.output(&offsets)?);
-            Ok(Level { anchors, columns, rows, scores, offsets })
-        };
-        let levels = anchors.levels.into_iter().enumerate().map(level).collect::<Result<_>>()?;
+        let levels = Levels::open(anchors, image.size(), |name| network.output(name))?;
         Ok(Self { params, classes, network, levels, scratch: Pool::default() })
     }
 
@@ -140,10 +124,7 @@ impl Learner for SingleShotDetector {
         let Scratch { candidates, marks } = &mut *self.scratch.take();
         candidates.clear();
         self.network.run(image, |outputs, geometry| {
-            for level in &self.levels {
-                let maps = level.maps(outputs, self.classes.len())?;
-                maps.decode(&level.anchors, self.classes.len(), self.params.threshold, candidates);
-            }
+            self.levels.decode(outputs, self.classes.len(), self.params.threshold, candidates)?;
             keep_best(candidates, self.params.max_candidates);
             self.suppression().run(candidates, marks);
             boxes_from_candidates(boxes, candidates, geometry, &self.classes);
@@ -157,25 +138,5 @@ impl SingleShotDetector {
         let SingleShotDetectorParams { threshold, iou_threshold, max_detections, suppression, .. } =
             self.params;
         Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections }
-    }
-}
-
-impl Level {
-    fn maps<'a>(&self, outputs: &[TensorView<'a>], classes: usize) -> Result<LevelMaps<'a>> {
-        let Self { columns, rows, .. } = *self;
-        let kinds = self.anchors.sides.len();
-        let values = |output: usize, maps: usize| {
-            let shape = outputs[output].shape();
-            if *shape != [1, maps, rows, columns] {
-                return Err(Error::format(format!(
-                    "an output of the model is {shape:?}, but its anchors and classes ask for \
-                     {:?}; train or get it anew",
-                    [1, maps, rows, columns]
-                )));
-            }
-            outputs[output].values::<f32>()
-        };
-        let (scores, offsets) = (values(self.scores, kinds * classes)?, values(self.offsets, kinds * 4)?);
-        Ok(LevelMaps { columns, rows, scores, offsets })
     }
 }

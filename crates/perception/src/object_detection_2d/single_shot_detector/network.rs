@@ -54,12 +54,18 @@ struct Head {
 /// A trainable single-shot detector.
 #[derive(Module, Debug)]
 pub struct Network {
-    backbone: MobileNetV1,
-    deep: Vec<SeparableConv>,
+    trunk: Trunk,
     lateral: Conv2d,
     finer: Option<Finer>,
     coarser: Vec<Separable>,
     head: Head,
+}
+
+/// MobileNetV1 without its head: what sees pictures.
+#[derive(Module, Debug)]
+pub struct Trunk {
+    backbone: MobileNetV1,
+    deep: Vec<SeparableConv>,
 }
 
 /// The level of stride 8: its own features plus those of stride 16 (Lin et al., Feature Pyramid Networks, CVPR 2017).
@@ -133,12 +139,9 @@ impl NetworkConfig {
     /// A network with random weights.
     pub fn init(&self, device: &Device) -> Network {
         let fine = self.strides.contains(&8);
-        let taps = if fine { vec![8, 16] } else { vec![16] };
-        let backbone = MobileNetV1Config::new().with_width(self.width).with_output_stride(16);
-        let backbone = backbone.with_blocks(BLOCKS).with_taps(taps).init(device);
-        let channels = backbone.feature_channels();
+        let trunk = self.trunk(device);
+        let channels = trunk.channels();
         let coarse = channels.last().copied().unwrap_or_default();
-        let deep = SeparableConvConfig::new([coarse; 2]).with_activation(Activation::Relu6);
         let finer = channels.first().filter(|_| fine).map(|channels| Finer {
             lateral: pointwise([*channels, CHANNELS], HE, device),
             smooth: Separable::new([CHANNELS; 2], 1, device),
@@ -146,8 +149,7 @@ impl NetworkConfig {
         let coarser = self.strides.iter().filter(|stride| **stride > 16);
         let logit = (PRIOR / (1.0 - PRIOR)).ln();
         Network {
-            backbone,
-            deep: vec![deep.init(device), deep.init(device)],
+            trunk,
             lateral: pointwise([coarse, CHANNELS], HE, device),
             finer,
             coarser: coarser.map(|_| Separable::new([CHANNELS; 2], 2, device)).collect(),
@@ -157,6 +159,60 @@ impl NetworkConfig {
                 scores: Separable::answering(self.kinds * self.classes, logit, device),
             },
         }
+    }
+}
+
+impl NetworkConfig {
+    /// What sees pictures, with random weights.
+    pub fn trunk(&self, device: &Device) -> Trunk {
+        let taps = if self.strides.contains(&8) { vec![8, 16] } else { vec![16] };
+        let backbone = MobileNetV1Config::new().with_width(self.width).with_output_stride(16);
+        let backbone = backbone.with_blocks(BLOCKS).with_taps(taps).init(device);
+        let coarse = backbone.feature_channels().last().copied().unwrap_or_default();
+        let deep = SeparableConvConfig::new([coarse; 2]).with_activation(Activation::Relu6);
+        Trunk { backbone, deep: vec![deep.init(device), deep.init(device)] }
+    }
+}
+
+impl Trunk {
+    /// Stride 8 where there is a level of it, and stride 16, of pictures `[batch, 3, height, width]`.
+    pub fn forward(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
+        let mut taps = self.backbone.features(images);
+        let coarse = taps.pop();
+        taps.extend(coarse.map(|coarse| self.deep.iter().fold(coarse, |x, block| block.forward(x))));
+        taps
+    }
+
+    /// Channels of what [`forward`](Self::forward) answers.
+    pub fn channels(&self) -> Vec<usize> {
+        self.backbone.feature_channels()
+    }
+
+    fn with_frozen_norms(mut self) -> Self {
+        let frozen = |layer: ConvNormAct| ConvNormAct { norm: layer.norm.freeze(), ..layer };
+        let block = |block: SeparableConv| SeparableConv {
+            depthwise: frozen(block.depthwise),
+            pointwise: frozen(block.pointwise),
+        };
+        self.backbone.stem = frozen(self.backbone.stem);
+        self.backbone.blocks = self.backbone.blocks.into_iter().map(block).collect();
+        self.deep = self.deep.into_iter().map(block).collect();
+        self
+    }
+
+    fn freeze(mut self, layers: usize) -> Self {
+        if layers > 0 {
+            self.backbone.stem = self.backbone.stem.freeze();
+        }
+        let first = |blocks: Vec<SeparableConv>, count: usize| {
+            let freeze = |(number, block): (usize, SeparableConv)| {
+                if number < count { block.freeze() } else { block }
+            };
+            blocks.into_iter().enumerate().map(freeze).collect()
+        };
+        self.backbone.blocks = first(self.backbone.blocks, layers.saturating_sub(1));
+        self.deep = first(self.deep, layers.saturating_sub(1 + BLOCKS));
+        self
     }
 }
 
@@ -186,10 +242,7 @@ impl Network {
 
     /// What the backbone answers: stride 8 where there is a level of it, and stride 16.
     pub fn trunk(&self, images: Tensor<4>) -> Vec<Tensor<4>> {
-        let mut taps = self.backbone.features(images);
-        let coarse = taps.pop();
-        taps.extend(coarse.map(|coarse| self.deep.iter().fold(coarse, |x, block| block.forward(x))));
-        taps
+        self.trunk.forward(images)
     }
 
     /// The network with the backbone of a file, layer by layer (PoseNet's among them). Its batch normalisations are
@@ -198,7 +251,7 @@ impl Network {
     /// # Errors
     /// `InvalidInput` when the file's first layers are not this backbone.
     pub fn with_backbone(self, table: &WeightTable) -> Result<Self> {
-        let rules = Rules::by_order().only("backbone").only("deep");
+        let rules = Rules::by_order().only("trunk");
         let (network, report) = table.apply(self, &rules)?;
         report.complete()?;
         Ok(network.with_frozen_norms())
@@ -217,14 +270,7 @@ impl Network {
     }
 
     fn with_frozen_norms(mut self) -> Self {
-        let frozen = |layer: ConvNormAct| ConvNormAct { norm: layer.norm.freeze(), ..layer };
-        let block = |block: SeparableConv| SeparableConv {
-            depthwise: frozen(block.depthwise),
-            pointwise: frozen(block.pointwise),
-        };
-        self.backbone.stem = frozen(self.backbone.stem);
-        self.backbone.blocks = self.backbone.blocks.into_iter().map(block).collect();
-        self.deep = self.deep.into_iter().map(block).collect();
+        self.trunk = self.trunk.with_frozen_norms();
         self
     }
 
@@ -236,17 +282,7 @@ impl Network {
     /// The network whose first `layers` layers of the backbone stay as they are: its first convolution, then its
     /// thirteen blocks.
     pub fn freeze(mut self, layers: usize) -> Self {
-        if layers > 0 {
-            self.backbone.stem = self.backbone.stem.freeze();
-        }
-        let first = |blocks: Vec<SeparableConv>, count: usize| {
-            let freeze = |(number, block): (usize, SeparableConv)| {
-                if number < count { block.freeze() } else { block }
-            };
-            blocks.into_iter().enumerate().map(freeze).collect()
-        };
-        self.backbone.blocks = first(self.backbone.blocks, layers.saturating_sub(1));
-        self.deep = first(self.deep, layers.saturating_sub(1 + BLOCKS));
+        self.trunk = self.trunk.freeze(layers);
         self
     }
 }

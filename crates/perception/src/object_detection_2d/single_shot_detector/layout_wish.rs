@@ -1,0 +1,50 @@
+//! The input and the anchors that a training is to have.
+
+use opendr_engine::model::Model;
+use opendr_engine::{Error, Result};
+
+use super::anchors::Anchors;
+use super::layout::{Fitting, ImageLayout, Layout};
+
+/// What a user wishes of the input and of the anchors.
+pub(crate) struct LayoutWish<'a> {
+    /// Side of the network's input, pixels.
+    pub img_size: usize,
+    /// How pictures are brought to that size.
+    pub fitting: Fitting,
+    /// Pixels from one cell of the finest level to the next.
+    pub stride: usize,
+    /// Sides of the anchors of each level, in its strides.
+    pub anchor_scales: &'a [f32],
+    /// Aspect ratios of the anchors.
+    pub aspect_ratios: &'a [f32],
+}
+
+/// Distances of the cells of the levels.
+const STRIDES: [usize; 4] = [8, 16, 32, 64];
+
+impl LayoutWish<'_> {
+    /// The layout; going on from `base`, its anchors.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a side that is no multiple of 32; `Format` for a base without a layout.
+    pub fn layout(&self, base: Option<&Model>) -> Result<Layout> {
+        if !self.img_size.is_multiple_of(32) {
+            let below = self.img_size / 32 * 32;
+            return Err(Error::invalid_param(format!(
+                "img_size = {} is no multiple of 32; give {below} or {}",
+                self.img_size,
+                below + 32
+            )));
+        }
+        let anchors = match base {
+            Some(model) => Layout::from_manifest(model.manifest())?.anchors,
+            None => {
+                let strides: Vec<_> = STRIDES.into_iter().filter(|stride| *stride >= self.stride).collect();
+                Anchors::new(&strides, self.anchor_scales, self.aspect_ratios)
+            }
+        };
+        anchors.check()?;
+        Ok(Layout { image: ImageLayout::new(self.img_size, self.fitting), anchors })
+    }
+}
