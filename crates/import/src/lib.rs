@@ -8,11 +8,13 @@
 //! [`onnx_from_ncnn`] takes the two files of a model of ncnn's, which has pictures channels-first already.
 //!
 //! [`onnx_from_whisper`] builds the two networks of a Whisper around weights from anywhere; those of CTranslate2 are read by
-//! [`whisper_from_ctranslate2`].
+//! [`whisper_from_ctranslate2`], those of transformers by [`whisper_from_safetensors`]. [`SafetensorsFile`] serves weights of any
+//! network.
 
 mod bounded;
 mod ctranslate2;
 mod ncnn;
+mod safetensors;
 mod tensorflow;
 mod tfjs;
 mod tflite;
@@ -20,6 +22,7 @@ mod whisper;
 
 pub use ctranslate2::whisper_from_ctranslate2;
 pub use ncnn::{onnx_from_ncnn, onnx_from_ncnn_files};
+pub use safetensors::{FloatTensor, SafetensorsFile, whisper_from_safetensors};
 pub use tensorflow::ImportOptions;
 pub use tfjs::{onnx_from_tfjs, onnx_from_tfjs_file, tfjs_weight_files};
 pub use tflite::{onnx_from_tflite, onnx_from_tflite_file};

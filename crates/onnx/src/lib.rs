@@ -2,6 +2,7 @@
 
 mod array;
 mod builder;
+mod float_type;
 mod fold;
 mod half;
 mod model;
@@ -12,6 +13,7 @@ mod wire;
 
 pub use array::{Array, Data, Kind, element_count};
 pub use builder::Builder;
+pub use float_type::FloatType;
 pub use fold::slice_range;
 pub use half::{float_from_half, half_from_float};
 pub use model::{bytes_from_model, model_from_bytes, model_from_graph};

@@ -15,7 +15,7 @@
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Data, element_count, float_from_half};
+use opendr_onnx::{Array, Data, FloatType, element_count};
 
 /// The most axes that a variable has.
 const MAX_AXES: u8 = 8;
@@ -94,19 +94,17 @@ impl<'a> Ctranslate2File<'a> {
     /// `Format` when there is none, `Unsupported` when it is quantised.
     pub fn floats(&self, name: &str) -> Result<Array> {
         let Variable { dims, element, bytes } = self.variables.get(name).ok_or_else(|| missing(name))?;
-        let floats: Vec<f32> = match element {
-            0 => bytes.as_chunks().0.iter().map(|&b| f32::from_le_bytes(b)).collect(),
-            4 => bytes.as_chunks().0.iter().map(|&b| float_from_half(u16::from_le_bytes(b))).collect(),
-            5 => {
-                let wide = |&b: &[u8; 2]| f32::from_bits(u32::from(u16::from_le_bytes(b)) << 16);
-                bytes.as_chunks().0.iter().map(wide).collect()
-            }
+        let float_type = match element {
+            0 => FloatType::F32,
+            4 => FloatType::F16,
+            5 => FloatType::Bf16,
             _ => {
                 return Err(Error::unsupported(format!(
                     "CTranslate2: {name:?} is quantised; convert the model with --quantization float16"
                 )));
             }
         };
+        let floats = float_type.numbers(bytes);
         if floats.iter().any(|value| !value.is_finite()) {
             return Err(Error::format(format!(
                 "CTranslate2: {name:?} holds what is no number; get the file anew"

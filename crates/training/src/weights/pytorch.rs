@@ -5,6 +5,7 @@ use std::path::Path;
 
 use burn_store::pytorch_reader::{DType, PytorchError, PytorchReader, Tensor};
 use opendr_engine::{Error, Result};
+use opendr_onnx::FloatType;
 
 use crate::weights::WeightTable;
 

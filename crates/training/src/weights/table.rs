@@ -7,6 +7,8 @@ use std::path::Path;
 
 use burn::module::Module;
 use opendr_engine::{Error, Result, ResultExt};
+use opendr_import::SafetensorsFile;
+use opendr_onnx::FloatType;
 
 use crate::weights::fill::fill;
 use crate::weights::slot::slots;
@@ -168,7 +170,7 @@ enum Kind {
 
 impl Kind {
     fn of(head: &[u8]) -> Self {
-        if safetensors::is_safetensors(head) {
+        if SafetensorsFile::is_start(head) {
             return Self::Safetensors;
         }
         match head {

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::element_count;
 use opendr_onnx::proto::{DataType, GraphProto, NodeProto, TensorProto};
+use opendr_onnx::{FloatType, element_count};
 
 use super::attribute;
 
