@@ -1,9 +1,10 @@
-//! A tiny Whisper, as CTranslate2 would write it, becomes two networks that fit each other; damaged files are refused.
+//! A tiny Whisper, as CTranslate2 and transformers would write it, becomes two networks that fit each other; damaged files
+//! are refused.
 
 #![allow(clippy::unwrap_used)]
 
 use opendr_engine::ErrorKind;
-use opendr_import::{WhisperOnnx, whisper_from_ctranslate2};
+use opendr_import::{WhisperOnnx, whisper_from_ctranslate2, whisper_from_safetensors};
 use rten::{Model, ValueOrView};
 use rten_tensor::Tensor;
 use rten_tensor::prelude::*;
@@ -22,6 +23,8 @@ fn halves(count: usize, seed: usize, scale: f32) -> Vec<u8> {
 struct File {
     variables: Vec<u8>,
     count: u32,
+    /// Names, shapes and numbers of the weights.
+    weights: Vec<(String, Vec<usize>, Vec<u8>)>,
 }
 
 fn text(text: &str) -> Vec<u8> {
@@ -44,6 +47,7 @@ impl File {
     fn weight(&mut self, name: &str, dims: &[usize], scale: f32) {
         let bytes = halves(dims.iter().product(), self.count as usize, scale);
         self.add(name, dims, 4, &bytes);
+        self.weights.push((name.to_owned(), dims.to_vec(), bytes));
     }
 
     fn linear(&mut self, name: &str, rows: usize) {
@@ -69,6 +73,10 @@ impl File {
 }
 
 fn tiny() -> Vec<u8> {
+    tiny_file().bytes()
+}
+
+fn tiny_file() -> File {
     let mut file = File::default();
     file.weight("encoder/conv1/weight", &[WIDTH, BANDS, 3], 0.5);
     file.weight("encoder/conv1/bias", &[WIDTH], 0.1);
@@ -92,7 +100,45 @@ fn tiny() -> Vec<u8> {
     file.linear("decoder/layer_0/attention/linear_0", WIDTH);
     file.linear("decoder/layer_0/attention/linear_1", 2 * WIDTH);
     file.linear("decoder/layer_0/attention/linear_2", WIDTH);
-    file.bytes()
+    file
+}
+
+/// The same weights with the names of transformers.
+fn tiny_safetensors() -> Vec<u8> {
+    let names = [
+        ("position_encodings/encodings", "embed_positions.weight"),
+        ("embeddings/weight", "embed_tokens.weight"),
+        ("self_attention/layer_norm", "self_attn_layer_norm"),
+        ("ffn/layer_norm", "final_layer_norm"),
+        ("ffn/linear_0", "fc1"),
+        ("ffn/linear_1", "fc2"),
+        ("self_attention/linear_0", "self_attn.[q_proj|k_proj|v_proj]"),
+        ("self_attention/linear_1", "self_attn.out_proj"),
+        ("attention/layer_norm", "encoder_attn_layer_norm"),
+        ("attention/linear_0", "encoder_attn.q_proj"),
+        ("attention/linear_1", "encoder_attn.[k_proj|v_proj]"),
+        ("attention/linear_2", "encoder_attn.out_proj"),
+        ("layer_0", "layers.0"),
+        ("gamma", "weight"),
+        ("beta", "bias"),
+    ];
+    let (mut header, mut data) = (serde_json::Map::new(), Vec::new());
+    for (name, dims, bytes) in tiny_file().weights {
+        let name = names.iter().fold(name, |name, (from, to)| name.replace(from, to)).replace('/', ".");
+        let (before, rest) = name.split_once('[').unwrap_or((&name, "]"));
+        let (parts, after) = rest.split_once(']').unwrap();
+        let parts: Vec<&str> = parts.split('|').collect();
+        for (part, bytes) in parts.iter().zip(bytes.chunks_exact(bytes.len() / parts.len())) {
+            let mut dims = dims.clone();
+            dims[0] /= parts.len();
+            let places = [data.len(), data.len() + bytes.len()];
+            let entry = serde_json::json!({"dtype": "F16", "shape": dims, "data_offsets": places});
+            header.insert(format!("model.{before}{part}{after}"), entry);
+            data.extend(bytes);
+        }
+    }
+    let header = serde_json::to_vec(&header).unwrap();
+    [&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat()
 }
 
 /// Decodes `tokens` in steps of the given sizes; the logits after the last.
@@ -153,6 +199,29 @@ fn steps_give_what_all_at_once_gives() {
     }
     let other = decoded(&networks, &[3, 1, 4, 1, 6, 9], &[6]);
     assert!(other.iter().zip(&whole).any(|(a, b)| (a - b).abs() > 1e-3));
+}
+
+#[test]
+fn safetensors_give_the_same_networks() {
+    let networks = whisper_from_safetensors(&tiny_safetensors()).unwrap();
+    let wanted = whisper_from_ctranslate2(&tiny()).unwrap();
+    assert!(networks.encoder == wanted.encoder && networks.decoder == wanted.decoder);
+}
+
+#[test]
+fn other_and_damaged_safetensors_are_refused() {
+    let whole = tiny_safetensors();
+    let kind = |bytes: &[u8]| whisper_from_safetensors(bytes).err().map(|error| error.kind());
+    for size in (0..5000).step_by(7).chain((5000..whole.len()).step_by(9973)) {
+        assert_eq!(kind(&whole[..size]), Some(ErrorKind::Format), "{size} bytes");
+    }
+    for place in 0..4000 {
+        let mut damaged = whole.clone();
+        damaged[place] ^= 0x11;
+        whisper_from_safetensors(&damaged).ok();
+    }
+    let other = [&2u64.to_le_bytes()[..], b"{}"].concat();
+    assert_eq!(kind(&other), Some(ErrorKind::Unsupported));
 }
 
 #[test]

@@ -138,6 +138,8 @@ pub enum Import {
     /// A Whisper that CTranslate2 converted: the first of the files is its `model.bin`, of which `encoder.onnx` and
     /// `decoder.onnx` are made; the others go into the container as they are.
     Ctranslate2Whisper,
+    /// A Whisper that transformers saved: the first of the files is its `model.safetensors`; else as `Ctranslate2Whisper`.
+    SafetensorsWhisper,
 }
 
 /// One network that is made of files of another format.
@@ -158,6 +160,12 @@ pub struct ImportedNetwork {
     pub outputs: Vec<String>,
 }
 
+impl Default for ImportedNetwork {
+    fn default() -> Self {
+        Self { files: Vec::new(), output: model_onnx(), image_size: None, outputs: Vec::new() }
+    }
+}
+
 impl Import {
     /// What is made of a Whisper.
     pub(crate) const WHISPER: [&'static str; 2] = ["encoder.onnx", "decoder.onnx"];
@@ -166,7 +174,7 @@ impl Import {
     pub fn outputs(&self) -> Vec<&str> {
         match self {
             Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => vec![&network.output],
-            Self::Ctranslate2Whisper => Self::WHISPER.to_vec(),
+            Self::Ctranslate2Whisper | Self::SafetensorsWhisper => Self::WHISPER.to_vec(),
         }
     }
 
@@ -174,7 +182,7 @@ impl Import {
     pub(crate) fn named_files(&self) -> &[String] {
         match self {
             Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => &network.files,
-            Self::Ctranslate2Whisper => &[],
+            Self::Ctranslate2Whisper | Self::SafetensorsWhisper => &[],
         }
     }
 

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use opendr_engine::{Error, Result};
 use opendr_import::{
     ImportOptions, onnx_from_ncnn, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files,
-    whisper_from_ctranslate2,
+    whisper_from_ctranslate2, whisper_from_safetensors,
 };
 
 use crate::card::{Import, ImportedNetwork};
@@ -44,8 +44,11 @@ pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) ->
                 files.len()
             ))),
         },
-        Import::Ctranslate2Whisper => {
-            let networks = whisper_from_ctranslate2(first)?;
+        Import::Ctranslate2Whisper | Import::SafetensorsWhisper => {
+            let networks = match import {
+                Import::Ctranslate2Whisper => whisper_from_ctranslate2(first)?,
+                _ => whisper_from_safetensors(first)?,
+            };
             let [encoder, decoder] = Import::WHISPER;
             let made = [(encoder, networks.encoder.into()), (decoder, networks.decoder.into())];
             Ok(made

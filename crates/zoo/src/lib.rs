@@ -14,6 +14,7 @@ mod client;
 mod download;
 mod embedded;
 mod fetch;
+mod import_files;
 mod http;
 mod import;
 mod item;
@@ -31,7 +32,9 @@ mod zoo;
 
 pub use card::{Card, CardFile, Import, ItemKind, Speed, Variant};
 pub use embedded::embedded_cards;
+pub use import_files::import_files;
 pub use item::Item;
+pub use opendr_import::ImportOptions;
 pub use onnx_runtime::{InstalledRuntime, install_onnx_runtime};
 pub use options::ZooOptions;
 pub use source::{Package, Places, Source};

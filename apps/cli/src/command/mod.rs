@@ -9,6 +9,7 @@ mod download;
 mod eval;
 mod export;
 mod fit;
+mod import;
 mod infer;
 mod models;
 mod optimize;
@@ -54,6 +55,7 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         fit::grammar(),
         tune::grammar(),
         export::grammar(),
+        import::grammar(),
         optimize::grammar(),
         score::grammar(),
         data::grammar(),
@@ -77,8 +79,8 @@ pub fn grammar(arguments: &[OsString]) -> Result<Command> {
         let add = match name.to_str() {
             Some("fit" | "tune") => learner_flags::add_for_fit,
             Some("bench") => learner_flags::add_for_bench,
-            // Data sets have further inputs in their samples.
-            Some("eval" | "optimize") => learner_flags::with_params,
+            // Data sets have further inputs in their samples, files of models none.
+            Some("eval" | "import" | "optimize") => learner_flags::with_params,
             _ => learner_flags::add,
         };
         *command = add(std::mem::take(command), entry);
@@ -116,6 +118,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         "fit" => fit::run(matches),
         "tune" => tune::run(matches),
         "export" => export::run(matches),
+        "import" => import::run(matches),
         "optimize" => optimize::run(matches),
         "score" => score::run(matches),
         "data" => data::run(matches),
@@ -179,7 +182,7 @@ mod tests {
     #[test]
     fn grammar_of_every_learner_is_sound() {
         for entry in opendr::registry().entries() {
-            for command in ["infer", "bench", "eval", "fit", "tune"] {
+            for command in ["infer", "bench", "eval", "fit", "import", "tune"] {
                 grammar(&words(&format!("opendr {command} {}", entry.spec.name))).unwrap().debug_assert();
             }
         }

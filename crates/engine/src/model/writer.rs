@@ -92,9 +92,18 @@ impl ModelWriter {
     ///
     /// # Errors
     /// `Io` when writing or renaming fails.
-    pub fn finish(mut self) -> Result<Model> {
+    pub fn finish(self) -> Result<Model> {
+        self.finish_checked(|_| Ok(()))
+    }
+
+    /// As [`ModelWriter::finish`], once `check` accepts the finished model, which lies elsewhere until then.
+    ///
+    /// # Errors
+    /// As [`ModelWriter::finish`], and what `check` returns; what is at the path stays then.
+    pub fn finish_checked(mut self, check: impl FnOnce(&Model) -> Result<()>) -> Result<Model> {
         self.renew_parts()?;
         write_synced(&self.temporary.join(MANIFEST_NAME), &self.manifest.to_json()?)?;
+        check(&Model::open(&self.temporary)?)?;
         if self.target.extension().is_some_and(|extension| extension == "zip") {
             let packed = self.temporary.join("packed.zip");
             self.pack(&packed).context(|| packed.display().to_string())?;

@@ -1,0 +1,98 @@
+//! `opendr import`: files of other programs become a container.
+
+use std::path::PathBuf;
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+use opendr::model::Manifest;
+use opendr::target::Classes;
+use opendr::zoo::{ImportOptions, import_files};
+use opendr::{Result, ResultExt};
+
+use crate::exit::Outcome;
+use crate::{learner_flags, loading, stdout};
+
+const EXAMPLES: &str = "\
+Examples:
+  opendr import whisper model.safetensors tokenizer.json --output small     as transformers saved it
+  opendr import whisper model.bin tokenizer.json --output small             as CTranslate2 did
+  opendr import LEARNER detector.tflite --classes names.txt --output mine
+  opendr import LEARNER net.param net.bin --output mine                     of ncnn
+  opendr infer whisper talk.wav --model small                               then run it";
+
+pub fn grammar() -> Command {
+    Command::new("import")
+        .about("Make a container of an ONNX, TensorFlow Lite, TensorFlow.js or ncnn model, or of a Whisper's weights")
+        .arg(loading::learner().value_name("LEARNER").help("What shall run it (see \"opendr models\")"))
+        .arg(
+            Arg::new("files")
+                .required(true)
+                .num_args(1..)
+                .value_parser(value_parser!(PathBuf))
+                .value_name("FILE")
+                .help("The model first, then what belongs to it: weights, a tokeniser"),
+        )
+        .arg(
+            Arg::new("output")
+                .long("output")
+                .short('o')
+                .required(true)
+                .value_parser(value_parser!(PathBuf))
+                .value_name("DIR")
+                .help("The container to write: a folder, or NAME.zip"),
+        )
+        .arg(
+            Arg::new("classes")
+                .long("classes")
+                .value_parser(value_parser!(PathBuf))
+                .value_name("FILE")
+                .help("Names of the classes, one a line, in the order of the network's output"),
+        )
+        .arg(
+            Arg::new("image-size")
+                .long("image-size")
+                .value_parser(image_size)
+                .value_name("HEIGHTxWIDTH")
+                .help("Size of pictures, where the model leaves it open"),
+        )
+        .arg(
+            Arg::new("outputs")
+                .long("outputs")
+                .value_delimiter(',')
+                .value_name("NAME,...")
+                .help("Outputs to keep [default: all]"),
+        )
+        .args([loading::device_flag(), loading::quiet()])
+        .after_help(EXAMPLES)
+}
+
+pub fn run(matches: &ArgMatches) -> Result<Outcome> {
+    let name = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
+    let entry = loading::entry(name)?;
+    let params = learner_flags::params(entry, matches)?;
+    let files: Vec<&PathBuf> = matches.get_many("files").into_iter().flatten().collect();
+    let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
+    let options = ImportOptions {
+        image_size: matches.get_one::<(usize, usize)>("image-size").copied(),
+        outputs: matches.get_many("outputs").into_iter().flatten().cloned().collect(),
+    };
+    let mut manifest = Manifest::new(entry.spec.name, "");
+    manifest.task = Some(entry.spec.task);
+    manifest.params = params.clone();
+    if let Some(path) = matches.get_one::<PathBuf>("classes") {
+        let text = std::fs::read_to_string(path).context(|| path.display().to_string())?;
+        manifest.classes = text.lines().map(str::trim).filter(|name| !name.is_empty()).collect();
+    }
+    let device = loading::device(matches)?;
+    import_files(manifest, &files, &options, &output, |model| {
+        let loaded = entry.make(&params, device).and_then(|mut learner| learner.load(model.path()));
+        loaded.context(|| format!("{} does not take this model", entry.spec.name))
+    })?;
+    stdout::print(output.display())?;
+    Ok(Outcome::Done)
+}
+
+fn image_size(text: &str) -> Result<(usize, usize), String> {
+    let size = text.split_once('x').and_then(|(height, width)| Some((height.parse().ok()?, width.parse().ok()?)));
+    size.filter(|(height, width)| *height > 0 && *width > 0)
+        .ok_or_else(|| format!("{text:?} is no size; give e.g. 256x320"))
+}

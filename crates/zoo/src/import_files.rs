@@ -1,0 +1,141 @@
+//! Models that a user has, of formats that their content tells.
+
+use std::path::Path;
+
+use opendr_engine::model::{Manifest, Model, ModelWriter};
+use opendr_engine::{Error, Result, ResultExt};
+use opendr_import::{ImportOptions, SafetensorsFile};
+
+use crate::card::{Import, ImportedNetwork};
+use crate::import::imported;
+
+/// The most bytes of a file: an ONNX file holds no more than 2 GiB.
+const MAX_BYTES: u64 = 1 << 31;
+
+/// Makes a container at `output` of files that a user has, converted to ONNX where they are not: a model of TensorFlow
+/// Lite, TensorFlow.js (its JSON first, then its weights) or ncnn (its layers first, then its weights), the weights of a
+/// Whisper by CTranslate2 or in safetensors. Which it is shows in the first file's content; what is not part of it, such as
+/// a tokeniser, goes into the container as it is, and one ONNX file becomes `model.onnx`. It is put there once `check`
+/// accepts it, e.g. because the learner loads it.
+///
+/// # Errors
+/// `NotFound` or `Io` for files that cannot be read, `Unsupported` for what is of no known format, else what is wrong with
+/// the files, and what `check` returns. What is at `output` stays then.
+pub fn import_files(
+    manifest: Manifest,
+    files: &[impl AsRef<Path>],
+    options: &ImportOptions,
+    output: &Path,
+    check: impl FnOnce(&Model) -> Result<()>,
+) -> Result<Model> {
+    let mut given = Vec::with_capacity(files.len());
+    for path in files {
+        let path = path.as_ref();
+        let name = path.file_name().and_then(|name| name.to_str());
+        let name = name.ok_or_else(|| Error::invalid_input(format!("{} is no file", path.display())))?;
+        let size = path.metadata().context(|| path.display().to_string())?.len();
+        if size > MAX_BYTES {
+            let mb = size >> 20;
+            return Err(Error::unsupported(format!("{} of {mb} MB; at most 2048 MB", path.display())));
+        }
+        given.push((name, std::fs::read(path).context(|| path.display().to_string())?));
+    }
+    let named: Vec<_> = given.iter().map(|(name, bytes)| (*name, bytes.as_slice())).collect();
+    let Some(&(first, bytes)) = named.first() else {
+        return Err(Error::invalid_input("no files to import; give at least one"));
+    };
+    let format = Format::of(first, bytes)?;
+    let import = format.import(options);
+    let own = format.files(bytes)?.min(named.len());
+    let mut writer = ModelWriter::new(output, manifest)?;
+    match &import {
+        Some(import) => {
+            for (name, made) in imported(import, &named[..own]).context(|| first.to_owned())? {
+                writer.add(name, &made)?;
+            }
+        }
+        None => writer.add("model.onnx", bytes)?,
+    }
+    for (name, bytes) in &named[own..] {
+        writer.add(name, bytes)?;
+    }
+    writer.finish_checked(check)
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Onnx,
+    Tfjs,
+    Tflite,
+    Ncnn,
+    Ctranslate2Whisper,
+    SafetensorsWhisper,
+}
+
+impl Format {
+    fn of(name: &str, bytes: &[u8]) -> Result<Self> {
+        let text = bytes.trim_ascii_start();
+        Ok(match () {
+            () if bytes.get(4..8) == Some(b"TFL3") => Self::Tflite,
+            () if bytes.get(6..17) == Some(b"WhisperSpec") => Self::Ctranslate2Whisper,
+            () if SafetensorsFile::is_start(bytes) => Self::SafetensorsWhisper,
+            () if text.starts_with(b"7767517") => Self::Ncnn,
+            () if text.starts_with(b"{") => Self::Tfjs,
+            () if name.to_lowercase().ends_with(".onnx") => Self::Onnx,
+            () => {
+                return Err(Error::unsupported(format!(
+                    "{name} is of no known format; give an .onnx, a .tflite, the JSON of a TensorFlow.js graph model, the \
+                     .param of ncnn, a Whisper's model.bin of CTranslate2 or its model.safetensors"
+                )));
+            }
+        })
+    }
+
+    /// How it is imported; `None` for what is ONNX.
+    fn import(self, options: &ImportOptions) -> Option<Import> {
+        let network = || ImportedNetwork {
+            image_size: options.image_size,
+            outputs: options.outputs.clone(),
+            ..Default::default()
+        };
+        match self {
+            Self::Onnx => None,
+            Self::Tfjs => Some(Import::Tfjs(network())),
+            Self::Tflite => Some(Import::Tflite(network())),
+            Self::Ncnn => Some(Import::Ncnn(network())),
+            Self::Ctranslate2Whisper => Some(Import::Ctranslate2Whisper),
+            Self::SafetensorsWhisper => Some(Import::SafetensorsWhisper),
+        }
+    }
+
+    /// How many of the files it is made of, from the first, which has `bytes`.
+    fn files(self, bytes: &[u8]) -> Result<usize> {
+        Ok(match self {
+            Self::Tfjs => 1 + opendr_import::tfjs_weight_files(bytes)?.len(),
+            Self::Ncnn => 2,
+            Self::Onnx | Self::Tflite | Self::Ctranslate2Whisper | Self::SafetensorsWhisper => 1,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn content_tells_the_format() {
+        let safetensors = [&2u64.to_le_bytes()[..], b"{}"].concat();
+        let cases: [(&str, &[u8], Format); 6] = [
+            ("a.bin", b"\x1c\0\0\0TFL3rest", Format::Tflite),
+            ("model.bin", b"\x06\0\0\0\x0c\0WhisperSpec\0", Format::Ctranslate2Whisper),
+            ("weights", &safetensors, Format::SafetensorsWhisper),
+            ("a.param", b"7767517\n3 3\n", Format::Ncnn),
+            ("model.json", b" {\"modelTopology\": {}}", Format::Tfjs),
+            ("Net.ONNX", b"\x08\x08", Format::Onnx),
+        ];
+        for (name, bytes, wanted) in cases {
+            assert_eq!(Format::of(name, bytes).ok(), Some(wanted), "{name}");
+        }
+        assert!(Format::of("net.pth", b"PK\x03\x04").is_err());
+    }
+}
