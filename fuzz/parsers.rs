@@ -11,12 +11,13 @@ use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 pub type Parser = fn(&[u8]);
 
 /// Every parser by the name of its target and corpus.
-pub const PARSERS: [(&str, Parser); 26] = [
+pub const PARSERS: [(&str, Parser); 27] = [
     ("manifest_json", manifest_json),
     ("tfjs_json", tfjs_json),
     ("tflite", tflite),
     ("ncnn", ncnn),
     ("ctranslate2", ctranslate2),
+    ("safetensors", safetensors),
     ("card_toml", card_toml),
     ("picture", picture),
     ("target_json", target_json),
@@ -75,6 +76,17 @@ fn ncnn(bytes: &[u8]) {
 
 fn ctranslate2(bytes: &[u8]) {
     if let Ok(networks) = opendr_import::whisper_from_ctranslate2(bytes) {
+        assert!(!networks.encoder.is_empty() && !networks.decoder.is_empty());
+    }
+}
+
+fn safetensors(bytes: &[u8]) {
+    if let Ok(file) = opendr_import::SafetensorsFile::read(bytes) {
+        for tensor in file.floats() {
+            assert_eq!(tensor.float_type.numbers(tensor.bytes).len(), tensor.dims.iter().product::<usize>());
+        }
+    }
+    if let Ok(networks) = opendr_import::whisper_from_safetensors(bytes) {
         assert!(!networks.encoder.is_empty() && !networks.decoder.is_empty());
     }
 }

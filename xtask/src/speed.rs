@@ -11,13 +11,13 @@ pub fn write_speed(model: &str, report: &Value) -> Result<()> {
     let (learner, variant) = model.split_once('/').ok_or_else(|| format!("{model} has no variant"))?;
     let path = root().join(format!("models/{learner}.toml"));
     let card = fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let changed = with_speed(&card, variant, &speed_of(report)?)
+    let changed = with_speed(&card, variant, &speed_of(report, &processor()?)?)
         .ok_or_else(|| format!("{} has no licence of {variant} to write after", path.display()))?;
     fs::write(&path, changed).map_err(|error| format!("{}: {error}", path.display()))
 }
 
-/// `speed = {...}` of a report.
-fn speed_of(report: &Value) -> Result<String> {
+/// `speed = {...}` of a report, measured on `processor`.
+fn speed_of(report: &Value, processor: &str) -> Result<String> {
     let number = |value: &Value| value.as_f64().ok_or_else(|| "a report without its numbers".to_owned());
     let rounded = |value: f64| match value {
         value if value >= 100.0 => format!("{value:.0}"),
@@ -39,8 +39,16 @@ fn speed_of(report: &Value) -> Result<String> {
         _ => String::new(),
     };
     Ok(format!(
-        "speed = {{ {rate}, p50_ms = {p50}, peak_mb = {peak:.0}, on = \"2 cores of an AMD EPYC, {runtime}{size}\" }}"
+        "speed = {{ {rate}, p50_ms = {p50}, peak_mb = {peak:.0}, on = \"2 cores of {processor}, {runtime}{size}\" }}"
     ))
+}
+
+/// What the kernel calls the processor, without trade marks, e.g. `Intel Xeon Processor`.
+fn processor() -> Result<String> {
+    let text = fs::read_to_string("/proc/cpuinfo").map_err(|error| format!("/proc/cpuinfo: {error}"))?;
+    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    let (_, name) = name.ok_or("/proc/cpuinfo names no processor")?;
+    Ok(name.replace("(R)", "").replace("(TM)", "").split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 /// The card with `speed` as the line of its variant.
@@ -81,14 +89,14 @@ mod tests {
             "runtime": "ONNX Runtime 1.31.1 (/x.so), cpu, 2 threads", "frames_per_second": 25.04, "p50_ms": { "total": 40.126 },
             "peak_memory_mb": 95.4, "picture": { "source": "s", "width": 1920, "height": 1080 },
         });
-        let on = "on = \"2 cores of an AMD EPYC, ONNX Runtime 1.31.1, 1920x1080\"";
+        let on = "on = \"2 cores of a Z80, ONNX Runtime 1.31.1, 1920x1080\"";
         assert_eq!(
-            speed_of(&report).unwrap(),
+            speed_of(&report, "a Z80").unwrap(),
             format!("speed = {{ fps = 25.0, p50_ms = 40.1, peak_mb = 95, {on} }}")
         );
         report["real_time_factor"] = json!(0.0561);
-        assert!(speed_of(&report).unwrap().starts_with("speed = { real_time_factor = 0.0561, "));
+        assert!(speed_of(&report, "a Z80").unwrap().starts_with("speed = { real_time_factor = 0.0561, "));
         report["peak_memory_mb"] = Value::Null;
-        assert!(speed_of(&report).is_err());
+        assert!(speed_of(&report, "a Z80").is_err());
     }
 }

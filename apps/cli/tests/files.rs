@@ -58,3 +58,29 @@ fn what_is_none_is_told_and_the_rest_goes_on() {
     let drawn = place.run(["infer", LEARNER, "1.csv", "--out", "seen.png"]).ends_with(12);
     assert!(drawn.stderr.contains("--out draws on pictures"), "{}", drawn.stderr);
 }
+
+#[test]
+fn a_bare_network_becomes_a_container_that_its_learner_takes() {
+    let place = Place::new();
+    place.write("1.csv", series());
+    place.write("names.txt", "healthy\n\n ill \n");
+    place.run(["export", LEARNER, "--output", "net.onnx"]).ends_with(0);
+    let import = ["import", LEARNER, "net.onnx", "--output", "mine", "--recurrent-unit", "64"];
+    place.run(import.into_iter().chain(["--classes", "names.txt"])).ends_with(0);
+    let answer = |more: &[&str]| {
+        let line = ["infer", LEARNER, "1.csv", "--json"].into_iter().chain(more.iter().copied());
+        place.run(line).ends_with(0).lines().remove(0)["outputs"]["category"].clone()
+    };
+    let (wanted, own) = (answer(&[]), answer(&["--model", "mine"]));
+    assert_eq!(own["confidence"], wanted["confidence"]);
+    assert!(["healthy", "ill"].iter().any(|name| own.to_string().contains(name)), "{own}");
+    // What another learner does not take replaces nothing.
+    let refused = place.run(["import", "matchboxnet", "net.onnx", "--output", "mine"]);
+    assert!(refused.stderr.contains("matchboxnet does not take this model"), "{}", refused.stderr);
+    refused.ends_with(17);
+    assert_eq!(answer(&["--model", "mine"]), own);
+    place.write("notes.txt", "no model");
+    let unknown = place.run(["import", LEARNER, "notes.txt", "--output", "other"]).ends_with(18);
+    assert!(unknown.stderr.contains("no known format"), "{}", unknown.stderr);
+    assert!(!place.path("other").exists());
+}

@@ -1129,6 +1129,51 @@ static inline opendr_status opendr_infer_seq2seq_nms(const opendr_learner *learn
 }
 
 /*
+ * GemLearner: Finds objects by a colour and an infrared camera and tells which of them to trust; it trains.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.3): Detections below this score are dropped. OpenDR's default of 0.7 is for the scores of DETR.
+ *   iou_threshold (a float 0..=1, may change while it runs, default 0.45): Boxes of one class that overlap more than this (intersection over union) are one object.
+ *   max_detections (an int 1..=1000, may change while it runs, default 100): At most this many boxes a pair of pictures.
+ *
+ * Inputs:
+ *   colour (Image): The picture in colour. Boxes are in its pixels.
+ *   infrared (Image): The picture of the infrared sensor (or of another, as in training), of the same view: sizes may differ, what it shows at a share of its width and height may not.
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList): The objects, in pixels of the picture in colour.
+ *   sensors (Category): How much each sensor counted, of sum one: class 0 is colour, 1 infrared (OpenDR's `weight1` and `weight2`).
+ */
+static inline opendr_status opendr_load_gem(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("gem", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_gem(const opendr_learner *learner,
+    const opendr_image *colour,
+    const opendr_image *infrared,
+    opendr_bounding_box_list **boxes,
+    opendr_category **sensors) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "colour";
+    inputs_[0].value = (const opendr_value *)colour;
+    inputs_[1].name = "infrared";
+    inputs_[1].value = (const opendr_value *)infrared;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "sensors";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 2);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (sensors != NULL) *sensors = (opendr_category *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
  * VoxelObjectDetection3DLearner: PointPillars finds boxes in the scan of a lidar; it trains on classes of your own.
  *
  * Parameters:
@@ -2281,6 +2326,7 @@ static inline opendr_status opendr_infer_bodypix(const opendr_learner *learner,
  *   speckle_window_size (an int 0..=1000000 px, may change while it runs, default 100): Islands of at most so many pixels are forgotten.
  *   speckle_range (a float 0..=1000 px, may change while it runs, default 1): Neighbours belong to one island where they differ by at most so much.
  *   fill (a bool, may change while it runs, default false): Whether holes are filled from the background in their row.
+ *   shrink (an int 1..=16 px, may change while it runs, default 1): Squares of as many pixels along each side are matched as one: faster, coarser.
  *   focal_length (a float 0..=1000000 px, may change while it runs, default 0): Focal length of the rectified pair. Depths need it.
  *   baseline (a float 0..=1000 m, may change while it runs, default 0): Between the cameras. Depths need it.
  *   disparity_offset (a float -10000..=10000 px, may change while it runs, default 0): How much further right the right principal point lies (Middlebury's doffs).
@@ -2612,6 +2658,82 @@ static inline opendr_status opendr_infer_co_st_gcn(const opendr_learner *learner
 }
 
 /*
+ * X3DLearner: X3D tells what persons do in a clip; it trains.
+ *
+ * Parameters:
+ *   backbone (a str, one of s, xs, m, l, default s): Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+ *   num_classes (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   num_frames (an int 1..=256, default none): Frames of a clip, taken evenly from it. None: as the backbone has.
+ *   side (an int 32..=1024 px, default none): Pixels of a side of a frame. None: as the backbone has.
+ *   width (a float 0.1..=8, default 1): Factor on the channels.
+ *   depth (a float 0.1..=8, default none): Factor on the number of blocks. None: as the backbone has.
+ *
+ * Inputs:
+ *   video (Video)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_x3d(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("x3d", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_x3d(const opendr_learner *learner,
+    const opendr_video *video,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "video";
+    inputs_[0].value = (const opendr_value *)video;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * CoX3DLearner: CoX3D tells after every picture of a video what persons do; it trains.
+ *
+ * Parameters:
+ *   backbone (a str, one of s, xs, m, l, default s): Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+ *   num_classes (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *   temporal_window_size (an int 1..=256, default none): Frames that an answer is averaged over. None: as the backbone has.
+ *   side (an int 32..=1024 px, default none): Pixels of a side of a frame. None: as the backbone has.
+ *   width (a float 0.1..=8, default 1): Factor on the channels.
+ *   depth (a float 0.1..=8, default none): Factor on the number of blocks. None: as the backbone has.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_co_x3d(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("co_x3d", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_co_x3d(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * AudiovisualEmotionLearner: Tells an emotion by the voice and the face; it trains.
  *
  * Parameters:
@@ -2790,6 +2912,43 @@ static inline opendr_status opendr_load_edge_speech_nets(const char *path, const
 }
 
 static inline opendr_status opendr_infer_edge_speech_nets(const opendr_learner *learner,
+    const opendr_audio *audio,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "audio";
+    inputs_[0].value = (const opendr_value *)audio;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * QuadraticSelfOnnLearner: Two layers of quadratic neurons tell which of a few words was spoken.
+ *
+ * Parameters:
+ *   expansion_order (an int 1..=9, default 3): Up to which power neurons take their input, in the network that is trained; a loaded model has its own.
+ *   output_classes_n (an int 2..=10000, default none): Classes. None: as many as the data name (in OpenDR 20, whatever the data).
+ *   preprocess_to_mfcc (a bool, default true): Whether cepstra are made of the input; unset, it is a Timeseries of cepstra already, as many a frame as the network takes.
+ *   sample_rate (an int 4000..=384000 Hz, default 16000): Samples a second of the sound.
+ *   voice_activity (a str, default none): A container of `silero_vad`: seconds of a stream in which nobody speaks are then not answered, which is the wake-word mode. None: every second is answered.
+ *
+ * Inputs:
+ *   audio (Audio): What was heard; a Timeseries of one feature is taken to be at the learner's sample rate.
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_quadratic_self_onn(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("quadratic_self_onn", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_quadratic_self_onn(const opendr_learner *learner,
     const opendr_audio *audio,
     opendr_category **category) {
     opendr_input inputs_[1];

@@ -1,18 +1,22 @@
-//! `whisper_to_onnx model.bin FOLDER`: turns a Whisper that CTranslate2 converted into `encoder.onnx` and `decoder.onnx`.
+//! `whisper_to_onnx model.bin|model.safetensors FOLDER`: turns a Whisper that CTranslate2 converted or transformers saved into
+//! `encoder.onnx` and `decoder.onnx`.
 
 use std::process::ExitCode;
 
-use opendr_import::whisper_from_ctranslate2;
+use opendr_import::{SafetensorsFile, whisper_from_ctranslate2, whisper_from_safetensors};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [model, folder] = arguments.as_slice() else {
-        eprintln!("usage: whisper_to_onnx model.bin FOLDER");
+        eprintln!("usage: whisper_to_onnx model.bin|model.safetensors FOLDER");
         return ExitCode::from(2);
     };
     let folder = std::path::Path::new(folder);
     let written = std::fs::read(model).map_err(Into::into).and_then(|model| {
-        let networks = whisper_from_ctranslate2(&model)?;
+        let networks = match SafetensorsFile::is_start(&model) {
+            true => whisper_from_safetensors(&model)?,
+            false => whisper_from_ctranslate2(&model)?,
+        };
         std::fs::write(folder.join("encoder.onnx"), networks.encoder)?;
         std::fs::write(folder.join("decoder.onnx"), networks.decoder)?;
         Ok(())

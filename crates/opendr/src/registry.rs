@@ -4,6 +4,7 @@ use std::sync::OnceLock;
 
 use opendr_engine::learner::Registry;
 use opendr_engine::learners;
+use opendr_perception::activity_recognition::{CoX3d, X3d};
 use opendr_perception::ambiguity_measure::AmbiguityMeasure;
 use opendr_perception::binary_high_resolution::HighResolutionPatches;
 use opendr_perception::compressive_learning::MultilinearCompressive;
@@ -31,7 +32,7 @@ use opendr_perception::pose_estimation::{
 };
 use opendr_perception::semantic_segmentation::{Bisenet, Deeplab, SelfieSegmentation, TiledSegmentation};
 use opendr_perception::skeleton_based_action_recognition::{CoStGcn, SpatioTemporalGcn};
-use opendr_perception::speech_recognition::{DsCnn, EdgeSpeechNets, MatchboxNet};
+use opendr_perception::speech_recognition::{DsCnn, EdgeSpeechNets, MatchboxNet, QuadraticSelfOnn};
 use opendr_perception::speech_transcription::Whisper;
 use opendr_perception::stereo_matching::SemiGlobalMatching;
 use opendr_perception::voice_activity_detection::SileroVad;
@@ -88,11 +89,14 @@ pub fn registry() -> &'static Registry {
             MultilinearCompressive,
             SpatioTemporalGcn,
             CoStGcn,
+            X3d,
+            CoX3d,
             AudiovisualEmotion,
             RgbdHandGesture,
             GatedRecurrentUnit,
             AttentionNeuralBagOfFeature,
             EdgeSpeechNets,
+            QuadraticSelfOnn,
             MatchboxNet,
             DsCnn,
             SileroVad,

@@ -31,8 +31,13 @@ fn main() -> Result<()> {
         Ok(StickFigures(open(&dataset, &options, &Problems::strict())?))
     };
     let (training, test) = (part("jhmdb_GT_train_1")?, part("jhmdb_GT_test_1")?);
-    let params =
-        X3dParams { frames: Some(8), side: Some(48), width: 0.67, depth: Some(0.5), ..Default::default() };
+    let params = X3dParams {
+        num_frames: Some(8),
+        side: Some(48),
+        width: 0.67,
+        depth: Some(0.5),
+        ..Default::default()
+    };
     let defaults = X3dFitParams::default();
     let fit_params = X3dFitParams {
         dropout: 0.3,

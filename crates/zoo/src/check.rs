@@ -78,7 +78,9 @@ fn check_imports(variant: &Variant) -> Result<()> {
             Import::Tfjs(_) => ensure(count >= 2, || "a TensorFlow.js model has a JSON and weights".into())?,
             Import::Tflite(_) => ensure(count == 1, || "a TensorFlow Lite model is one file".into())?,
             Import::Ncnn(_) => ensure(count == 2, || "an ncnn model has layers and weights".into())?,
-            Import::Ctranslate2Whisper | Import::SafetensorsWhisper => ensure(count >= 1, || "no files".into())?,
+            Import::Ctranslate2Whisper | Import::SafetensorsWhisper => {
+                ensure(count >= 1, || "no files".into())?
+            }
         }
     }
     Ok(())

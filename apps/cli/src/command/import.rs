@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::model::Manifest;
-use opendr::target::Classes;
 use opendr::zoo::{ImportOptions, import_files};
 use opendr::{Result, ResultExt};
 
@@ -92,7 +91,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn image_size(text: &str) -> Result<(usize, usize), String> {
-    let size = text.split_once('x').and_then(|(height, width)| Some((height.parse().ok()?, width.parse().ok()?)));
+    let size =
+        text.split_once('x').and_then(|(height, width)| Some((height.parse().ok()?, width.parse().ok()?)));
     size.filter(|(height, width)| *height > 0 && *width > 0)
         .ok_or_else(|| format!("{text:?} is no size; give e.g. 256x320"))
 }

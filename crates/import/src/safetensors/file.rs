@@ -88,7 +88,12 @@ impl<'a> SafetensorsFile<'a> {
         self.tensors.iter().filter_map(|(name, (entry, float_type))| self.tensor(name, entry, (*float_type)?))
     }
 
-    fn tensor<'s>(&'s self, name: &'s str, entry: &'s Entry, float_type: FloatType) -> Option<FloatTensor<'s>> {
+    fn tensor<'s>(
+        &'s self,
+        name: &'s str,
+        entry: &'s Entry,
+        float_type: FloatType,
+    ) -> Option<FloatTensor<'s>> {
         let [start, end] = entry.data_offsets;
         Some(FloatTensor { name, dims: &entry.shape, float_type, bytes: self.data.get(start..end)? })
     }

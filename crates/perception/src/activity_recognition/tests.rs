@@ -20,7 +20,13 @@ const SIDE: usize = 32;
 const FRAMES: usize = 4;
 
 fn params() -> X3dParams {
-    X3dParams { frames: Some(FRAMES), side: Some(SIDE), width: 0.34, depth: Some(0.4), ..Default::default() }
+    X3dParams {
+        num_frames: Some(FRAMES),
+        side: Some(SIDE),
+        width: 0.34,
+        depth: Some(0.4),
+        ..Default::default()
+    }
 }
 
 fn objective() -> ActivityObjective {

@@ -22,24 +22,25 @@ struct Extent {
 }
 
 impl OwnerMap {
-    /// A map of `[width, height]` pixels that `owner` fills, given x and y.
-    pub fn fill(&mut self, size @ [width, height]: [usize; 2], mut owner: impl FnMut(usize, usize) -> u8) {
+    /// A map of `[width, height]` pixels of which `fill_row` fills a row of zeros, given its number.
+    pub fn fill(&mut self, size @ [width, height]: [usize; 2], mut fill_row: impl FnMut(usize, &mut [u8])) {
         self.size = size;
         let nothing = Extent { left: width, top: height, right: 0, bottom: 0, pixels: 0 };
         self.extents.clear();
         self.extents.resize(usize::from(u8::MAX) + 1, nothing);
         self.owners.clear();
-        self.owners.reserve(width * height);
-        for y in 0..height {
-            for x in 0..width {
-                let object = owner(x, y);
-                self.owners.push(object);
-                if object > 0 {
-                    let extent = &mut self.extents[usize::from(object)];
+        self.owners.resize(width * height, 0);
+        for (y, row) in self.owners.chunks_exact_mut(width.max(1)).enumerate() {
+            fill_row(y, row);
+            let mut x = 0;
+            for run in row.chunk_by(|one, next| one == next) {
+                if let Some(object) = run.first().filter(|object| **object > 0) {
+                    let extent = &mut self.extents[usize::from(*object)];
                     (extent.left, extent.top) = (extent.left.min(x), extent.top.min(y));
-                    (extent.right, extent.bottom) = (extent.right.max(x), extent.bottom.max(y));
-                    extent.pixels += 1;
+                    (extent.right, extent.bottom) = (extent.right.max(x + run.len() - 1), y);
+                    extent.pixels += run.len() as u64;
                 }
+                x += run.len();
             }
         }
     }
@@ -112,7 +113,7 @@ mod tests {
             picture.concat().bytes().map(|byte| if byte == b'.' { 0 } else { byte - b'0' }).collect();
         let mut map = OwnerMap::default();
         for _ in 0..2 {
-            map.fill([4, 4], |x, y| pixels[y * 4 + x]);
+            map.fill([4, 4], |y, row| row.copy_from_slice(&pixels[y * 4..][..4]));
             for object in [1, 2] {
                 let found = map.bounding_box(object, Name::Index(0), 0.5).unwrap().unwrap();
                 let Segmentation::Rle(rle) = &found.segment.as_ref().unwrap().segmentation else { panic!() };
@@ -124,11 +125,11 @@ mod tests {
         let corner = map.bounding_box(1, Name::Index(0), 0.5).unwrap().unwrap();
         assert_eq!(corner.corners(), [2.0, 0.0, 4.0, 3.0]);
         assert!(map.bounding_box(3, Name::Index(0), 0.5).unwrap().is_none());
-        map.fill([2, 3], |_, _| 9);
+        map.fill([2, 3], |_, row| row.fill(9));
         let whole = map.bounding_box(9, Name::Index(0), 0.5).unwrap().unwrap();
         let Segmentation::Rle(rle) = &whole.segment.as_ref().unwrap().segmentation else { panic!() };
         assert_eq!(rle.counts(), [0, 6]);
-        map.fill([4, 4], |_, _| 0);
+        map.fill([4, 4], |_, _| ());
         assert!(map.bounding_box(1, Name::Index(0), 0.5).unwrap().is_none());
     }
 }

@@ -127,8 +127,8 @@ impl Stage {
                 (&from.re[begin..][..stride], &from.im[begin..][..stride])
             };
             match radix {
-                2 => self.butterfly_2(group, [0, 1].map(input), to_re, to_im),
-                4 => self.butterfly_4(group, [0, 1, 2, 3].map(input), to_re, to_im),
+                2 => self.butterfly_2(group, [input(0), input(1)], to_re, to_im),
+                4 => self.butterfly_4(group, [input(0), input(1), input(2), input(3)], to_re, to_im),
                 _ => self.butterfly(group, input, to_re, to_im),
             }
         }
@@ -173,7 +173,7 @@ impl Stage {
     }
 
     fn butterfly_4(&self, group: usize, input: [(&[f32], &[f32]); 4], to_re: &mut [f32], to_im: &mut [f32]) {
-        let turns = [1, 2, 3].map(|part| self.twiddle(group, part));
+        let turns = [self.twiddle(group, 1), self.twiddle(group, 2), self.twiddle(group, 3)];
         let [(a_re, a_im), (b_re, b_im), (c_re, c_im), (d_re, d_im)] = input;
         let (low, high) = to_re.split_at_mut(2 * self.stride);
         let ((re_0, re_1), (re_2, re_3)) = (low.split_at_mut(self.stride), high.split_at_mut(self.stride));
@@ -218,7 +218,9 @@ impl Stage {
 
 /// Four parts of `count` numbers each.
 fn quarters(plane: &[f32], count: usize) -> [&[f32]; 4] {
-    [0, 1, 2, 3].map(|part| &plane[part * count..][..count])
+    let (low, high) = plane[..4 * count].split_at(2 * count);
+    let ((a, b), (c, d)) = (low.split_at(count), high.split_at(count));
+    [a, b, c, d]
 }
 
 /// A transform of four points, all but the first turned after it.

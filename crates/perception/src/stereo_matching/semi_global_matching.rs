@@ -42,6 +42,9 @@ pub struct SemiGlobalMatchingParams {
     /// Whether holes are filled from the background in their row.
     #[param(default = false, live)]
     pub fill: bool,
+    /// Squares of as many pixels along each side are matched as one: faster, coarser.
+    #[param(default = 1, range = 1..=16, unit = "px", live)]
+    pub shrink: usize,
     /// Focal length of the rectified pair. Depths need it.
     #[param(default = 0.0, range = 0.0..=1e6, unit = "px", live)]
     pub focal_length: f32,
@@ -181,6 +184,7 @@ impl SemiGlobalMatching {
             speckle_size: params.speckle_window_size,
             speckle_range: params.speckle_range,
             fill: params.fill,
+            shrink: params.shrink,
         }
     }
 

@@ -142,3 +142,26 @@ fn metres_follow_from_disparities() {
     assert!(camera.points(&depths, [3, 2], 50.0, None).is_err());
     assert!(camera.points(&[], [0, 0], 50.0, None).unwrap().is_empty());
 }
+
+#[test]
+fn a_pair_shrunk_is_matched_as_a_small_one() {
+    let small = pair();
+    let [width, height] = SIZE;
+    let large = small.each_ref().map(|image| {
+        let opendr_engine::data::Pixels::U8(levels) = image.pixels() else { panic!() };
+        let at = |x: usize, y: usize| levels[y * width + x];
+        grey(2 * width + 1, 2 * height, |x, y| at((x / 2).min(width - 1), y / 2))
+    });
+    let options =
+        StereoOptions { disparities: 32, speckle_size: 25, speckle_range: 0.5, ..Default::default() };
+    let wanted = disparities(&small, &options);
+    let shrunk =
+        StereoOptions { disparities: 64, speckle_size: 100, speckle_range: 1.0, shrink: 2, ..options };
+    let map = disparities(&large, &shrunk);
+    for (at, found) in map.iter().enumerate() {
+        let (x, y) = (at % (2 * width + 1), at / (2 * width + 1));
+        assert_eq!(*found, 2.0 * wanted[y / 2 * width + (x / 2).min(width - 1)], "{x} {y}");
+    }
+    let whole = StereoOptions { shrink: 1000, ..options };
+    assert!(disparities(&small, &whole).iter().all(|found| *found == 0.0));
+}

@@ -6,7 +6,7 @@ use opendr::data::{
     Audio, Image, Layout, PixelFormat, Pixels, PointCloud, SkeletonSequence, Timeseries, Vector, Video,
 };
 use opendr::learner::Port;
-use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList};
+use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap};
 use opendr::{Error, Result, Value, ValueType};
 use serde_json::{Map, Value as Json};
 
@@ -18,6 +18,8 @@ const FRAMES: usize = 32;
 const CLIP_FRAMES: usize = 16;
 /// Boxes in a frame.
 const BOXES: usize = 25;
+/// Side of a map of values.
+const MAP_SIDE: usize = 224;
 /// Rings of a cloud of points, and points in each.
 const RINGS: usize = 64;
 const RING_POINTS: usize = 1800;
@@ -62,6 +64,7 @@ pub fn values(port: &Port, size: [usize; 2], inputs: &Map<String, Json>) -> Resu
         }
         ValueType::BoundingBoxList => (0..FRAMES).map(|frame| boxes(frame).into()).collect(),
         ValueType::BoundingBox3DList => (0..FRAMES).map(|frame| boxes_3d(frame).into()).collect(),
+        ValueType::Heatmap => vec![map(size(0, MAP_SIDE), size(1, MAP_SIDE)).into()],
         other => {
             let name = other.name();
             return Err(Error::unsupported(format!(
@@ -111,6 +114,16 @@ fn cloud(channels: usize) -> Result<PointCloud> {
         }
     }
     PointCloud::new(points, [RINGS * RING_POINTS, channels])
+}
+
+/// Values with many peaks, no two of one height.
+fn map(rows: usize, columns: usize) -> Heatmap {
+    let mut map = Heatmap::default();
+    for (at, value) in map.scores_mut(&[rows, columns]).iter_mut().enumerate() {
+        let [x, y] = [at % columns, at / columns].map(|place| place as f32);
+        *value = (x / 7.0).sin() * (y / 9.0).cos() + x * 1e-3 + y * 1e-4;
+    }
+    map
 }
 
 /// Boxes that go to the right, each at its own pace.
@@ -165,6 +178,7 @@ mod tests {
         assert!(
             matches!(one(ValueType::PointCloud), Value::PointCloud(cloud) if cloud.as_slice().len() == 115_200 * 4)
         );
+        assert!(matches!(one(ValueType::Heatmap), Value::Heatmap(map) if map.shape() == [224, 224]));
         assert!(values(&port("rl_target", ValueType::RlTarget), [64, 32], inputs).is_err());
     }
 

@@ -1,5 +1,6 @@
 """Perception: a module a task."""
 
+from opendr.perception import activity_recognition as activity_recognition
 from opendr.perception import ambiguity_measure as ambiguity_measure
 from opendr.perception import binary_high_resolution as binary_high_resolution
 from opendr.perception import compressive_learning as compressive_learning

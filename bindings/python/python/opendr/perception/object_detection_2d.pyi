@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
 from opendr._native_learner import NativeLearner, PathLike
 from opendr.engine.data import Image
-from opendr.engine.target import BoundingBoxList
+from opendr.engine.target import BoundingBoxList, Category
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 
@@ -380,3 +380,91 @@ class Seq2SeqNMSLearner(NativeLearner):
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., variant: Literal['medium', 'light', 'full'] = ..., dropout: float = ..., classes: list[Any] = ..., nms_gt_iou: float = ..., positive_weight: float = ..., detector: Optional[str] = ..., versions: int = ..., iou_filtering: float = ..., max_dt_boxes: int = ..., top_k: int = ..., app_feats: Any = ..., fmod_map_type: Any = ..., fmod_map_bin: Any = ..., app_input_dim: Any = ...) -> None: ...
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], detections: BoundingBoxList, *, threshold: float = ..., iou_filtering: float = ..., max_dt_boxes: int = ..., top_k: int = ..., app_feats: Any = ..., fmod_map_type: Any = ..., fmod_map_bin: Any = ..., app_input_dim: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> BoundingBoxList: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., variant: Literal['medium', 'light', 'full'] = ..., dropout: float = ..., classes: list[Any] = ..., nms_gt_iou: float = ..., positive_weight: float = ..., detector: Optional[str] = ..., versions: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+
+class GemLearnerOutputs(NamedTuple):
+    boxes: BoundingBoxList
+    sensors: Category
+
+class GemLearner(NativeLearner):
+    """Finds objects by a colour and an infrared camera and tells which of them to trust; it trains.
+
+    Task: object_detection_2d. ``infer`` takes:
+
+        colour: Image. The picture in colour. Boxes are in its pixels.
+        infrared: Image. The picture of the infrared sensor (or of another, as in training), of the same view:
+            sizes may differ, what it shows at a share of its width and height may not.
+
+    and gives: BoundingBoxList, Category.
+
+    Args:
+        threshold: Detections below this score are dropped. OpenDR's default of 0.7 is for the scores of DETR.
+            (default 0.3; 0 to 1; may change while running, also for one call of infer)
+        iou_threshold: Boxes of one class that overlap more than this (intersection over union) are one object.
+            (default 0.45; 0 to 1; may change while running, also for one call of infer)
+        max_detections: At most this many boxes a pair of pictures. (default 100; 1 to 1000; may change while
+            running, also for one call of infer)
+        others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
+
+    Parameters of ``fit``, for one call or, given here, for all of them:
+        backbone: The network that sees each sensor, twice: they share no weights. (default 'mobilenet0.75'; one
+            of 'mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25')
+        img_size: Side of the network's inputs, a multiple of 32. (default 320; 96 to 1024 px)
+        fitting: How pictures are brought to that size. (default 'stretch'; one of 'stretch', 'letterbox')
+        classes: The classes to find, by their names in the data set; all of it when empty. (default [])
+        stride: Pixels of the input from one cell of the finest level to the next, 8 or 16. (default 8; 8 to 16
+            px)
+        aspect_ratios: Aspect ratios (width over height) of the anchors. (default [0.4, 1.0, 2.0]; 0.05 to 20)
+        anchor_scales: Sides of the anchors of each level, in its strides. (default [3.0, 4.25]; 0.5 to 32)
+        drop_sensor: The share of samples of which one sensor, at random, sees nothing, so that either may fail.
+            (default 0.3; 0 to 1)
+        augment: Whether pictures are mirrored and moved at random, both alike. (default True)
+        epochs: How often the data set is gone through. (default 120; 1 to 1e+06; in OpenDR iters)
+        max_steps: Optimiser steps after which training ends, whatever the number of epochs; 0 for no limit.
+            (default 0; 0 to 1e+09)
+        batch_size: Samples a batch. (default 8; 1 to 65536)
+        accumulate: Batches whose gradients are added up for one step of the optimiser. (default 1; 1 to 4096; in
+            OpenDR batches_per_iter)
+        lr: Learning rate at its highest. (default 0.001; 0 to 100)
+        optimizer: What turns gradients into steps. (default 'adamw'; one of 'adamw', 'adam', 'sgd', 'rmsprop'; in
+            OpenDR optimizer_name)
+        momentum: Momentum of `sgd` and `rmsprop`. (default 0.9; 0 to 1)
+        weight_decay: Weight decay: decoupled from the gradient in `adamw`, added to it in the others. (default
+            0.0005; 0 to 10)
+        lr_schedule: How the learning rate goes on after the warm-up. (default 'cosine'; one of 'constant',
+            'step', 'cosine', 'linear')
+        warmup_steps: Steps over which the learning rate rises from `warmup_ratio` of itself. (default 100; 0 to
+            1e+08)
+        warmup_ratio: What share of the learning rate the warm-up begins with. (default 0.1; 0 to 1)
+        lr_min: Learning rate at the end of `cosine` and `linear`. (default 0.0; 0 to 100; in OpenDR
+            lr_schedule_eta_min)
+        lr_steps: Epochs at which `step` lowers the learning rate. (default []; in OpenDR drop_after_epoch)
+        lr_gamma: What `step` multiplies the learning rate with. (default 0.1; 0 to 1; in OpenDR lr_decay)
+        grad_clip: Gradients whose norm over all weights is above this are scaled down to it; 0 for no limit.
+            (default 10.0; 0 to 1e+09)
+        ema: Share of itself that the moving average of the weights keeps each step, e.g. 0.999; it is what is
+            validated and saved. 0 for no average. (default 0.0; 0 to 0.999999)
+        early_stop: Validations without a better metric after which training ends; 0 for never. (default 0; 0 to
+            100000)
+        val_after: Epochs between validations. (default 5; 1 to 1e+06)
+        checkpoint_after_iter: Steps between checkpoints; 0 for none but those by the clock. (default 0; 0 to
+            1e+08)
+        checkpoint_minutes: Minutes between checkpoints; 0 for none by the clock. (default 10.0; 0 to 10000 min)
+        checkpoints_kept: Checkpoints that are kept beside the best. (default 2; 1 to 1000)
+        log_after: Steps between lines of the log. (default 10; 1 to 1e+06)
+        num_workers: Threads that read and augment samples. (default 2; 0 to 1024)
+        seed: What first weights, order, augmentation and dropout follow from. (default 0)
+
+    Arguments of OpenDR that are taken and have no effect:
+        model_config_path: no effect: what the model is made of are parameters of fit.
+        dataset_config_path: no effect: the data set says it itself.
+        num_classes: no effect: the classes of the data set are trained.
+        panoptic_segmentation: no effect: it finds boxes alone.
+        temp_path: no effect: what fit writes lies in its output folder.
+        checkpoint_load_iter: no effect: fit goes on from the last checkpoint of its output folder.
+    """
+
+    iou_threshold: float
+    max_detections: int
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, img_size: int = ..., fitting: Literal['stretch', 'letterbox'] = ..., classes: list[Any] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., drop_sensor: float = ..., augment: bool = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., iou_threshold: float = ..., max_detections: int = ..., model_config_path: Any = ..., dataset_config_path: Any = ..., num_classes: Any = ..., panoptic_segmentation: Any = ...) -> None: ...
+    def infer(self, colour: Union[Image, NDArray[Any], str, os.PathLike[str]], infrared: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., iou_threshold: float = ..., max_detections: int = ..., model_config_path: Any = ..., dataset_config_path: Any = ..., num_classes: Any = ..., panoptic_segmentation: Any = ..., temp_path: Any = ..., checkpoint_load_iter: Any = ...) -> GemLearnerOutputs: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., backbone: Literal['mobilenet0.75', 'mobilenet1.0', 'mobilenet0.5', 'mobilenet0.25'] = ..., img_size: int = ..., fitting: Literal['stretch', 'letterbox'] = ..., classes: list[Any] = ..., stride: int = ..., aspect_ratios: list[Any] = ..., anchor_scales: list[Any] = ..., drop_sensor: float = ..., augment: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]

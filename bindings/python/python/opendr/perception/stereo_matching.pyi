@@ -42,6 +42,8 @@ class SemiGlobalMatchingLearner(NativeLearner):
             1000 px; may change while running, also for one call of infer)
         fill: Whether holes are filled from the background in their row. (default False; may change while running,
             also for one call of infer)
+        shrink: Squares of as many pixels along each side are matched as one: faster, coarser. (default 1; 1 to 16
+            px; may change while running, also for one call of infer)
         focal_length: Focal length of the rectified pair. Depths need it. (default 0.0; 0 to 1e+06 px; may change
             while running, also for one call of infer)
         baseline: Between the cameras. Depths need it. (default 0.0; 0 to 1000 m; may change while running, also
@@ -70,6 +72,7 @@ class SemiGlobalMatchingLearner(NativeLearner):
     speckle_window_size: int
     speckle_range: float
     fill: bool
+    shrink: int
     focal_length: float
     baseline: float
     disparity_offset: float
@@ -78,5 +81,5 @@ class SemiGlobalMatchingLearner(NativeLearner):
     min_height: float
     max_height: float
     max_distance: float
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, min_disparity: int = ..., num_disparities: int = ..., p1: int = ..., p2: int = ..., uniqueness_ratio: int = ..., disp12_max_diff: int = ..., speckle_window_size: int = ..., speckle_range: float = ..., fill: bool = ..., focal_length: float = ..., baseline: float = ..., disparity_offset: float = ..., camera_height: float = ..., camera_pitch: float = ..., min_height: float = ..., max_height: float = ..., max_distance: float = ...) -> None: ...
-    def infer(self, left: Union[Image, NDArray[Any], str, os.PathLike[str]], right: Union[Image, NDArray[Any], str, os.PathLike[str]], *, min_disparity: int = ..., num_disparities: int = ..., p1: int = ..., p2: int = ..., uniqueness_ratio: int = ..., disp12_max_diff: int = ..., speckle_window_size: int = ..., speckle_range: float = ..., fill: bool = ..., focal_length: float = ..., baseline: float = ..., disparity_offset: float = ..., camera_height: float = ..., camera_pitch: float = ..., min_height: float = ..., max_height: float = ..., max_distance: float = ...) -> SemiGlobalMatchingLearnerOutputs: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, min_disparity: int = ..., num_disparities: int = ..., p1: int = ..., p2: int = ..., uniqueness_ratio: int = ..., disp12_max_diff: int = ..., speckle_window_size: int = ..., speckle_range: float = ..., fill: bool = ..., shrink: int = ..., focal_length: float = ..., baseline: float = ..., disparity_offset: float = ..., camera_height: float = ..., camera_pitch: float = ..., min_height: float = ..., max_height: float = ..., max_distance: float = ...) -> None: ...
+    def infer(self, left: Union[Image, NDArray[Any], str, os.PathLike[str]], right: Union[Image, NDArray[Any], str, os.PathLike[str]], *, min_disparity: int = ..., num_disparities: int = ..., p1: int = ..., p2: int = ..., uniqueness_ratio: int = ..., disp12_max_diff: int = ..., speckle_window_size: int = ..., speckle_range: float = ..., fill: bool = ..., shrink: int = ..., focal_length: float = ..., baseline: float = ..., disparity_offset: float = ..., camera_height: float = ..., camera_pitch: float = ..., min_height: float = ..., max_height: float = ..., max_distance: float = ...) -> SemiGlobalMatchingLearnerOutputs: ...

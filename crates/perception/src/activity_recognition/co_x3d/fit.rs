@@ -75,7 +75,7 @@ pub fn co_x3d_from(model: &Model) -> Result<Container> {
     let params = CoX3dParams {
         backbone: clip_wise.backbone,
         num_classes: clip_wise.num_classes,
-        temporal_window_size: clip_wise.frames,
+        temporal_window_size: clip_wise.num_frames,
         side: clip_wise.side,
         width: clip_wise.width,
         depth: clip_wise.depth,

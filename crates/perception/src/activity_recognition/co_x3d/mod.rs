@@ -32,12 +32,12 @@ use crate::clip_frames::ClipFrames;
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct CoX3dParams {
-    /// ClipFrames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+    /// Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
     pub backbone: Backbone,
     /// Classes. None: as many as the data name.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// ClipFrames that an answer is averaged over. None: as the backbone has.
+    /// Frames that an answer is averaged over. None: as the backbone has.
     #[param(range = 1..=256)]
     pub temporal_window_size: Option<usize>,
     /// Pixels of a side of a frame. None: as the backbone has.

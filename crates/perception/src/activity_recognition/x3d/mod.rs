@@ -25,14 +25,14 @@ use crate::clip_frames::ClipFrames;
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
 pub struct X3dParams {
-    /// ClipFrames of a clip, pixels of a frame and depth of the network, where nothing else is given.
+    /// Frames of a clip, pixels of a frame and depth of the network, where nothing else is given.
     pub backbone: Backbone,
     /// Classes. None: as many as the data name.
     #[param(range = 2..=10_000)]
     pub num_classes: Option<usize>,
-    /// ClipFrames of a clip, taken evenly from it. None: as the backbone has.
+    /// Frames of a clip, taken evenly from it. None: as the backbone has.
     #[param(range = 1..=256)]
-    pub frames: Option<usize>,
+    pub num_frames: Option<usize>,
     /// Pixels of a side of a frame. None: as the backbone has.
     #[param(range = 32..=1024, unit = "px")]
     pub side: Option<usize>,
@@ -46,7 +46,7 @@ pub struct X3dParams {
 
 impl X3dParams {
     fn sizes(&self) -> Result<Sizes> {
-        Sizes::new(self.backbone, self.frames, self.side, self.width, self.depth)
+        Sizes::new(self.backbone, self.num_frames, self.side, self.width, self.depth)
     }
 }
 
@@ -89,7 +89,7 @@ impl Learner for X3d {
         let sizes = params.sizes()?;
         if input.dims != [Some(sizes.frames), Some(3), Some(sizes.side), Some(sizes.side)] {
             return Err(Error::invalid_param(format!(
-                "{FILE} takes {input}; backbone, frames and side make [{}, 3, {}, {}]: leave them out",
+                "{FILE} takes {input}; backbone, num_frames and side make [{}, 3, {}, {}]: leave them out",
                 sizes.frames, sizes.side, sizes.side
             )));
         }

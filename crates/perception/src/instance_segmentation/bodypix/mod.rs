@@ -60,7 +60,18 @@ struct Work {
     persons: Vec<Person>,
     /// The owner of each square of [`GRAIN`] pixels of the input; 0 for none.
     squares: Vec<u8>,
+    across: Vec<Across>,
     owners: OwnerMap,
+}
+
+/// Where a column of the picture is in the network's cells.
+#[derive(Debug, Clone, Copy)]
+struct Across {
+    cell: usize,
+    next: usize,
+    /// How far it is to the next.
+    share: f32,
+    square: usize,
 }
 
 /// Distance of the network's cells, pixels of its input.
@@ -126,7 +137,7 @@ impl Learner for BodyPix {
 impl BodyPix {
     /// Shows `each` the persons in a picture, and the map of whose pixels are whose: the first person's have the number 1.
     pub(crate) fn look<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
-        let Work { planes, peaks, persons, squares, owners } = &mut *self.work.take();
+        let Work { planes, peaks, persons, squares, across, owners } = &mut *self.work.take();
         let params = &self.params;
         let size = [image.width(), image.height()];
         let tree = PartTree {
@@ -153,7 +164,7 @@ impl BodyPix {
             let segments = Segments { grid, values: segments, bound: logit(params.mask_threshold) };
             let long_offsets = LongOffsets { grid, stride, values: long_offsets };
             segments.fill_squares(&long_offsets, persons, squares);
-            segments.fill_owners(squares, size, geometry, owners);
+            segments.fill_owners(squares, size, geometry, across, owners);
             Ok(())
         })?;
         Ok(each(owners, persons))
@@ -243,27 +254,46 @@ impl Segments<'_> {
             .any(|row| near(x, self.grid[1]).any(|column| self.at([row, column]) >= self.bound))
     }
 
-    fn fill_owners(&self, squares: &[u8], size: [usize; 2], geometry: &InputGeometry, owners: &mut OwnerMap) {
+    fn fill_owners(
+        &self,
+        squares: &[u8],
+        size: [usize; 2],
+        geometry: &InputGeometry,
+        columns_of: &mut Vec<Across>,
+        owners: &mut OwnerMap,
+    ) {
         let [rows, columns] = self.grid;
         let across = Self::squares(columns);
-        owners.fill(size, |x, y| {
-            // Cells and squares are where pixels of the input have their middles.
-            let [input_x, input_y] =
-                geometry.input_from_image([x as f32 + 0.5, y as f32 + 0.5]).map(|at| (at - 0.5).max(0.0));
-            let (row, down) = cell_of(input_y, rows);
-            let (column, right) = cell_of(input_x, columns);
-            let [next_row, next_column] = [(row + 1).min(rows - 1), (column + 1).min(columns - 1)];
-            let along = |row: usize| {
-                let (from, to) = (self.at([row, column]), self.at([row, next_column]));
-                from + right * (to - from)
-            };
-            let (upper, lower) = (along(row), along(next_row));
-            if upper + down * (lower - upper) >= self.bound {
-                let [square_row, square_column] = [(input_y, rows), (input_x, columns)]
-                    .map(|(at, cells)| ((at / GRAIN as f32).round() as usize).min(Self::squares(cells) - 1));
-                squares[square_row * across + square_column]
-            } else {
-                0
+        // Cells and squares are where pixels of the input have their middles.
+        let middle = |x: usize, y: usize| {
+            geometry.input_from_image([x as f32 + 0.5, y as f32 + 0.5]).map(|at| (at - 0.5).max(0.0))
+        };
+        let square =
+            |at: f32, cells: usize| ((at / GRAIN as f32).round() as usize).min(Self::squares(cells) - 1);
+        columns_of.clear();
+        columns_of.extend((0..size[0]).map(|x| {
+            let [input_x, _] = middle(x, 0);
+            let (cell, share) = cell_of(input_x, columns);
+            Across { cell, next: (cell + 1).min(columns - 1), share, square: square(input_x, columns) }
+        }));
+        owners.fill(size, |y, row| {
+            let [_, input_y] = middle(0, y);
+            let (upper, down) = cell_of(input_y, rows);
+            let [upper, lower] =
+                [upper, (upper + 1).min(rows - 1)].map(|row| &self.values[row * columns..][..columns]);
+            if upper.iter().chain(lower).all(|value| *value < self.bound) {
+                return;
+            }
+            let squares = &squares[square(input_y, rows) * across..][..across];
+            for (owner, at) in row.iter_mut().zip(&*columns_of) {
+                let along = |values: &[f32]| {
+                    let (from, to) = (values[at.cell], values[at.next]);
+                    from + at.share * (to - from)
+                };
+                let (upper, lower) = (along(upper), along(lower));
+                if upper + down * (lower - upper) >= self.bound {
+                    *owner = squares[at.square];
+                }
             }
         });
     }
@@ -305,7 +335,7 @@ mod tests {
         let geometry = InputGeometry { image_size: [33.0, 17.0], scale: [1.0; 2], offset: [0.0; 2] };
         let squares = vec![1; 5 * 9];
         let mut owners = OwnerMap::default();
-        segments.fill_owners(&squares, [33, 17], &geometry, &mut owners);
+        segments.fill_owners(&squares, [33, 17], &geometry, &mut Vec::new(), &mut owners);
         let row: Vec<_> = owners.owners()[..33].to_vec();
         assert!(
             row[..9].iter().all(|owner| *owner == 1) && row[9..].iter().all(|owner| *owner == 0),

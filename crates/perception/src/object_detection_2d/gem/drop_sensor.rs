@@ -1,7 +1,7 @@
 //! Samples of two sensors of which one failed.
 
 use opendr_datasets::augment::{Augment, Others};
-use opendr_engine::data::Image;
+use opendr_engine::data::{Image, Pixels};
 use opendr_engine::dataset::Sample;
 use opendr_engine::{Error, Random, Result, Value};
 
@@ -33,4 +33,12 @@ impl Augment for DropSensor {
 pub(super) fn blank(image: &Image) -> Result<Image> {
     let (width, height) = (image.width(), image.height());
     Image::from_rgb8(vec![0; width * height * 3], width, height)
+}
+
+/// Whether a picture is black throughout.
+pub(super) fn is_blank(image: &Image) -> bool {
+    match image.pixels() {
+        Pixels::U8(levels) => levels.iter().all(|level| *level == 0),
+        _ => false,
+    }
 }

@@ -2,7 +2,8 @@
 //!
 //! O. Mazhar, J. Kober, R. Babuska, GEM: Glare or Gloom, I Can Still See You. End-to-End Multimodal Object Detection, IEEE
 //! Robotics and Automation Letters 2021. A backbone sees each sensor; gates weigh their features by what both see, and their
-//! sum goes on. In training sensors fail at random, so that either may fail later. That fusion is GEM's; the detector behind
+//! sum goes on. In training sensors fail at random, so that either may fail later, and a loss that GEM has not asks the gates to
+//! trust the other one then. That fusion is GEM's; the detector behind
 //! it is our [SSD](super::single_shot_detector), where GEM has DETR: what it finds, and how surely, is an SSD's.
 
 #[cfg(feature = "training")]

@@ -12,7 +12,7 @@ use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 use opendr_vision::Preprocess;
 
-use super::drop_sensor::DropSensor;
+use super::drop_sensor::{DropSensor, is_blank};
 use super::network::GemNetwork;
 use super::{FILE, Gem, WEIGHTS};
 use crate::object_detection_2d::single_shot_detector::loss::DetectionLoss;
@@ -61,11 +61,19 @@ impl Objective for GemObjective {
         let shape = [batch.colour.pictures, 3, height, width];
         let [colour, infrared] = [&batch.colour.images, &batch.infrared]
             .map(|levels| Tensor::from_data(TensorData::new(levels.clone(), shape), device));
-        let (levels, _) = network.forward(colour, infrared);
+        let (levels, shares) = network.forward(colour, infrared);
         let DetectionLoss { scores, offsets } =
             DetectionLoss::new(levels, &batch.colour, self.classes.len(), device);
-        let parts = vec![("cross_entropy_loss", scores.clone()), ("smoothl1_loss", offsets.clone())];
-        Ok(Loss { total: scores + offsets, parts })
+        let working =
+            Tensor::from_data(TensorData::new(batch.working.clone(), [batch.colour.pictures, 2]), device);
+        let failed: f32 = batch.working.iter().sum();
+        let trust = (working * shares.clamp_min(1e-6).log()).sum() / -failed.max(1.0);
+        let parts = vec![
+            ("cross_entropy_loss", scores.clone()),
+            ("smoothl1_loss", offsets.clone()),
+            ("trust_loss", trust.clone()),
+        ];
+        Ok(Loss { total: scores + offsets + trust, parts })
     }
 
     fn container(&self, network: &GemNetwork) -> Result<Container> {
@@ -102,6 +110,8 @@ pub(super) struct PairBatch {
     pub colour: DetectionBatch,
     /// As `colour.images`.
     pub infrared: Vec<f32>,
+    /// Of each pair, 1 for the sensor that alone sees anything; zeros where both do.
+    pub working: Vec<f32>,
 }
 
 impl Collate for PairBatches {
@@ -111,6 +121,7 @@ impl Collate for PairBatches {
         PairBatch {
             colour: self.detection.start(capacity),
             infrared: Vec::with_capacity(capacity * self.preprocess.len()),
+            working: Vec::with_capacity(2 * capacity),
         }
     }
 
@@ -120,12 +131,16 @@ impl Collate for PairBatches {
                 "the sample is not of two pictures; give one in colour, one of the infrared, and boxes (coco_infrared)",
             ));
         };
+        let sees = |value: Option<&Value>| matches!(value, Some(Value::Image(image)) if !is_blank(image));
+        let working = [sees(sample.data.first()), !is_blank(&infrared)];
         let start = batch.infrared.len();
         batch.infrared.resize(start + self.preprocess.len(), 0.0);
         let run = self.preprocess.run_into(infrared.view(), &mut batch.infrared[start..]);
         let added = run.and_then(|_| self.detection.add(&mut batch.colour, sample));
-        if added.is_err() {
-            batch.infrared.truncate(start);
+        match &added {
+            Ok(_) if working[0] != working[1] => batch.working.extend(working.map(f32::from)),
+            Ok(_) => batch.working.extend([0.0; 2]),
+            Err(_) => batch.infrared.truncate(start),
         }
         added
     }

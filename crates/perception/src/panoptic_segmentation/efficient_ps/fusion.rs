@@ -260,7 +260,10 @@ mod tests {
         let size = [things[0].len(), things.len()];
         let owned = pixels(persons);
         let mut owners = OwnerMap::default();
-        owners.fill(size, |x, y| owned[y * size[0] + x] as u8);
+        owners.fill(size, |y, row| {
+            let owned = &owned[y * size[0]..][..size[0]];
+            row.iter_mut().zip(owned).for_each(|(owner, owned)| *owner = *owned as u8);
+        });
         let looks = Looks {
             size,
             things: &pixels(things),
