@@ -11,7 +11,7 @@ import opendr
 import pytest
 from opendr import Source, _opendr
 from opendr._native_learner import _value, native_class
-from opendr.engine.data import Audio, Image, PointCloud, SkeletonSequence, Timeseries, Vector
+from opendr.engine.data import Audio, Image, PointCloud, SkeletonSequence, Timeseries, Vector, Video
 from opendr.engine.learners import BaseLearner, Init, Learner, LearnerRL
 from opendr.engine.target import BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap
 from opendr.perception.object_detection_2d import (
@@ -58,6 +58,7 @@ def inputs(entry, photo):
         "Vector": Vector(noise[:42]),
         "Heatmap": Heatmap(noise[:120].reshape(10, 12)),
         "PointCloud": PointCloud(np.abs(noise[:1200]).reshape(300, 4) * 20),
+        "Video": Video(noise[:6144].reshape(3, 8, 16, 16)),
         "SkeletonSequence": SkeletonSequence(noise[:960].reshape(1, 2, 32, 15, 1)),
     }
     return {port["name"]: kinds.get(port["name"], kinds[port["type"]]) for port in entry["ports"]}

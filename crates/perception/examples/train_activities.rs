@@ -2,7 +2,7 @@
 //!
 //! There is no video in the clips: the annotated joints of JHMDB (Jhuang et al., 2013) are drawn, bone by bone, each in its own
 //! colour, on black; 433 recordings to train on, 176 others to measure on. What it learns is to read such drawings, not
-//! videos. It makes the zoo's `x3d/stick_figures` and `co_x3d/stick_figures`:
+//! videos; two in three of its answers are wrong, and the zoo has no such model:
 //!
 //! ```console
 //! $ cargo run --release -p opendr-perception --features training --example train_activities -- shared/data/skeleton out
