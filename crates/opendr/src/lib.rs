@@ -60,7 +60,7 @@ pub use opendr_perception::{
 pub use pipeline::Pipeline;
 pub use registry::registry;
 pub use smaller::optimize_loaded;
-pub use tune::{LearnerTraining, TuneData, TuneOptions, Tuned, search_space, tune};
+pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};
 pub use {
     opendr_datasets as datasets, opendr_evaluation as evaluation, opendr_inference as inference,
     opendr_metrics as metrics, opendr_optimize as optimize, opendr_planning as planning, opendr_rl as rl,

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::evaluation::EvalOptions;
 use opendr::params::ParamMap;
-use opendr::{Device, Silent};
+use opendr::{Device, Silent, TuneData, TuneOptions};
 
 /// Two videos in which two persons walk past each other; one in ten boxes is missed, and each has an alarm that is false.
 fn folder(name: &str) -> PathBuf {
@@ -59,4 +59,53 @@ fn trackers_are_measured_on_what_was_found() {
         assert!(hota["hota"] > 0.85 && identity["idf1"] > 0.9, "{name}: {hota:?} {identity:?}");
     }
     fs::remove_dir_all(&folder).ok();
+}
+
+#[test]
+fn a_tracker_is_tuned_without_a_training() {
+    let Some(models) = models::Models::find() else { return };
+    let (folder, output) =
+        (folder("tracker-tune"), std::env::temp_dir().join(format!("opendr-tuned-{}", std::process::id())));
+    fs::remove_dir_all(&output).ok();
+    let entry = opendr::registry().find("byte_track").unwrap();
+    let container = models.get("byte_track").unwrap();
+    let make = |params: &ParamMap| {
+        let mut learner = entry.make(params, Device::Cpu)?;
+        learner.load(&container)?;
+        Ok(learner)
+    };
+    let external = ExternalDataset::new(folder.clone(), "mot");
+    let data = TuneData::Answers {
+        make: &make,
+        dataset: DatasetRef::External(&external),
+        split: None,
+        metric: Some("identity"),
+    };
+    // Boxes have 0.9: above that no track begins.
+    let options = |trials| TuneOptions {
+        search: vec!["new_threshold=0.3,0.95".into(), "track_buffer=1..30".into()],
+        fit_params: ParamMap::new(),
+        params: ParamMap::new(),
+        trials,
+        seeds: 3,
+        length: 1000,
+        interval: 10,
+        pruner: "asha".into(),
+        jobs: 1,
+        timeout: None,
+        seed: 1,
+        device: Device::Cpu,
+    };
+    let tune = |trials| opendr::tune(entry, data, &options(trials), &output, &|_, _| (), &Silent).unwrap();
+    let first = tune(4);
+    assert!(first.complete && first.trials == 4 && first.fresh_values.is_empty(), "{first}");
+    let tuned = tune(10);
+    assert!(tuned.complete && tuned.trials == 10 && tuned.value.unwrap() > 0.9, "{tuned}");
+    assert_eq!(tuned.params.unwrap()["new_threshold"], 0.3);
+    let mut other = options(1);
+    other.search = vec!["lr".into()];
+    let error = opendr::tune(entry, data, &other, &output, &|_, _| (), &Silent).unwrap_err();
+    assert!(error.to_string().contains("track_buffer"), "{error}");
+    fs::remove_dir_all(&folder).ok();
+    fs::remove_dir_all(&output).ok();
 }

@@ -1,4 +1,4 @@
-//! `opendr tune`: the parameters of a training, searched.
+//! `opendr tune`: the parameters of a training, or of a learner as it is, searched.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -6,9 +6,10 @@ use std::time::Duration;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::dataset::{DatasetRef, ExternalDataset};
+use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
 use opendr::tuning::{StudyRecord, line_from_study, table_from_study};
-use opendr::{Error, FitOptions, Progress, Result, TuneData, TuneOptions, Tuned};
+use opendr::{Error, FitOptions, Progress, Result, Silent, TuneData, TuneOptions, Tuned};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
@@ -19,6 +20,8 @@ Examples:
   opendr tune ppo --env CartPole-v1 --search learning_rate=1e-5..1e-2 --search n_steps=32,64,128,256 --length 50000
   opendr tune image_classifier digits/ --val-split test --search lr --search width=8,16,32 --length 500
   opendr tune ppo --env CartPole-v1 --search gamma --output runs/tuned --trials 100     go on in the same folder
+  opendr tune byte_track MOT17/ --split train --search new_threshold --search track_buffer=10..60    nothing is trained
+  opendr tune nanodet coco/ --split val2017 --answers --search iou_threshold
 
 A trial is paused where others do better, and goes on from its checkpoint when it turns out to be worth it. OUTPUT/study.log
 is a journal that Optuna reads. Ctrl-C leaves the study whole; the same command goes on. Several processes may share it.";
@@ -28,7 +31,7 @@ const LIVE_ROWS: usize = 12;
 
 pub fn grammar() -> Command {
     Command::new("tune")
-        .about("Search the parameters of a learner's training")
+        .about("Search the parameters of a learner's training, or of the learner as it is")
         .arg(loading::learner())
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
@@ -36,7 +39,16 @@ pub fn grammar() -> Command {
             Arg::new("val-split")
                 .long("val-split")
                 .value_name("NAME")
-                .help("The part of DATASET to measure on"),
+                .help("The part of DATASET to measure a training on"),
+        )
+        .arg(Arg::new("answers").long("answers").action(ArgAction::SetTrue).help(
+            "Train nothing: search the learner's own parameters, measured on DATASET; so it is for learners that do not train",
+        ))
+        .arg(
+            Arg::new("metric")
+                .long("metric")
+                .value_name("NAME")
+                .help("What to measure by when nothing is trained [default: the task's own]"),
         )
         .args(search_flags())
         .args(loading::flags())
@@ -54,7 +66,7 @@ fn search_flags() -> [Arg; 10] {
             .long("search")
             .action(ArgAction::Append)
             .value_name("NAME[=LOW..HIGH|=A,B]")
-            .help("A parameter of the training, over its own range, another, or some values; once for each"),
+            .help("A parameter of the training (or of the learner), over its own range, another, or some values; once for each"),
         number("trials", "30", "Configurations in all, those of earlier calls counted"),
         number("tuning-seeds", "3", "Seeds of each configuration that comes to the end"),
         number("length", "100000", "Steps of a whole training"),
@@ -108,6 +120,16 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(20);
         let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
         let data = TuneData::Environment { env: &env, protocol: &protocol };
+        opendr::tune(entry, data, &options, &output, &watch, &bar)?
+    } else if matches.get_flag("answers") || !entry.capabilities.fit {
+        let external = dataset_flags::external(matches);
+        let split = dataset_flags::split(matches);
+        let metric = matches.get_one::<String>("metric").map(String::as_str);
+        // Got once, with its bar; what comes after it is in the cache.
+        loading::load(spec, &options.params, matches, &bar)?;
+        let make = |params: &ParamMap| loading::load(spec, params, matches, &Silent);
+        let dataset = DatasetRef::External(&external);
+        let data = TuneData::Answers { make: &make, dataset, split: split.as_deref(), metric };
         opendr::tune(entry, data, &options, &output, &watch, &bar)?
     } else {
         let external = dataset_flags::external(matches);

@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use opendr_engine::learner::{AnyLearner, Entry};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Progress, Result, ResultExt as _, Silent};
-use opendr_evaluation::EvalOptions;
 use opendr_tuning::Training;
 
 use super::until::Until;
@@ -35,7 +34,7 @@ impl<'a> LearnerTraining<'a> {
     /// A training that has not begun; it works in a folder of its own below `work`.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters that do not fit.
+    /// `InvalidParam` for parameters that do not fit, `Unsupported` for data that nothing is trained on.
     pub fn new(
         entry: &'static Entry,
         data: TuneData<'a>,
@@ -45,6 +44,9 @@ impl<'a> LearnerTraining<'a> {
         work: &Path,
         progress: &'a dyn Progress,
     ) -> Result<Self> {
+        if matches!(data, TuneData::Answers { .. }) {
+            return Err(Error::unsupported("these data are to measure a learner as it is, not to train it"));
+        }
         let mut params = options.fit_params.clone();
         let has = |name: &str| entry.fit_params.iter().any(|field| field.name == name);
         params.extend(
@@ -81,7 +83,7 @@ impl<'a> LearnerTraining<'a> {
                 let environments = FitEnvironments { env, val_env: None };
                 fit_in(self.learner.as_mut(), self.entry, environments, &options, &until)
             }
-            TuneData::Dataset { dataset, split, .. } => {
+            TuneData::Dataset { dataset, split, .. } | TuneData::Answers { dataset, split, .. } => {
                 let options = FitOptions { split: split.map(str::to_owned), ..options };
                 fit(self.learner.as_mut(), self.entry, FitData::from(dataset), &options, &until)
             }
@@ -97,13 +99,11 @@ impl<'a> LearnerTraining<'a> {
                 let report = eval_in(&mut acting, environment.as_mut(), protocol, &Silent)?;
                 Ok(report.success.map_or(report.mean_return, |success| success.rate))
             }
-            TuneData::Dataset { val_dataset, val_split, .. } => {
-                let options = EvalOptions { split: val_split.map(str::to_owned), ..EvalOptions::default() };
-                let outcome = options.run(&mut self.learner, self.entry, val_dataset, &Silent)?;
+            TuneData::Dataset { val_dataset: dataset, .. } | TuneData::Answers { dataset, .. } => {
+                let options = self.data.eval_options();
+                let outcome = options.run(&mut self.learner, self.entry, dataset, &Silent)?;
                 let (name, _) = options.metric_for(self.entry)?.numbers[0];
-                outcome.report.statistics.get(name).ok_or_else(|| {
-                    Error::invalid_input(format!("there is no {name} on these data: is anything annotated?"))
-                })
+                outcome.report.statistics.get(name).ok_or_else(|| super::nothing_measured(name))
             }
         }
     }
@@ -153,10 +153,4 @@ fn copy(from: &Path, to: &Path) -> std::io::Result<()> {
         }
     }
     Ok(())
-}
-
-/// Whether less is better of what the learner's task is measured by.
-pub(super) fn measured_by_error(entry: &Entry) -> Result<bool> {
-    let metric = EvalOptions::default().metric_for(entry)?;
-    Ok(metric.is_error(metric.numbers[0].0))
 }

@@ -29,3 +29,17 @@ pub trait Training {
     /// `NotFound`, `Io` and `Format` when that cannot be read.
     fn load(&mut self, folder: &Path) -> Result<()>;
 }
+
+impl<T: Training + ?Sized> Training for Box<T> {
+    fn advance(&mut self, until: u64) -> Result<Option<f64>> {
+        (**self).advance(until)
+    }
+
+    fn save(&self, folder: &Path) -> Result<()> {
+        (**self).save(folder)
+    }
+
+    fn load(&mut self, folder: &Path) -> Result<()> {
+        (**self).load(folder)
+    }
+}

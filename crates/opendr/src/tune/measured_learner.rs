@@ -1,0 +1,46 @@
+//! A learner as it is, as something that a tuner measures.
+
+use std::path::Path;
+
+use opendr_engine::dataset::DatasetRef;
+use opendr_engine::learner::Entry;
+use opendr_engine::params::ParamMap;
+use opendr_engine::{Error, Progress, Result};
+use opendr_evaluation::EvalOptions;
+use opendr_tuning::Training;
+
+use super::MakeLearner;
+use super::until::Until;
+
+/// One configuration of a learner's own parameters: there is nothing to train, and so nothing to save.
+pub(super) struct MeasuredLearner<'a> {
+    pub entry: &'static Entry,
+    pub make: &'a MakeLearner<'a>,
+    pub params: ParamMap,
+    pub dataset: DatasetRef<'a>,
+    pub options: EvalOptions,
+    pub progress: &'a dyn Progress,
+}
+
+impl Training for MeasuredLearner<'_> {
+    fn advance(&mut self, _: u64) -> Result<Option<f64>> {
+        let mut learner = (self.make)(&self.params)?;
+        // Its bar would stand in the place of the search's.
+        let quiet = Until::new(self.progress, u64::MAX);
+        let outcome = self.options.run(&mut learner, self.entry, self.dataset, &quiet)?;
+        if !outcome.complete {
+            return Ok(None);
+        }
+        let (name, _) = self.options.metric_for(self.entry)?.numbers[0];
+        let value = outcome.report.statistics.get(name);
+        value.map(Some).ok_or_else(|| super::nothing_measured(name))
+    }
+
+    fn save(&self, _: &Path) -> Result<()> {
+        Ok(())
+    }
+
+    fn load(&mut self, _: &Path) -> Result<()> {
+        Err(Error::internal("a measurement has no middle to go on from"))
+    }
+}
