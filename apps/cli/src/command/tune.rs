@@ -41,7 +41,7 @@ pub fn grammar() -> Command {
                 .value_name("NAME")
                 .help("The part of DATASET to measure a training on"),
         )
-        .arg(Arg::new("answers").long("answers").action(ArgAction::SetTrue).help(
+        .arg(Arg::new("answers").long("answers").action(ArgAction::SetTrue).conflicts_with("val-split").help(
             "Train nothing: search the learner's own parameters, measured on DATASET; so it is for learners that do not train",
         ))
         .arg(

@@ -131,7 +131,13 @@ pub fn tune(
     std::fs::create_dir_all(output).context(|| format!("making {}", output.display()))?;
     let trains = !matches!(data, TuneData::Answers { .. });
     let fields = if trains { entry.fit_params } else { entry.params };
-    let space = search_space(fields, &options.search)?;
+    let space = match search_space(fields, &options.search) {
+        Err(error) if !entry.capabilities.fit => {
+            let class = entry.spec.class;
+            return Err(error.context(format!("{class} does not train, so its own parameters are searched")));
+        }
+        space => space?,
+    };
     let study = study(entry, data, options, output)?;
     let plan = match trains {
         true => Plan::every(options.interval, options.length)?.with_seeds(options.seed, options.seeds),
