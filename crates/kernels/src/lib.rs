@@ -1,5 +1,5 @@
 //! Matrix products and small network layers for policies: packed single-precision products with run-time dispatch, layers with
-//! explicit gradients on flat parameters, optimisers.
+//! explicit gradients on flat parameters, optimisers; and the Fourier transform for sound.
 //!
 //! Everything runs on a [`Compute`]: an instruction set, chosen once, and a pool of threads. The number of threads
 //! never changes a result, not by a bit; the instruction set does, in the last places.
@@ -22,6 +22,7 @@ mod aligned;
 mod column_sums;
 mod compute;
 mod elementary;
+mod fourier;
 mod gaussian;
 mod initialise;
 mod isa;
@@ -38,6 +39,7 @@ pub use activation::Activation;
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
+pub use fourier::{FOURIER_FRAMES, FourierWork, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
 pub use initialise::Initialisation;
 pub use isa::Isa;

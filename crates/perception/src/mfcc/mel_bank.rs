@@ -1,6 +1,7 @@
 //! Mel bands: overlapping triangles over a spectrum.
 
 use crate::mfcc::options::{MelBands, MelScale, Sides};
+use crate::mfcc::transform::Frames;
 
 /// The weights of each band, without the zeros.
 pub(super) struct MelBank {
@@ -55,28 +56,17 @@ impl MelBank {
         bank
     }
 
-    /// The weighted sum of the spectrum in each band.
-    pub fn sums(&self, spectrum: &[f32], sums: &mut [f32]) {
-        for (band, sum) in self.bands.iter().zip(sums) {
+    /// Replaces `sums` by the weighted sums of the spectra in each band.
+    pub fn sums(&self, spectrum: &[Frames], sums: &mut Vec<Frames>) {
+        sums.clear();
+        sums.resize(self.bands.len(), Frames::default());
+        for (band, sums) in self.bands.iter().zip(sums) {
             let weights = &self.weights[band.weights.clone()];
-            *sum = weighted_sum(weights, &spectrum[band.bin..][..weights.len()]);
+            for (weight, values) in weights.iter().zip(&spectrum[band.bin..]) {
+                sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+            }
         }
     }
-}
-
-/// Sums in lanes, which the compiler makes vector instructions of.
-fn weighted_sum(weights: &[f32], values: &[f32]) -> f32 {
-    const LANES: usize = 8;
-    let mut lanes = [0.0; LANES];
-    let (weights, weights_left) = weights.as_chunks::<LANES>();
-    let (values, values_left) = values.as_chunks::<LANES>();
-    for (weights, values) in weights.iter().zip(values) {
-        for (lane, (weight, value)) in lanes.iter_mut().zip(weights.iter().zip(values)) {
-            *lane += weight * value;
-        }
-    }
-    let left: f32 = weights_left.iter().zip(values_left).map(|(weight, value)| weight * value).sum();
-    lanes.iter().sum::<f32>() + left
 }
 
 /// Where Slaney's scale changes from linear to logarithmic.
@@ -109,6 +99,8 @@ impl MelScale {
 
 #[cfg(test)]
 mod tests {
+    use opendr_kernels::FOURIER_FRAMES;
+
     use super::*;
 
     /// Values of `librosa.hz_to_mel`, and of the constants of TensorFlow.
@@ -136,10 +128,11 @@ mod tests {
             unit_area: true,
         };
         let bank = MelBank::new(&options, 4096, 16_000);
-        let mut sums = [0.0; 20];
-        bank.sums(&[1.0; 2049], &mut sums);
+        let mut sums = Vec::new();
+        bank.sums(&[[1.0; FOURIER_FRAMES]; 2049], &mut sums);
         // One over the width of a bin.
         let wanted = 4096.0 / 16_000.0;
-        assert!(sums.iter().all(|sum| (sum / wanted - 1.0).abs() < 0.02), "{sums:?}");
+        assert!(sums.as_flattened().iter().all(|sum| (sum / wanted - 1.0).abs() < 0.02), "{sums:?}");
+        assert_eq!(sums.len(), 20);
     }
 }

@@ -15,7 +15,6 @@
 //! # Ok::<(), opendr_engine::Error>(())
 //! ```
 
-mod fourier;
 mod mel_bank;
 mod options;
 mod stream;
@@ -25,8 +24,10 @@ mod transform;
 mod tests;
 
 use opendr_engine::{Pool, Result};
+use opendr_kernels::FOURIER_FRAMES;
 
-pub use options::{CosineScale, Edges, Log, MelBands, MelScale, MfccOptions, Sides, Spectrum};
+pub use opendr_kernels::Spectrum;
+pub use options::{CosineScale, Edges, Log, MelBands, MelScale, MfccOptions, Sides};
 pub use stream::MfccStream;
 
 use mel_bank::MelBank;
@@ -43,7 +44,7 @@ pub struct Mfcc {
 
 #[derive(Default)]
 struct Work {
-    frame: FrameWork,
+    frames: FrameWork,
     /// Logarithms of the bands `[frames, bands]`.
     bands: Vec<f32>,
 }
@@ -84,8 +85,8 @@ impl Mfcc {
     /// Replaces `cepstra` by those of `samples`, `[frames, coefficients]`, and tells the number of frames.
     pub fn run_into(&self, samples: &[f32], cepstra: &mut Vec<f32>) -> usize {
         let (count, coefficients) = (self.options.bands.count, self.options.coefficients);
-        let Work { frame, bands } = &mut *self.work.take();
-        let frames = self.log_mel_of(samples, frame, bands);
+        let Work { frames: work, bands } = &mut *self.work.take();
+        let frames = self.log_mel_of(samples, work, bands);
         cepstra.resize(frames * coefficients, 0.0);
         for (bands, cepstrum) in bands.chunks_exact(count).zip(cepstra.chunks_exact_mut(coefficients)) {
             self.cosine.run(bands, cepstrum);
@@ -96,27 +97,30 @@ impl Mfcc {
     /// Replaces `bands` by the logarithms of the mel bands, `[frames, bands]`, from which cepstra are made, and tells the
     /// number of frames.
     pub fn log_mel_into(&self, samples: &[f32], bands: &mut Vec<f32>) -> usize {
-        self.log_mel_of(samples, &mut self.work.take().frame, bands)
+        self.log_mel_of(samples, &mut self.work.take().frames, bands)
     }
 
-    fn log_mel_of(&self, samples: &[f32], frame: &mut FrameWork, bands: &mut Vec<f32>) -> usize {
+    fn log_mel_of(&self, samples: &[f32], work: &mut FrameWork, bands: &mut Vec<f32>) -> usize {
         let (frames, count) = (self.frames(samples.len()), self.options.bands.count);
         bands.resize(frames * count, 0.0);
-        for (index, bands) in bands.chunks_exact_mut(count).enumerate() {
-            self.spectrum.fill(samples, index, frame);
-            self.log_bands(frame, bands);
+        for first in (0..frames).step_by(FOURIER_FRAMES) {
+            let together = FOURIER_FRAMES.min(frames - first);
+            (0..together).for_each(|lane| self.spectrum.fill(samples, first + lane, lane, work));
+            self.log_bands(work, &mut bands[first * count..][..together * count]);
         }
         self.limit_range(bands);
         frames
     }
 
-    /// The logarithms of the bands of the frame in `frame`.
-    fn log_bands(&self, frame: &mut FrameWork, bands: &mut [f32]) {
-        self.bank.sums(self.spectrum.run(frame), bands);
-        match self.options.log {
-            Log::Natural { offset } => bands.iter_mut().for_each(|band| *band = (*band + offset).ln()),
-            Log::Decibel { least, .. } => {
-                bands.iter_mut().for_each(|band| *band = 10.0 * band.max(least).log10());
+    /// The logarithms of the bands of the first frames in `work`, `[frames, bands]`.
+    fn log_bands(&self, work: &mut FrameWork, bands: &mut [f32]) {
+        let count = self.options.bands.count;
+        for (band, sums) in self.spectrum.band_sums(&self.bank, work).iter().enumerate() {
+            for (bands, sum) in bands.chunks_exact_mut(count).zip(sums) {
+                bands[band] = match self.options.log {
+                    Log::Natural { offset } => (sum + offset).ln(),
+                    Log::Decibel { least, .. } => 10.0 * sum.max(least).log10(),
+                };
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What cepstra are made of.
 
 use opendr_engine::{Error, Result};
+use opendr_kernels::Spectrum;
 
 /// The recipe of an [`Mfcc`](crate::mfcc::Mfcc).
 #[derive(Debug, Clone, PartialEq)]
@@ -37,15 +38,6 @@ pub enum Edges {
     Reflected,
     /// As `Reflected`, with silence before its begin and after its end.
     Silent,
-}
-
-/// What the mel bands sum.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Spectrum {
-    /// The absolute value of each frequency.
-    Magnitude,
-    /// Its square.
-    Power,
 }
 
 /// Overlapping triangles, evenly spaced on a mel scale.

@@ -1,8 +1,9 @@
 //! Cepstra of sound that comes in pieces.
 
 use opendr_engine::{Error, Result};
+use opendr_kernels::FOURIER_FRAMES;
 
-use crate::mfcc::{Edges, Log, Mfcc};
+use crate::mfcc::{Edges, Log, Mfcc, Work};
 
 /// What one stream of sound remembers between its pieces: less than a window of samples.
 #[derive(Debug, Default, Clone)]
@@ -35,20 +36,32 @@ impl Mfcc {
                 "this recipe of MFCC needs the whole sound; use Edges::Inside and no range for pieces",
             ));
         }
-        let (bands, coefficients) = (options.bands.count, options.coefficients);
         let left_out = stream.skip.min(piece.len());
         stream.skip -= left_out;
         stream.pending.extend(&piece[left_out..]);
-        let work = &mut *self.work.take();
-        work.bands.resize(bands + coefficients, 0.0);
-        let (bands, cepstrum) = work.bands.split_at_mut(bands);
+        let Work { frames, bands } = &mut *self.work.take();
+        let (count, coefficients) = (options.bands.count, options.coefficients);
+        bands.resize(FOURIER_FRAMES * count + coefficients, 0.0);
+        let (bands, cepstrum) = bands.split_at_mut(FOURIER_FRAMES * count);
         let mut start = 0;
-        while let Some(samples) = stream.pending.get(start..start + options.window) {
-            self.spectrum.place(samples.iter().copied(), &mut work.frame);
-            self.log_bands(&mut work.frame, bands);
-            self.cosine.run(bands, cepstrum);
-            frame(cepstrum);
-            start += options.hop;
+        loop {
+            let mut together = 0;
+            while together < FOURIER_FRAMES
+                && let Some(samples) = stream.pending.get(start..start + options.window)
+            {
+                self.spectrum.place(samples.iter().copied(), together, frames);
+                start += options.hop;
+                together += 1;
+            }
+            if together == 0 {
+                break;
+            }
+            let bands = &mut bands[..together * count];
+            self.log_bands(frames, bands);
+            for bands in bands.chunks_exact(count) {
+                self.cosine.run(bands, cepstrum);
+                frame(cepstrum);
+            }
         }
         stream.skip += start.saturating_sub(stream.pending.len());
         stream.pending.drain(..start.min(stream.pending.len()));

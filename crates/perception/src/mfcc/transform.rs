@@ -2,10 +2,15 @@
 
 use std::f64::consts::PI;
 
-use crate::mfcc::fourier::{FourierWork, RealFourier};
-use crate::mfcc::options::{CosineScale, Edges, MfccOptions, Spectrum};
+use opendr_kernels::{FOURIER_FRAMES, FourierWork, Isa, RealFourier, Spectrum};
 
-/// Windowed frames and their spectrum.
+use crate::mfcc::mel_bank::MelBank;
+use crate::mfcc::options::{CosineScale, Edges, MfccOptions};
+
+/// A number of each frame that is transformed together with others.
+pub(super) type Frames = [f32; FOURIER_FRAMES];
+
+/// Windowed frames and their spectra, several frames at a time.
 pub(super) struct FrameSpectrum {
     fourier: RealFourier,
     window: Vec<f32>,
@@ -16,14 +21,16 @@ pub(super) struct FrameSpectrum {
     kind: Spectrum,
 }
 
-/// Memory for one frame.
+/// Memory for the frames that are transformed together.
 #[derive(Default)]
 pub(super) struct FrameWork {
-    /// The frame, windowed.
-    samples: Vec<f32>,
+    /// The frames, windowed; what no window spans stays zero.
+    samples: Vec<Frames>,
     fourier: FourierWork,
     /// Magnitude or power of each frequency.
-    values: Vec<f32>,
+    values: Vec<Frames>,
+    /// What each band sums of them.
+    sums: Vec<Frames>,
 }
 
 impl FrameSpectrum {
@@ -40,8 +47,8 @@ impl FrameSpectrum {
         }
     }
 
-    /// Puts frame number `index` of `samples`, which are not empty, into `work`.
-    pub fn fill(&self, samples: &[f32], index: usize, work: &mut FrameWork) {
+    /// Puts frame number `index` of `samples`, which are not empty, into place `lane` of those that `work` transforms together.
+    pub fn fill(&self, samples: &[f32], index: usize, lane: usize, work: &mut FrameWork) {
         let (size, start) = (self.fourier.size(), index * self.hop);
         let inside = |first: usize| samples.get(first..first + self.window.len());
         let first = match self.edges {
@@ -49,7 +56,7 @@ impl FrameSpectrum {
             Edges::Reflected | Edges::Silent => (start + self.begin).checked_sub(size / 2),
         };
         if let Some(frame) = first.and_then(inside) {
-            return self.place(frame.iter().copied(), work);
+            return self.place(frame.iter().copied(), lane, work);
         }
         let sample = |at: usize| {
             let at = (start + self.begin + at) as isize - (size / 2) as isize;
@@ -59,25 +66,22 @@ impl FrameSpectrum {
                 None => 0.0,
             }
         };
-        self.place((0..self.window.len()).map(sample), work);
+        self.place((0..self.window.len()).map(sample), lane, work);
     }
 
-    /// Puts the samples of a frame, as many as the window spans, into `work`.
-    pub fn place(&self, frame: impl Iterator<Item = f32>, work: &mut FrameWork) {
-        work.samples.clear();
-        work.samples.resize(self.fourier.size(), 0.0);
+    /// Puts the samples of a frame, as many as the window spans, into place `lane` of those that `work` transforms together.
+    pub fn place(&self, frame: impl Iterator<Item = f32>, lane: usize, work: &mut FrameWork) {
+        work.samples.resize(self.fourier.size(), Frames::default());
         let places = work.samples[self.begin..].iter_mut().zip(&self.window);
-        places.zip(frame).for_each(|((place, weight), sample)| *place = weight * sample);
+        places.zip(frame).for_each(|((place, weight), sample)| place[lane] = weight * sample);
     }
 
-    /// The spectrum of the frame in `work`.
-    pub fn run<'w>(&self, work: &'w mut FrameWork) -> &'w [f32] {
-        let FrameWork { samples, fourier, values } = work;
-        self.fourier.power(samples, fourier, values);
-        if self.kind == Spectrum::Magnitude {
-            values.iter_mut().for_each(|value| *value = value.sqrt());
-        }
-        values
+    /// The sums of the bands of the frames in `work`.
+    pub fn band_sums<'w>(&self, bank: &MelBank, work: &'w mut FrameWork) -> &'w [Frames] {
+        let FrameWork { samples, fourier, values, sums } = work;
+        self.fourier.run(Isa::best(), self.kind, samples, fourier, values);
+        bank.sums(values, sums);
+        sums
     }
 }
 
@@ -90,14 +94,15 @@ fn reflected(at: isize, count: usize) -> usize {
 
 /// The first coefficients of a DCT-II.
 pub(super) struct CosineTransform {
-    /// `[bands, coefficients]`.
+    bands: usize,
+    /// `[coefficients, bands]`.
     table: Vec<f32>,
 }
 
 impl CosineTransform {
     pub fn new(bands: usize, coefficients: usize, scale: CosineScale) -> Self {
         let entry = |index: usize| {
-            let (band, coefficient) = (index / coefficients, index % coefficients);
+            let (coefficient, band) = (index / bands, index % bands);
             let size = match (coefficient, scale) {
                 (0, CosineScale::Orthonormal) => 1.0,
                 _ => 2.0,
@@ -105,16 +110,26 @@ impl CosineTransform {
             let angle = PI * coefficient as f64 * (2 * band + 1) as f64 / (2 * bands) as f64;
             ((size / bands as f64).sqrt() * angle.cos()) as f32
         };
-        Self { table: (0..bands * coefficients).map(entry).collect() }
+        Self { bands, table: (0..bands * coefficients).map(entry).collect() }
     }
 
     /// Replaces `cepstrum` by the coefficients of `bands`.
     pub fn run(&self, bands: &[f32], cepstrum: &mut [f32]) {
-        cepstrum.fill(0.0);
-        for (band, row) in bands.iter().zip(self.table.chunks_exact(cepstrum.len())) {
-            cepstrum.iter_mut().zip(row).for_each(|(sum, weight)| *sum += band * weight);
+        for (row, coefficient) in self.table.chunks_exact(self.bands).zip(cepstrum) {
+            *coefficient = dot_product(row, bands);
         }
     }
+}
+
+/// Sums in lanes, which the compiler makes vector instructions of.
+fn dot_product(a: &[f32], b: &[f32]) -> f32 {
+    let mut sums = [0.0; 8];
+    let ((a, a_left), (b, b_left)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    for (a, b) in a.iter().zip(b) {
+        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
+    }
+    let left: f32 = a_left.iter().zip(b_left).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f32>() + left
 }
 
 #[cfg(test)]
