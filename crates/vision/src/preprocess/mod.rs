@@ -31,6 +31,7 @@ use plan::{Plan, Plans, Sizes};
 pub use sample::InputSample;
 use source::Source;
 use strided::Finish;
+pub(crate) use strided::LUMINANCE;
 use warped::Line;
 
 /// Pixels below which waking another thread costs more than it helps.

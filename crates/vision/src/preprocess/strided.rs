@@ -42,7 +42,7 @@ pub(super) struct Finish {
 }
 
 /// Luminance of red, green and blue by ITU-R BT.601.
-pub(super) const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
+pub(crate) const LUMINANCE: [f32; 3] = [0.299, 0.587, 0.114];
 
 /// Blends row `tap` of a picture with `strides` (row, pixel) into `row`.
 pub(super) fn blend_row<S: Level, W: Written>(

@@ -14,45 +14,37 @@ pub(super) struct Line {
     pub(super) step: [i64; 2],
 }
 
-/// The four samples around a position and their weights.
-struct Quad {
-    /// Offsets of the left-top, right-top, left-bottom and right-bottom pixel; `None` outside of the picture.
-    pixels: [Option<usize>; 4],
-    /// Weight of the right and of the bottom ones.
-    weights: [f32; 2],
-}
-
 /// Pixel strides and sizes of the picture.
 struct Grid {
     size: [i64; 2],
     strides: [usize; 2],
-    repeat: bool,
+    border: Border,
 }
 
 impl Grid {
-    fn quad(&self, [x, y]: [i64; 2]) -> Quad {
-        let (left, top) = (x >> 32, y >> 32);
-        // 24 bits are what a float holds.
-        let weights = [x, y].map(|position| (position as u32 >> 8) as f32 * (1.0 / 16_777_216.0));
-        let offset = |x: i64, y: i64| y as usize * self.strides[0] + x as usize * self.strides[1];
-        let inside = |at: i64, axis: usize| at >= 0 && at < self.size[axis];
-        if left >= 0 && top >= 0 && left + 1 < self.size[0] && top + 1 < self.size[1] {
-            let first = offset(left, top);
-            let [down, right] = self.strides;
-            return Quad {
-                pixels: [first, first + right, first + down, first + down + right].map(Some),
-                weights,
-            };
-        }
-        let pixels = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[right, down]| {
-            let (x, y) = (left + right, top + down);
-            if self.repeat {
-                return Some(offset(x.clamp(0, self.size[0] - 1), y.clamp(0, self.size[1] - 1)));
-            }
-            (inside(x, 0) && inside(y, 1)).then(|| offset(x, y))
-        });
-        Quad { pixels, weights }
+    fn offset(&self, x: i64, y: i64) -> usize {
+        y as usize * self.strides[0] + x as usize * self.strides[1]
     }
+
+    /// Where a pixel begins that is inside, as those right of it, below it and between these are.
+    fn inside(&self, left: i64, top: i64) -> Option<usize> {
+        let is_inside = left >= 0 && top >= 0 && left + 1 < self.size[0] && top + 1 < self.size[1];
+        is_inside.then(|| self.offset(left, top))
+    }
+
+    /// Where a pixel begins; `None` outside of the picture.
+    fn pixel(&self, x: i64, y: i64) -> Option<usize> {
+        let [nearest_x, nearest_y] = [x.clamp(0, self.size[0] - 1), y.clamp(0, self.size[1] - 1)];
+        (self.border == Border::Repeat || (nearest_x, nearest_y) == (x, y))
+            .then(|| self.offset(nearest_x, nearest_y))
+    }
+}
+
+/// Blends four levels: left and right above, left and right below.
+#[inline(always)]
+fn blend([a, b, c, d]: [f32; 4], weights: [f32; 2]) -> f32 {
+    let mix = |from: f32, to: f32, weight: f32| from + (to - from) * weight;
+    mix(mix(a, b, weights[0]), mix(c, d, weights[0]), weights[1])
 }
 
 /// Blends the pixels of `view` (whose samples are `samples`) along `line` into `row`.
@@ -65,27 +57,35 @@ pub(super) fn warp_row<S: Level, W: Written>(
     row: &mut Row<'_, W>,
 ) {
     let [down, right, _] = view.strides();
-    let (repeat, outside) = match border {
-        Border::Level(level) => (false, level),
-        Border::Repeat => (true, 0.0),
-    };
-    let grid = Grid { size: [view.width() as i64, view.height() as i64], strides: [down, right], repeat };
+    let grid = Grid { size: [view.width() as i64, view.height() as i64], strides: [down, right], border };
+    let outside = if let Border::Level(level) = border { level } else { 0.0 };
     let Finish { channels, scale, bias, luminance } = *finish;
-    let levels = |quad: &Quad| {
-        let mix = |from: f32, to: f32, weight: f32| from + (to - from) * weight;
-        channels.map(|channel| {
-            let [a, b, c, d] = quad.pixels.map(|pixel| match pixel {
-                Some(pixel) => samples.get(pixel + channel).map_or(outside, |sample| sample.level()),
-                None => outside,
-            });
-            mix(mix(a, b, quad.weights[0]), mix(c, d, quad.weights[0]), quad.weights[1])
-        })
-    };
+    let level = |at: usize| samples.get(at).map_or(outside, |sample| sample.level());
     let mut position = line.start;
+    // Loops over arrays instead of their `map`, which is a call here and takes most of the time.
     let mut next = || {
-        let quad = grid.quad(position);
+        let [left, top] = [position[0] >> 32, position[1] >> 32];
+        // 24 bits are what a float holds.
+        let share = |position: i64| (position as u32 >> 8) as f32 * (1.0 / 16_777_216.0);
+        let weights = [share(position[0]), share(position[1])];
         position = [position[0].wrapping_add(line.step[0]), position[1].wrapping_add(line.step[1])];
-        levels(&quad)
+        let mut levels = [0.0; 3];
+        if let Some(first) = grid.inside(left, top) {
+            for (mixed, channel) in levels.iter_mut().zip(channels) {
+                let at = first + channel;
+                *mixed = blend(
+                    [level(at), level(at + right), level(at + down), level(at + down + right)],
+                    weights,
+                );
+            }
+        } else {
+            let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(x, y)| grid.pixel(left + x, top + y));
+            for (mixed, channel) in levels.iter_mut().zip(channels) {
+                let corners = corners.map(|pixel| pixel.map_or(outside, |pixel| level(pixel + channel)));
+                *mixed = blend(corners, weights);
+            }
+        }
+        levels
     };
     let value = |levels: [f32; 3], c: usize| W::from_value(levels[c] * scale[c] + bias[c]);
     let Row { planes: [first, second, third], interleaved, channels: count } = row;
@@ -99,7 +99,7 @@ pub(super) fn warp_row<S: Level, W: Written>(
     } else if *interleaved {
         for pixel in first.as_chunks_mut::<3>().0 {
             let levels = next();
-            *pixel = std::array::from_fn(|c| value(levels, c));
+            *pixel = [value(levels, 0), value(levels, 1), value(levels, 2)];
         }
     } else {
         for ((x, y), z) in first.iter_mut().zip(second.iter_mut()).zip(third.iter_mut()) {

@@ -21,8 +21,8 @@ pub(super) struct Census {
 }
 
 impl Census {
-    /// Takes a picture of grey levels, 0..=255. With `is_mirrored`, each row of words is written backwards.
-    pub fn fill(&mut self, grey: &[f32], [width, height]: [usize; 2], is_mirrored: bool) {
+    /// Takes a picture of grey levels. With `is_mirrored`, each row of words is written backwards.
+    pub fn fill(&mut self, grey: &[u8], [width, height]: [usize; 2], is_mirrored: bool) {
         let Self { padded, planes, words } = self;
         let [across, down] = REACH;
         let stride = width + 2 * across;
@@ -30,10 +30,9 @@ impl Census {
         for y in 0..height + 2 * down {
             let y = y.saturating_sub(down).min(height - 1);
             let row = &grey[y * width..][..width];
-            let level = |x: usize| row[x].round() as u8;
-            padded.extend((0..across).map(|_| level(0)));
-            padded.extend(row.iter().map(|level| level.round() as u8));
-            padded.extend((0..across).map(|_| level(width - 1)));
+            padded.extend((0..across).map(|_| row[0]));
+            padded.extend(row);
+            padded.extend((0..across).map(|_| row[width - 1]));
         }
         words.clear();
         words.resize(width * height, 0);

@@ -5,23 +5,26 @@
 //! the middle, and each decides the rows that the other has already seen, so that one table of sums is enough and threads
 //! change no bit. Costs and paths are bytes, sums 16 bits, 2 bytes for each pixel and disparity.
 
+mod brightness;
+mod bytes;
 mod camera;
 mod census;
 mod paths;
 mod repair;
 mod winner;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use opendr_engine::data::Image;
 use opendr_engine::{Error, Result};
 
 use crate::components::Components;
-use crate::preprocess::{ChannelOrder, Preprocess};
 use crate::workers;
 
 pub use camera::StereoCamera;
 
+use brightness::Brightness;
+use bytes::Bytes;
 use census::Census;
 use paths::{MOST_PENALTY, Pass, Penalties};
 use winner::{Doubts, UNKNOWN, Winner};
@@ -74,18 +77,22 @@ const MOST_SUMS: usize = 1 << 29;
 /// Matches pairs; memory is used again. The answer depends on the pair alone.
 #[derive(Debug, Default)]
 pub struct StereoMatcher {
-    preprocess: Option<Preprocess>,
-    grey: Vec<f32>,
-    /// Squares of a shrunken pair, and their disparities.
-    squares: Vec<f32>,
+    /// Disparities of a shrunken pair.
     found: Vec<f32>,
-    left: Census,
-    right: Census,
+    left: Side,
+    right: Side,
     sums: Vec<u16>,
     down: Pass,
     up: Pass,
     winners: [Winner; 2],
     components: Components,
+}
+
+/// What is known of one of the pictures.
+#[derive(Debug, Default)]
+struct Side {
+    brightness: Brightness,
+    census: Census,
 }
 
 impl StereoMatcher {
@@ -146,8 +153,12 @@ impl StereoMatcher {
                 "{count} disparities of {width}x{height} pixels are too many; scale the pair down, shrink it or look for fewer"
             )));
         };
-        self.read(left, size, shrink, false)?;
-        self.read(right, size, shrink, true)?;
+        let sides = [(left, &mut self.left, false), (right, &mut self.right, true)].map(Mutex::new);
+        workers::run(2, 2, &|part| {
+            let (image, Side { brightness, census }, is_right) = &mut *lock(&sides[part]);
+            brightness.fill(&image.view(), size, shrink);
+            census.fill(&brightness.levels, size, *is_right);
+        });
         self.sums.resize(total, 0);
         self.down.begin(width, count);
         self.up.begin(width, count);
@@ -160,7 +171,9 @@ impl StereoMatcher {
             doubts: Doubts { uniqueness: options.uniqueness.into(), disagreement: options.left_right },
         };
         let middle = height / 2;
-        let words = [&self.left.words[..], &self.right.words].map(|words| words.split_at(middle * width));
+        let words = [&self.left, &self.right]
+            .map(|side| &side.census.words[..])
+            .map(|words| words.split_at(middle * width));
         let [(left_upper, left_lower), (right_upper, right_lower)] = words;
         let (upper, lower) = self.sums.split_at_mut(middle * width * count);
         let (found_upper, found_lower) = disparities.split_at_mut(middle * width);
@@ -208,41 +221,6 @@ impl StereoMatcher {
         disparities.iter_mut().filter(|found| **found == UNKNOWN).for_each(|found| *found = 0.0);
         Ok(())
     }
-
-    /// Reads a picture, shrunk to `size`.
-    fn read(&mut self, image: &Image, size: [usize; 2], shrink: usize, is_right: bool) -> Result<()> {
-        let whole @ [width, height] = [image.width(), image.height()];
-        if self.preprocess.as_ref().is_none_or(|known| known.size() != whole) {
-            self.preprocess = Some(Preprocess::new(width, height).order(ChannelOrder::Grey));
-        }
-        let Some(preprocess) = &self.preprocess else { return Ok(()) };
-        self.grey.resize(width * height, 0.0);
-        preprocess.run_into(image.view(), &mut self.grey)?;
-        let census = if is_right { &mut self.right } else { &mut self.left };
-        if shrink == 1 {
-            census.fill(&self.grey, size, is_right);
-        } else {
-            average_squares(&self.grey, width, size, shrink, &mut self.squares);
-            census.fill(&self.squares, size, is_right);
-        }
-        Ok(())
-    }
-}
-
-/// The mean of each square of a picture that is `width` pixels wide; `size` squares are whole.
-fn average_squares(grey: &[f32], width: usize, size: [usize; 2], shrink: usize, squares: &mut Vec<f32>) {
-    let [across, down] = size;
-    squares.clear();
-    squares.resize(across * down, 0.0);
-    let share = 1.0 / (shrink * shrink) as f32;
-    for (y, row) in squares.chunks_exact_mut(across).enumerate() {
-        for line in grey[y * shrink * width..].chunks_exact(width).take(shrink) {
-            for (sum, pixels) in row.iter_mut().zip(line.chunks_exact(shrink)) {
-                *sum += pixels.iter().sum::<f32>();
-            }
-        }
-        row.iter_mut().for_each(|sum| *sum *= share);
-    }
 }
 
 /// Gives each pixel the disparity of its square, or of the last one beside it, in pixels.
@@ -276,28 +254,43 @@ struct Job<'a> {
     found: Option<(&'a mut Winner, &'a mut [f32])>,
 }
 
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 fn both(first: Job<'_>, second: Job<'_>) {
     let jobs = [first, second].map(Mutex::new);
-    workers::run(2, 2, &|part| {
-        let mut job = jobs[part].lock().unwrap_or_else(PoisonError::into_inner);
-        #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt") {
-            // SAFETY: the machine has the instructions.
-            return unsafe { go_avx2(&mut job) };
-        }
-        go(&mut job);
-    });
+    workers::run(2, 2, &|part| go_fastest(&mut lock(&jobs[part])));
 }
 
-/// The same code with wider registers.
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,popcnt")]
-fn go_avx2(job: &mut Job<'_>) {
-    go(job);
+fn go_fastest(job: &mut Job<'_>) {
+    #[target_feature(enable = "avx2,popcnt")]
+    unsafe fn go_avx2<B: Bytes>(job: &mut Job<'_>) {
+        // SAFETY: the caller's promise.
+        unsafe { go::<B>(job) }
+    }
+    let is_wide = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt");
+    // SAFETY: the machine has the instructions; the number of disparities is a multiple of 16.
+    unsafe {
+        match is_wide {
+            true if job.plan.count.is_multiple_of(bytes::Avx2::COUNT) => go_avx2::<bytes::Avx2>(job),
+            true => go_avx2::<bytes::Sse2>(job),
+            false => go::<bytes::Sse2>(job),
+        }
+    }
 }
 
+#[cfg(not(target_arch = "x86_64"))]
+fn go_fastest(job: &mut Job<'_>) {
+    // SAFETY: every machine has the instructions; the number of disparities is a multiple of 16.
+    unsafe { go::<bytes::Portable>(job) }
+}
+
+/// # Safety
+/// The machine has the instructions of `B`, of which a whole number are the disparities.
 #[inline(always)]
-fn go(job: &mut Job<'_>) {
+unsafe fn go<B: Bytes>(job: &mut Job<'_>) {
     let Plan { width, count, from, penalties, doubts } = job.plan;
     let [left, right] = job.words;
     let height = left.len() / width;
@@ -307,7 +300,8 @@ fn go(job: &mut Job<'_>) {
         let sums = &mut job.sums[y * width * count..][..width * count];
         let (left, right) = (&left[row.clone()], &right[row.clone()]);
         let is_first = job.found.is_none();
-        job.pass.row(left, right, sums, from, penalties, [job.is_backward, is_first]);
+        // SAFETY: the caller's promise.
+        unsafe { job.pass.row::<B>(left, right, sums, from, penalties, [job.is_backward, is_first]) };
         if let Some((winner, found)) = &mut job.found {
             winner.row(sums, count, from, doubts, &mut found[row]);
         }

@@ -1,5 +1,6 @@
 //! Costs of disparities, smoothed along four of the eight paths through a picture.
 
+use super::bytes::Bytes;
 use super::census::BITS;
 
 /// What a cost can be at most is below 255, so that bytes hold it: bits of a census and the larger penalty.
@@ -57,8 +58,11 @@ impl Pass {
     /// Adds the paths' sums of the next row to `sums`, `[width, disparities]`. `left` are the census words of the row in the
     /// left picture, `right` those in the right one from the last to the first; `from` is the first disparity. Where this pass
     /// is the first that comes by, what `sums` held before does not count.
+    ///
+    /// # Safety
+    /// The machine has the instructions of `B`, of which a whole number are the disparities.
     #[inline(always)]
-    pub fn row(
+    pub unsafe fn row<B: Bytes>(
         &mut self,
         left: &[u64],
         right: &[u64],
@@ -78,9 +82,12 @@ impl Pass {
             let sums = &mut sums[x * disparities..][..disparities];
             let after = &mut along_now[..stride];
             let history = if step == 0 { &nothing[..] } else { &along_before[..stride] };
-            least_along = match is_first {
-                true => advance::<true>(costs, history, least_along, penalties, after, sums),
-                false => advance::<false>(costs, history, least_along, penalties, after, sums),
+            // SAFETY: the caller's promise.
+            least_along = unsafe {
+                match is_first {
+                    true => advance::<B, true>(costs, history, least_along, penalties, after, sums),
+                    false => advance::<B, false>(costs, history, least_along, penalties, after, sums),
+                }
             };
             std::mem::swap(along_before, along_now);
             for path in 0..3 {
@@ -96,7 +103,8 @@ impl Pass {
                 };
                 let at = path * width + step;
                 let after = &mut now[at * stride..][..stride];
-                least_now[at] = advance::<false>(costs, history, least, penalties, after, sums);
+                // SAFETY: the caller's promise.
+                least_now[at] = unsafe { advance::<B, false>(costs, history, least, penalties, after, sums) };
             }
         }
         std::mem::swap(before, now);
@@ -118,8 +126,11 @@ fn fill_costs(costs: &mut [u8], word: u64, right: &[u64], first: usize) {
 }
 
 /// One step of a path (Hirschmüller's equation 13): adds to `sums`, or writes them, and returns the least.
+///
+/// # Safety
+/// The machine has the instructions of `B`.
 #[inline(always)]
-fn advance<const IS_FIRST: bool>(
+unsafe fn advance<B: Bytes, const IS_FIRST: bool>(
     costs: &[u8],
     before: &[u8],
     least: u8,
@@ -128,19 +139,21 @@ fn advance<const IS_FIRST: bool>(
     sums: &mut [u16],
 ) -> u8 {
     let count = costs.len();
-    let (fewer, same, more) = (&before[..count], &before[1..=count], &before[2..count + 2]);
-    let after = &mut after[1..=count];
-    let jump = least.saturating_add(penalties.large);
-    let mut lowest = u8::MAX;
-    for at in 0..count {
-        let near = fewer[at].min(more[at]).saturating_add(penalties.small);
-        // No overflow: the best is at most the least and the larger penalty.
-        let sum = costs[at].wrapping_add(same[at].min(near).min(jump).wrapping_sub(least));
-        after[at] = sum;
-        lowest = lowest.min(sum);
+    let (before, after, sums) = (&before[..count + 2], &mut after[..count + 2], &mut sums[..count]);
+    // SAFETY: `B::COUNT` numbers from `at` on are costs, and so are the sums; before and after have one more on both sides.
+    unsafe {
+        let (small, jump) = (B::splat(penalties.small), B::splat(least.saturating_add(penalties.large)));
+        let (least, mut lowest) = (B::splat(least), B::splat(u8::MAX));
+        for at in (0..count - count % B::COUNT).step_by(B::COUNT) {
+            let before = before.as_ptr().add(at);
+            let near = B::load(before).min(B::load(before.add(2))).saturating_add(small);
+            // No overflow: the best is at most the least and the larger penalty.
+            let best = B::load(before.add(1)).min(near).min(jump).sub(least);
+            let sum = B::load(costs.as_ptr().add(at)).add(best);
+            sum.store(after.as_mut_ptr().add(at + 1));
+            lowest = lowest.min(sum);
+            sum.widen::<IS_FIRST>(sums.as_mut_ptr().add(at));
+        }
+        lowest.lowest()
     }
-    for (sum, path) in sums.iter_mut().zip(after) {
-        *sum = u16::from(*path) + if IS_FIRST { 0 } else { *sum };
-    }
-    lowest
 }
