@@ -57,7 +57,7 @@ pub type Sink<'a> = dyn FnMut(&[TensorView<'_>]) -> Result<()> + 'a;
 pub struct SessionOptions {
     /// Where it runs.
     pub device: Device,
-    /// Threads that work on one run; 0 takes [`crate::default_threads`].
+    /// Threads that work on one run; 0 takes [`crate::default_threads`], or one where more would only cost time.
     pub threads: usize,
 }
 

@@ -17,6 +17,7 @@ use ort::session::builder::{GraphOptimizationLevel, SessionBuilder};
 
 use crate::onnx_header::OnnxHeader;
 use crate::runtime::{Engine, Runtime, SessionOptions};
+use crate::tensor::TensorInfo;
 use engine::OnnxRuntimeEngine;
 use library::{Library, Version};
 use suited::suited;
@@ -201,7 +202,11 @@ impl Runtime for OnnxRuntime {
     }
 
     fn open(&self, model: &[u8], options: &SessionOptions) -> Result<Box<dyn Engine>> {
-        OnnxHeader::read(model)?;
+        let is_small = is_small(&OnnxHeader::read(model)?.inputs, model.len());
+        let options = &match options.threads == 0 && is_small {
+            true => SessionOptions { threads: 1, ..*options },
+            false => *options,
+        };
         let (device, session) = match options.device {
             Device::Cpu => (Device::Cpu, self.open_on_cpu(model, options)?),
             Device::Auto => {
@@ -227,9 +232,46 @@ impl Runtime for OnnxRuntime {
     }
 }
 
+/// Numbers of the inputs, times bytes of the model, below which a second thread costs more than it spares: keyword spotting
+/// by DS-CNN (490 numbers, 52 kB) takes 0.10 ms with two threads, 0.06 with one.
+const ONE_THREAD: usize = 30_000_000;
+
+/// Whether a run is little work: a weight meets each number of the inputs at most once, in all networks but those that go
+/// over them again, which leave a size other than that of the batch open.
+fn is_small(inputs: &[TensorInfo], bytes: usize) -> bool {
+    let numbers = |input: &TensorInfo| {
+        let (batch, rest) = input.dims.split_first()?;
+        rest.iter().try_fold(batch.unwrap_or(1), |numbers, size| numbers.checked_mul((*size)?))
+    };
+    let all = inputs.iter().try_fold(0_usize, |all, input| all.checked_add(numbers(input)?));
+    all.and_then(|all| all.checked_mul(bytes)).is_some_and(|work| work < ONE_THREAD)
+}
+
 /// What ONNX Runtime says, without where in its source it says so.
 fn words<R>(error: &ort::Error<R>) -> String {
     let text = error.message();
     let said = text.split_once("[ONNXRuntimeError] : ").and_then(|(_, text)| text.splitn(3, " : ").nth(2));
     said.unwrap_or(text).trim().to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tensor::ElementType;
+
+    #[test]
+    fn small_networks_are_told_by_inputs_and_weights() {
+        let input = |dims: &[Option<usize>]| TensorInfo {
+            name: String::new(),
+            element_type: ElementType::F32,
+            dims: dims.to_vec(),
+        };
+        let cepstra = input(&[None, Some(1), Some(49), Some(10)]);
+        assert!(is_small(std::slice::from_ref(&cepstra), 52_000));
+        assert!(!is_small(&[cepstra], 10_000_000), "many weights");
+        let picture = input(&[Some(1), Some(3), Some(64), Some(64)]);
+        assert!(!is_small(&[picture], 52_000), "a picture");
+        assert!(!is_small(&[input(&[Some(1), None])], 1000), "of any length");
+        assert!(!is_small(&[input(&[Some(usize::MAX), Some(2)])], 1));
+    }
 }
