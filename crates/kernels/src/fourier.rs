@@ -36,7 +36,8 @@ pub enum Spectrum {
 /// let samples = [[1.0; FOURIER_FRAMES]; 8];
 /// let mut power = Vec::new();
 /// fourier.run(Isa::best(), Spectrum::Power, &samples, &mut FourierWork::default(), &mut power);
-/// assert_eq!(power.iter().map(|frames| frames[0]).collect::<Vec<_>>(), [64.0, 0.0, 0.0, 0.0, 0.0]);
+/// assert_eq!(power.len(), 5);
+/// assert!(power[0][0] == 64.0 && power[1..].iter().all(|frames| frames[0] < 1e-6));
 /// ```
 #[derive(Debug)]
 pub struct RealFourier {
