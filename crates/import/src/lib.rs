@@ -8,7 +8,8 @@
 //! [`onnx_from_ncnn`] takes the two files of a model of ncnn's, which has pictures channels-first already.
 //!
 //! [`onnx_from_whisper`] builds the two networks of a Whisper around weights from anywhere; those of CTranslate2 are read by
-//! [`whisper_from_ctranslate2`], those of transformers by [`whisper_from_safetensors`]. [`SafetensorsFile`] serves weights of any
+//! [`whisper_from_ctranslate2`], those of transformers by [`whisper_from_safetensors`], those of ONNX files by
+//! [`whisper_from_onnx`]. [`SafetensorsFile`] serves weights of any
 //! network.
 
 mod bounded;
@@ -26,4 +27,4 @@ pub use safetensors::{FloatTensor, SafetensorsFile, whisper_from_safetensors};
 pub use tensorflow::ImportOptions;
 pub use tfjs::{onnx_from_tfjs, onnx_from_tfjs_file, tfjs_weight_files};
 pub use tflite::{onnx_from_tflite, onnx_from_tflite_file};
-pub use whisper::{WhisperOnnx, WhisperWeights, onnx_from_whisper};
+pub use whisper::{WhisperOnnx, WhisperWeights, is_exported_whisper, onnx_from_whisper, whisper_from_onnx};

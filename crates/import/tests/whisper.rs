@@ -4,7 +4,11 @@
 #![allow(clippy::unwrap_used)]
 
 use opendr_engine::ErrorKind;
-use opendr_import::{WhisperOnnx, whisper_from_ctranslate2, whisper_from_safetensors};
+use opendr_import::{
+    WhisperOnnx, is_exported_whisper, whisper_from_ctranslate2, whisper_from_onnx, whisper_from_safetensors,
+};
+use opendr_onnx::proto::{AttributeProto, DataType, GraphProto, NodeProto, TensorProto};
+use opendr_onnx::{bytes_from_model, model_from_graph};
 use rten::{Model, ValueOrView};
 use rten_tensor::Tensor;
 use rten_tensor::prelude::*;
@@ -103,8 +107,8 @@ fn tiny_file() -> File {
     file
 }
 
-/// The same weights with the names of transformers.
-fn tiny_safetensors() -> Vec<u8> {
+/// The same weights with the names of transformers, without the leading `model.`: names, shapes and numbers.
+fn renamed() -> Vec<(String, Vec<usize>, Vec<u8>)> {
     let names = [
         ("position_encodings/encodings", "embed_positions.weight"),
         ("embeddings/weight", "embed_tokens.weight"),
@@ -122,7 +126,7 @@ fn tiny_safetensors() -> Vec<u8> {
         ("gamma", "weight"),
         ("beta", "bias"),
     ];
-    let (mut header, mut data) = (serde_json::Map::new(), Vec::new());
+    let mut weights = Vec::new();
     for (name, dims, bytes) in tiny_file().weights {
         let name = names.iter().fold(name, |name, (from, to)| name.replace(from, to)).replace('/', ".");
         let (before, rest) = name.split_once('[').unwrap_or((&name, "]"));
@@ -131,14 +135,73 @@ fn tiny_safetensors() -> Vec<u8> {
         for (part, bytes) in parts.iter().zip(bytes.chunks_exact(bytes.len() / parts.len())) {
             let mut dims = dims.clone();
             dims[0] /= parts.len();
-            let places = [data.len(), data.len() + bytes.len()];
-            let entry = serde_json::json!({"dtype": "F16", "shape": dims, "data_offsets": places});
-            header.insert(format!("model.{before}{part}{after}"), entry);
-            data.extend(bytes);
+            weights.push((format!("{before}{part}{after}"), dims, bytes.to_vec()));
         }
+    }
+    weights
+}
+
+/// They as transformers saves them.
+fn tiny_safetensors() -> Vec<u8> {
+    let (mut header, mut data) = (serde_json::Map::new(), Vec::new());
+    for (name, dims, bytes) in renamed() {
+        let places = [data.len(), data.len() + bytes.len()];
+        let entry = serde_json::json!({"dtype": "F16", "shape": dims, "data_offsets": places});
+        header.insert(format!("model.{name}"), entry);
+        data.extend(bytes);
     }
     let header = serde_json::to_vec(&header).unwrap();
     [&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat()
+}
+
+/// They as PyTorch exports one half: weights of dense layers transposed and without their names, the encoder's positions
+/// without theirs; within `inner` graphs of an `If` where that is not 0.
+fn tiny_exported(side: &str, prefix: &str, inner: usize) -> Vec<u8> {
+    let mut graph = GraphProto::default();
+    for (number, (name, dims, bytes)) in renamed().into_iter().enumerate() {
+        let Some(rest) = name.strip_prefix(&format!("{side}.")) else { continue };
+        let mut tensor = TensorProto {
+            name: format!("{prefix}{rest}"),
+            dims: dims.iter().map(|dim| *dim as i64).collect(),
+            data_type: DataType::Float16 as i32,
+            raw_data: bytes.clone(),
+            ..TensorProto::default()
+        };
+        let module = rest.strip_suffix(".weight").unwrap_or("");
+        if ["_proj", "fc1", "fc2"].iter().any(|end| module.ends_with(end)) {
+            let (rows, columns) = (dims[0], dims[1]);
+            let places =
+                (0..columns).flat_map(|column| (0..rows).map(move |row| 2 * (row * columns + column)));
+            tensor.raw_data = places.flat_map(|at| [bytes[at], bytes[at + 1]]).collect();
+            tensor.dims.reverse();
+            tensor.name = format!("onnx::MatMul_{number}");
+            let module = format!("{prefix}{module}").replace('.', "/").replace("layers/", "layers.");
+            graph.node.push(NodeProto {
+                op_type: "MatMul".into(),
+                name: format!("/{module}/MatMul"),
+                input: vec!["x".into(), tensor.name.clone()],
+                ..NodeProto::default()
+            });
+        } else if name == "encoder.embed_positions.weight" {
+            tensor.name = format!("onnx::Add_{number}");
+        } else if rest == "layer_norm.bias" {
+            // What is equal is stored once.
+            tensor.name = "other".into();
+            graph.node.push(NodeProto {
+                op_type: "Identity".into(),
+                input: vec!["other".into()],
+                output: vec![format!("{prefix}{rest}")],
+                ..NodeProto::default()
+            });
+        }
+        graph.initializer.push(tensor);
+    }
+    for _ in 0..inner {
+        let attribute = AttributeProto { name: "then_branch".into(), g: Some(graph), ..Default::default() };
+        let node = NodeProto { op_type: "If".into(), attribute: vec![attribute], ..NodeProto::default() };
+        graph = GraphProto { node: vec![node], ..GraphProto::default() };
+    }
+    bytes_from_model(&model_from_graph(graph))
 }
 
 /// Decodes `tokens` in steps of the given sizes; the logits after the last.
@@ -206,6 +269,38 @@ fn safetensors_give_the_same_networks() {
     let networks = whisper_from_safetensors(&tiny_safetensors()).unwrap();
     let wanted = whisper_from_ctranslate2(&tiny()).unwrap();
     assert!(networks.encoder == wanted.encoder && networks.decoder == wanted.decoder);
+}
+
+#[test]
+fn exported_networks_give_the_same_ones() {
+    let wanted = whisper_from_safetensors(&tiny_safetensors()).unwrap();
+    let encoder = tiny_exported("encoder", "", 0);
+    assert!(is_exported_whisper(&encoder) && !is_exported_whisper(&wanted.encoder));
+    for (prefix, inner) in [("", 0), ("model.decoder.", 0), ("model.decoder.", 2)] {
+        let networks = whisper_from_onnx(&encoder, &tiny_exported("decoder", prefix, inner)).unwrap();
+        assert!(networks.encoder == wanted.encoder && networks.decoder == wanted.decoder, "{prefix} {inner}");
+    }
+}
+
+#[test]
+fn other_and_damaged_networks_are_refused() {
+    let (encoder, decoder) = (tiny_exported("encoder", "", 0), tiny_exported("decoder", "model.decoder.", 1));
+    assert!(whisper_from_onnx(&decoder, &encoder).is_err());
+    for size in (0..encoder.len()).step_by(997) {
+        assert!(whisper_from_onnx(&encoder[..size], &decoder).is_err(), "{size} bytes");
+    }
+    for place in (0..decoder.len()).step_by(331) {
+        let mut damaged = decoder.clone();
+        damaged[place] ^= 0x11;
+        whisper_from_onnx(&encoder, &damaged).ok();
+    }
+    // As a quantised one is stored: there are products, but not of floats.
+    let mut model = opendr_onnx::model_from_bytes(&encoder).unwrap();
+    for tensor in &mut model.graph.as_mut().unwrap().initializer {
+        tensor.data_type = DataType::Int8 as i32;
+    }
+    let error = whisper_from_onnx(&bytes_from_model(&model), &decoder).unwrap_err();
+    assert!(error.kind() == ErrorKind::Unsupported && error.to_string().contains("quantised"), "{error}");
 }
 
 #[test]

@@ -25,7 +25,7 @@ use opendr_perception::object_detection_2d::{
 };
 use opendr_perception::object_detection_3d::VoxelObjectDetection3d;
 use opendr_perception::object_tracking_2d::{ByteTrack, DeepSort, FairMot, NanoTrack, OcSort, Sort};
-use opendr_perception::object_tracking_3d::Ab3dmot;
+use opendr_perception::object_tracking_3d::{Ab3dmot, Vpit};
 use opendr_perception::panoptic_segmentation::{EfficientLps, EfficientPs};
 use opendr_perception::pose_estimation::{
     BlazePose, HighResolutionPoseEstimation, LightweightOpenPose, Movenet, Posenet,
@@ -59,6 +59,7 @@ pub fn registry() -> &'static Registry {
             FairMot,
             NanoTrack,
             Ab3dmot,
+            Vpit,
             UltraLightFace,
             Yunet,
             FaceRecognition,

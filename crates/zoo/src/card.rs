@@ -140,6 +140,9 @@ pub enum Import {
     Ctranslate2Whisper,
     /// A Whisper that transformers saved: the first of the files is its `model.safetensors`; else as `Ctranslate2Whisper`.
     SafetensorsWhisper,
+    /// A Whisper that PyTorch exported: the first of the files is its `encoder_model.onnx`, the second its `decoder_model.onnx`;
+    /// else as `Ctranslate2Whisper`.
+    OnnxWhisper,
 }
 
 /// One network that is made of files of another format.
@@ -174,7 +177,7 @@ impl Import {
     pub fn outputs(&self) -> Vec<&str> {
         match self {
             Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => vec![&network.output],
-            Self::Ctranslate2Whisper | Self::SafetensorsWhisper => Self::WHISPER.to_vec(),
+            Self::Ctranslate2Whisper | Self::SafetensorsWhisper | Self::OnnxWhisper => Self::WHISPER.to_vec(),
         }
     }
 
@@ -182,7 +185,7 @@ impl Import {
     pub(crate) fn named_files(&self) -> &[String] {
         match self {
             Self::Tfjs(network) | Self::Tflite(network) | Self::Ncnn(network) => &network.files,
-            Self::Ctranslate2Whisper | Self::SafetensorsWhisper => &[],
+            Self::Ctranslate2Whisper | Self::SafetensorsWhisper | Self::OnnxWhisper => &[],
         }
     }
 

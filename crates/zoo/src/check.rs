@@ -81,6 +81,7 @@ fn check_imports(variant: &Variant) -> Result<()> {
             Import::Ctranslate2Whisper | Import::SafetensorsWhisper => {
                 ensure(count >= 1, || "no files".into())?
             }
+            Import::OnnxWhisper => ensure(count >= 2, || "a Whisper has an encoder and a decoder".into())?,
         }
     }
     Ok(())

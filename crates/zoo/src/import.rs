@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use opendr_engine::{Error, Result};
 use opendr_import::{
-    ImportOptions, onnx_from_ncnn, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files,
-    whisper_from_ctranslate2, whisper_from_safetensors,
+    ImportOptions, WhisperOnnx, onnx_from_ncnn, onnx_from_tfjs, onnx_from_tflite, tfjs_weight_files,
+    whisper_from_ctranslate2, whisper_from_onnx, whisper_from_safetensors,
 };
 
 use crate::card::{Import, ImportedNetwork};
@@ -49,14 +49,20 @@ pub(crate) fn imported<'a>(import: &'a Import, files: &[(&'a str, &'a [u8])]) ->
                 Import::Ctranslate2Whisper => whisper_from_ctranslate2(first)?,
                 _ => whisper_from_safetensors(first)?,
             };
-            let [encoder, decoder] = Import::WHISPER;
-            let made = [(encoder, networks.encoder.into()), (decoder, networks.decoder.into())];
-            Ok(made
-                .into_iter()
-                .chain(others.iter().map(|(name, bytes)| (*name, Cow::Borrowed(*bytes))))
-                .collect())
+            Ok(whisper(networks, others))
         }
+        Import::OnnxWhisper => match others {
+            [(_, decoder), others @ ..] => Ok(whisper(whisper_from_onnx(first, decoder)?, others)),
+            [] => Err(Error::format("a Whisper has an encoder and a decoder; give both files")),
+        },
     }
+}
+
+/// The networks, and what goes with them as it is.
+fn whisper<'a>(networks: WhisperOnnx, others: &[(&'a str, &'a [u8])]) -> Files<'a> {
+    let [encoder, decoder] = Import::WHISPER;
+    let made = [(encoder, networks.encoder.into()), (decoder, networks.decoder.into())];
+    made.into_iter().chain(others.iter().map(|(name, bytes)| (*name, Cow::Borrowed(*bytes)))).collect()
 }
 
 fn options(network: &ImportedNetwork) -> ImportOptions {

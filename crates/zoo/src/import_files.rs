@@ -4,7 +4,7 @@ use std::path::Path;
 
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_import::{ImportOptions, SafetensorsFile};
+use opendr_import::{ImportOptions, SafetensorsFile, is_exported_whisper};
 
 use crate::card::{Import, ImportedNetwork};
 use crate::import::imported;
@@ -14,7 +14,7 @@ const MAX_BYTES: u64 = 1 << 31;
 
 /// Makes a container at `output` of files that a user has, converted to ONNX where they are not: a model of TensorFlow
 /// Lite, TensorFlow.js (its JSON first, then its weights) or ncnn (its layers first, then its weights), the weights of a
-/// Whisper by CTranslate2 or in safetensors. Which it is shows in the first file's content; what is not part of it, such as
+/// Whisper by CTranslate2, in safetensors or in two ONNX files that PyTorch exported (the encoder first). Which it is shows in the first file's content; what is not part of it, such as
 /// a tokeniser, goes into the container as it is, and one ONNX file becomes `model.onnx`. It is put there once `check`
 /// accepts it, e.g. because the learner loads it.
 ///
@@ -70,6 +70,7 @@ enum Format {
     Ncnn,
     Ctranslate2Whisper,
     SafetensorsWhisper,
+    OnnxWhisper,
 }
 
 impl Format {
@@ -81,6 +82,7 @@ impl Format {
             () if SafetensorsFile::is_start(bytes) => Self::SafetensorsWhisper,
             () if text.starts_with(b"7767517") => Self::Ncnn,
             () if text.starts_with(b"{") => Self::Tfjs,
+            () if is_exported_whisper(bytes) => Self::OnnxWhisper,
             () if name.to_lowercase().ends_with(".onnx") => Self::Onnx,
             () => {
                 return Err(Error::unsupported(format!(
@@ -105,6 +107,7 @@ impl Format {
             Self::Ncnn => Some(Import::Ncnn(network())),
             Self::Ctranslate2Whisper => Some(Import::Ctranslate2Whisper),
             Self::SafetensorsWhisper => Some(Import::SafetensorsWhisper),
+            Self::OnnxWhisper => Some(Import::OnnxWhisper),
         }
     }
 
@@ -112,7 +115,7 @@ impl Format {
     fn files(self, bytes: &[u8]) -> Result<usize> {
         Ok(match self {
             Self::Tfjs => 1 + opendr_import::tfjs_weight_files(bytes)?.len(),
-            Self::Ncnn => 2,
+            Self::Ncnn | Self::OnnxWhisper => 2,
             Self::Onnx | Self::Tflite | Self::Ctranslate2Whisper | Self::SafetensorsWhisper => 1,
         })
     }
@@ -125,12 +128,13 @@ mod tests {
     #[test]
     fn content_tells_the_format() {
         let safetensors = [&2u64.to_le_bytes()[..], b"{}"].concat();
-        let cases: [(&str, &[u8], Format); 6] = [
+        let cases: [(&str, &[u8], Format); 7] = [
             ("a.bin", b"\x1c\0\0\0TFL3rest", Format::Tflite),
             ("model.bin", b"\x06\0\0\0\x0c\0WhisperSpec\0", Format::Ctranslate2Whisper),
             ("weights", &safetensors, Format::SafetensorsWhisper),
             ("a.param", b"7767517\n3 3\n", Format::Ncnn),
             ("model.json", b" {\"modelTopology\": {}}", Format::Tfjs),
+            ("encoder_model.onnx", b"\x08\x08/layers.0/self_attn/q_proj/MatMul", Format::OnnxWhisper),
             ("Net.ONNX", b"\x08\x08", Format::Onnx),
         ];
         for (name, bytes, wanted) in cases {

@@ -13,6 +13,7 @@ use crate::{learner_flags, loading, stdout};
 const EXAMPLES: &str = "\
 Examples:
   opendr import whisper model.safetensors tokenizer.json --output small     as transformers saved it
+  opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --output small   as Optimum did
   opendr import whisper model.bin tokenizer.json --output small             as CTranslate2 did
   opendr import LEARNER detector.tflite --classes names.txt --output mine
   opendr import LEARNER net.param net.bin --output mine                     of ncnn

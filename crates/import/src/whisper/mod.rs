@@ -6,12 +6,14 @@
 mod decoder;
 mod encoder;
 mod layers;
+mod onnx;
 mod sizes;
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
 use opendr_onnx::{Array, bytes_from_model, model_from_graph, passes};
 
+pub use onnx::{is_exported_whisper, whisper_from_onnx};
 use sizes::Sizes;
 
 /// Features of an attention head, in Whispers of every size.

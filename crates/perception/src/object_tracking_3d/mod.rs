@@ -1,5 +1,9 @@
 //! Objects that keep their number from moment to moment, in space.
 
 mod ab3dmot;
+mod vpit;
 
 pub use ab3dmot::{Ab3dmot, Ab3dmotParams, Ab3dmotState};
+pub use vpit::{Extrapolation, Vpit, VpitInputs, VpitLayout, VpitParams, VpitState};
+#[cfg(feature = "training")]
+pub use vpit::{VpitFitParams, VpitObjective};

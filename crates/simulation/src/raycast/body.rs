@@ -44,6 +44,21 @@ impl Body {
         Self::new(shape, position, [1.0, 0.0, 0.0, 0.0], label)
     }
 
+    /// The same body at `position`, turned by `yaw` about the vertical, counter-clockwise in radians.
+    ///
+    /// # Errors
+    /// `InvalidInput` when a number is not finite.
+    pub fn carried(&self, position: Vector, yaw: f32) -> Result<Self> {
+        if !yaw.is_finite() || !position.iter().all(|part| part.is_finite()) {
+            return Err(Error::invalid_input(format!(
+                "a body cannot stand at {position:?}, turned by {yaw}"
+            )));
+        }
+        let (sin, cos) = yaw.sin_cos();
+        let body_from_world = self.body_from_world.map(|[x, y, z]| [x * cos - y * sin, x * sin + y * cos, z]);
+        Ok(Self { position, body_from_world, ..self.clone() })
+    }
+
     /// What it is.
     pub fn shape(&self) -> &Shape {
         &self.shape

@@ -45,19 +45,19 @@ pub struct Street {
     pub scene: Scene,
     /// All that stands there.
     pub objects: Vec<StreetObject>,
-    ground: Ground,
+    pub(super) ground: Ground,
     floors: Vec<RotatedRectangle>,
 }
 
 /// A plane a little out of level.
 #[derive(Debug, Clone, Copy, Default)]
-struct Ground {
+pub(super) struct Ground {
     height: f32,
     slopes: [f32; 2],
 }
 
 impl Ground {
-    fn at(&self, x: f32, y: f32) -> f32 {
+    pub fn at(&self, x: f32, y: f32) -> f32 {
         self.height + self.slopes[0] * x + self.slopes[1] * y
     }
 }
@@ -68,7 +68,8 @@ const MOUNT: f32 = 1.73;
 const AHEAD: f32 = 62.0;
 const ASIDE: f32 = 30.0;
 /// The car that carries the lidar.
-const OWN: RotatedRectangle = RotatedRectangle { center: [0.0, 0.0], size: [6.0, 2.6], angle: 0.0 };
+pub(super) const OWN: RotatedRectangle =
+    RotatedRectangle { center: [0.0, 0.0], size: [6.0, 2.6], angle: 0.0 };
 /// Tries to find a free place.
 const TRIES: usize = 12;
 

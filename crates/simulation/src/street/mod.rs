@@ -5,13 +5,16 @@
 //! driving?", CVPR 2012): sensor, height above ground, calibration, sizes of cars, rules of what counts as hidden.
 
 mod car_body;
+mod drives;
 mod layout;
+mod motion;
 mod scans;
 mod segments;
 #[cfg(test)]
 mod tests;
 
 pub use car_body::CarShape;
+pub use drives::StreetDrives;
 pub use layout::{Street, StreetKind, StreetObject};
 pub use scans::StreetScans;
 pub use segments::StreetSegments;

@@ -2,7 +2,7 @@
 
 use opendr_engine::data::{Calibration, PointCloud, PointCloudWithCalibration};
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
-use opendr_engine::target::{BoundingBox3DList, Classes};
+use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Classes};
 use opendr_engine::{Error, Header, Random, Result};
 
 use super::{Street, StreetKind, StreetObject};
@@ -51,21 +51,38 @@ impl StreetScans {
         }
         let mut random = Random::at([self.seed, index as u64]);
         let street = Street::new(&mut random)?;
+        let header = Header::new(index as i64 + 1, "lidar");
+        let (returns, cloud) = self.look(&street, header, &mut random)?;
+        Ok((street, returns, cloud))
+    }
+
+    /// What comes back of a street, and that as points.
+    pub(super) fn look(
+        &self,
+        street: &Street,
+        header: Header,
+        random: &mut Random,
+    ) -> Result<(Vec<Return>, PointCloudWithCalibration)> {
         let lost = random.uniform(0.0, 0.15);
-        let returns = self.lidar.scan(&street.scene, &mut random, |hit, place| {
+        let returns = self.lidar.scan(&street.scene, random, |hit, place| {
             match street.objects.get(usize::from(hit.label)) {
                 Some(object) => echo(object, hit, place, lost),
                 None => Echo { noise: 0.0, lost: 1.0, reflectance: 0.0 },
             }
         })?;
         let points: Vec<f32> = returns.iter().flat_map(|seen| seen.point).collect();
-        let header = Header::new(index as i64 + 1, "lidar");
         let cloud = PointCloud::new(points, [returns.len(), 4])?.with_header(header);
         let cloud = PointCloudWithCalibration::new(cloud, self.calibration.clone(), Some(IMAGE_SHAPE));
-        Ok((street, returns, cloud))
+        Ok((returns, cloud))
     }
 
-    fn boxes(&self, street: &Street, returns: &[Return]) -> Result<BoundingBox3DList> {
+    /// The seed of the streets.
+    pub(super) fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The boxes of what was seen, each with the number of its object on the street.
+    pub(super) fn found(&self, street: &Street, returns: &[Return]) -> Result<Vec<(usize, BoundingBox3D)>> {
         let mut seen = vec![0_usize; street.objects.len()];
         for label in returns.iter().map(|seen| usize::from(seen.label)) {
             seen.get_mut(label).into_iter().for_each(|count| *count += 1);
@@ -82,9 +99,9 @@ impl StreetScans {
             found.name = name.into();
             found.confidence = 1.0;
             found.occluded = self.hidden(street, label, seen[label], &rays)?;
-            boxes.push(found);
+            boxes.push((label, found));
         }
-        Ok(BoundingBox3DList { classes: self.classes(), ..boxes.into() })
+        Ok(boxes)
     }
 
     /// 0 to 3 by the share of the rays that would meet it if it stood alone.
@@ -149,8 +166,9 @@ impl DatasetIterator for StreetScans {
 
     fn get(&self, index: usize) -> Result<Sample> {
         let (street, returns, cloud) = self.scan(index)?;
-        let boxes = self.boxes(&street, &returns)?;
-        let target = BoundingBox3DList { header: cloud.cloud.header.clone(), ..boxes };
+        let boxes: Vec<_> = self.found(&street, &returns)?.into_iter().map(|(_, found)| found).collect();
+        let header = cloud.cloud.header.clone();
+        let target = BoundingBox3DList { header, classes: self.classes(), ..boxes.into() };
         Ok(Sample { data: vec![cloud.into()], target: Some(target.into()) })
     }
 

@@ -12,7 +12,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_inference::TensorInfo;
+use opendr_inference::{TensorInfo, default_threads, with_threads};
+use opendr_kernels::WorkerPool;
 use opendr_vision::{Preprocess, Similarity};
 
 use crate::face_finder::FaceFinder;
@@ -44,7 +45,9 @@ pub struct FaceMesh {
     params: FaceMeshParams,
     finder: FaceFinder,
     mesh: PictureNetwork,
-    iris: PictureNetwork,
+    /// One for each eye: they run side by side on a thread each, for the network is too small for threads to share.
+    irises: [PictureNetwork; 2],
+    eyes: WorkerPool,
     outputs: MeshOutputs,
     iris_at: IrisAt,
     scratch: Pool<Scratch>,
@@ -118,14 +121,16 @@ impl Learner for FaceMesh {
 
     fn load(model: &Model, params: FaceMeshParams, device: Device) -> Result<Self> {
         let mesh = PictureNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
-        let iris =
-            PictureNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)))?;
+        let open_iris =
+            || PictureNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)));
+        let irises = with_threads(1, || Ok::<_, Error>([open_iris()?, open_iris()?]))?;
+        let [iris, _] = &irises;
         let (Some(points), Some(presence)) = (output_of(&mesh, 3 * MESH), output_of(&mesh, 1)) else {
             return Err(Error::format(format!("{} gives no {MESH} points with a score", FILES[0])));
         };
-        let alone = output_of(&iris, 3 * IRIS).map(|output| IrisAt { output, offset: 0 });
+        let alone = output_of(iris, 3 * IRIS).map(|output| IrisAt { output, offset: 0 });
         let both = || {
-            let output = output_of(&iris, EYE_OUTLINE + 3 * IRIS)?;
+            let output = output_of(iris, EYE_OUTLINE + 3 * IRIS)?;
             Some(IrisAt { output, offset: EYE_OUTLINE })
         };
         let Some(iris_at) = alone.or_else(both) else {
@@ -136,7 +141,8 @@ impl Learner for FaceMesh {
             outputs: MeshOutputs { points, presence },
             scratch: Pool::default(),
             mesh,
-            iris,
+            irises,
+            eyes: WorkerPool::new(default_threads()?.min(2)),
             iris_at,
             params,
         })
@@ -197,9 +203,7 @@ impl FaceMesh {
         self.fill_mesh(image, &track.crop, pose)?;
         let next = crop::of_mesh(&pose.keypoints, SIDE);
         let (Some(crop), true) = (next, pose.confidence >= self.params.threshold) else { return Ok(0) };
-        for (corners, is_mirrored) in EYES.into_iter().zip([false, true]) {
-            self.add_iris(image, corners, is_mirrored, pose)?;
-        }
+        self.add_irises(image, pose)?;
         (pose.id, pose.skeleton, pose.region) = (Some(track.id), Skeleton::Face478, None);
         state.tracks.push(Track { crop, ..track });
         Ok(1)
@@ -226,28 +230,46 @@ impl FaceMesh {
         )
     }
 
-    /// Adds the points of an iris; the network knows one eye, and is shown the other in a mirror. Where there is no eye
-    /// to look at they are missing.
-    fn add_iris(&self, image: &Image, corners: [usize; 2], is_mirrored: bool, pose: &mut Pose) -> Result<()> {
-        let Some(crop) = crop::of_eye(&pose.keypoints, corners, EYE_SIDE) else {
-            pose.keypoints.extend([Keypoint::MISSING; IRIS]);
-            return Ok(());
-        };
+    fn add_irises(&self, image: &Image, pose: &mut Pose) -> Result<()> {
+        let (mut first, mut second) = (Ok([Keypoint::MISSING; IRIS]), Ok([Keypoint::MISSING; IRIS]));
+        let ([one, other], [network, mirrored]) = (EYES, &self.irises);
+        self.eyes.join(
+            || first = self.iris(network, image, one, false, pose),
+            || second = self.iris(mirrored, image, other, true, pose),
+        );
+        let (first, second) = (first?, second?);
+        pose.keypoints.extend(first.into_iter().chain(second));
+        Ok(())
+    }
+
+    /// The points of an iris; the network knows one eye, and is shown the other in a mirror. Where there is no eye to look
+    /// at they are missing.
+    fn iris(
+        &self,
+        network: &PictureNetwork,
+        image: &Image,
+        corners: [usize; 2],
+        is_mirrored: bool,
+        pose: &Pose,
+    ) -> Result<[Keypoint; IRIS]> {
+        let mut iris = [Keypoint::MISSING; IRIS];
+        let Some(crop) = crop::of_eye(&pose.keypoints, corners, EYE_SIDE) else { return Ok(iris) };
         let confidence = pose.confidence;
         let mirror = |input: &mut [f32]| {
             if is_mirrored {
-                self.iris.mirror(input);
+                network.mirror(input);
             }
         };
-        self.iris.run_warped(image, &crop, mirror, |outputs| {
+        network.run_warped(image, &crop, mirror, |outputs| {
             let numbers = outputs[self.iris_at.output].values::<f32>()?;
-            let points = numbers.get(self.iris_at.offset..).unwrap_or_default().chunks_exact(3).take(IRIS);
-            pose.keypoints.extend(points.map(|point| {
+            let points = numbers.get(self.iris_at.offset..).unwrap_or_default().chunks_exact(3);
+            for (keypoint, point) in iris.iter_mut().zip(points) {
                 let x = if is_mirrored { EYE_SIDE as f32 - point[0] } else { point[0] };
                 let [x, y] = crop.image_from_crop([x, point[1]]);
-                Keypoint { x, y, confidence }
-            }));
+                *keypoint = Keypoint { x, y, confidence };
+            }
             Ok(())
-        })
+        })?;
+        Ok(iris)
     }
 }
