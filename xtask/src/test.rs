@@ -22,9 +22,13 @@ pub fn run() -> Result<()> {
         cargo
     };
     check("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    // With the features that no other check builds: what needs a GPU, and ROS 2 over Zenoh. Burn's CUDA compiler comes through
+    // a build script that downloads LLVM, except where only documentation is built; a check needs no more than that.
+    let features = format!("{TEST_LEARNER},opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh");
     check(
         "lints",
-        &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]),
+        cargo(&["clippy", "--workspace", "--all-targets", &features, "--", "--deny", "warnings"])
+            .env("DOCS_RS", "1"),
     )?;
     check("without training", &mut cargo(&["check", "--package", "opendr-cli"]))?;
     check(
@@ -33,13 +37,6 @@ pub fn run() -> Result<()> {
             .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
             .env("PYO3_BUILD_EXTENSION_MODULE", "1"),
     )?;
-    // Burn's CUDA compiler comes through a build script that downloads LLVM, except where only documentation is built; a check
-    // needs no more than that.
-    check(
-        "training on GPUs",
-        cargo(&["check", "--package", "opendr-training", "--features", "cuda,wgpu"]).env("DOCS_RS", "1"),
-    )?;
-    check("ROS 2 over Zenoh", &mut cargo(&["check", "--package", "opendr-ros", "--features", "zenoh"]))?;
     if is_installed("cargo-nextest") {
         check("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
     } else {
@@ -51,7 +48,12 @@ pub fn run() -> Result<()> {
         cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
     )?;
     step("release build", &mut cargo(&["build", "--release", TRAINING]))?;
-    check("tests from outside", &mut pytest(&outside, "tests/python", &environment))?;
+    surfaces::build()?;
+    let examples = target().join("debug/examples");
+    check(
+        "tests from outside",
+        pytest(&outside, "tests/python", &environment).env("OPENDR_EXAMPLES", &examples),
+    )?;
     references(&environment)?;
     ros::run(|pytest| environment.apply(pytest))?;
     let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
@@ -73,13 +75,13 @@ fn references(environment: &Environment) -> Result<()> {
     let requirements = tests.map(|tests| format!("{tests}/requirements.txt"));
     let alone = Some("tests/metrics/requirements_without_dependencies.txt");
     let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
-    surfaces::build()?;
     let examples = target().join("debug/examples");
     let [of_libraries @ .., of_recordings] = tests;
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra"]).args(of_libraries);
     pytest
         .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
+        .env("OPENDR_METRICS_COCO_FILES", examples.join("coco_files"))
         .env("OPENDR_DATASETS_DATA", examples.join("data"))
         .env("OPENDR_MFCC", examples.join("mfcc"))
         .env("OPENDR_PERCEPTION_FOLLOW", examples.join("follow"))

@@ -85,7 +85,7 @@ def test_the_wheel_is_small(wheel):
     assert wheel.name.startswith("opendr_rs-") and "-cp39-abi3-" in wheel.name
     # Weights of our own come on top: they are there for `download` without a network, and hardly compress.
     weights = sum(file.stat().st_size for file in (ROOT / "models/weights").glob("*/*") if file.is_file())
-    assert 0 < weights <= 12e6
+    assert 0 < weights <= 16e6
     assert wheel.stat().st_size - weights <= 15e6
 
 

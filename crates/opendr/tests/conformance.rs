@@ -117,6 +117,7 @@ fn with_further_ports(
 fn beside(port: &Port, first: &Value, shift: f32) -> Value {
     match (port.value_type, port.name, first) {
         (ValueType::BoundingBoxList, ..) => boxes(shift).into(),
+        (ValueType::BoundingBox3DList, ..) => cars(shift).into(),
         (ValueType::Image, "depth", Value::Image(image)) => {
             let (width, height) = (image.width(), image.height());
             let metres: Vec<_> = (0..width * height).map(|at| 0.5 + (at % 97) as f32 / 200.0).collect();

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use opendr::data::Image;
 use opendr::dataset::{DatasetRef, ExternalDataset};
 use opendr::datasets::{Format, Lfw, OpenOptions, Problems};
+use opendr::face_detection::{Yunet, YunetParams};
 use opendr::face_recognition::{FaceRecognition, FaceRecognitionParams};
 use opendr::facial_expression_recognition::FacialEmotion;
 use opendr::facial_landmarks::{FaceMesh, FaceMeshParams};
@@ -313,4 +314,36 @@ fn shifted(image: &Image, by: usize) -> Image {
         moved[start + by * 3..start + width * 3].copy_from_slice(&pixels[start..start + (width - by) * 3]);
     }
     Image::from_rgb8(moved, width, height).unwrap()
+}
+
+/// A cloth over nose, mouth and chin makes a face another class. It is not drawn as those that were learned from.
+#[test]
+fn faces_with_masks_are_told() {
+    let Some(models) = models::Models::find() else { return };
+    let Some(path) = models.get("yunet/masked") else { return };
+    let mut finder = Handle::<Yunet>::new(YunetParams::default(), Device::Cpu).unwrap();
+    finder.load(path).unwrap();
+    for (name, count) in [("astronaut.png", 1), ("zidane.jpg", 2)] {
+        let mut picture = photo(&models, name);
+        let faces = finder.infer(&picture).unwrap();
+        assert_eq!(faces.boxes.len(), count, "{name}");
+        for face in &faces.boxes {
+            assert_eq!(faces.classes.label(&face.name), Some("face"), "{name}");
+            let (left, right) = (face.left + 0.08 * face.width, face.left + 0.92 * face.width);
+            let (top, bottom) = (face.landmarks[2][1] - 0.12 * face.height, face.top + 0.97 * face.height);
+            let width = picture.width();
+            for (at, pixel) in picture.bytes_mut().unwrap().chunks_exact_mut(3).enumerate() {
+                let (x, y) = ((at % width) as f32, (at / width) as f32);
+                if x > left && x < right && y > top && y < bottom {
+                    let light = pixel.iter().map(|level| u16::from(*level)).sum::<u16>() / 12;
+                    pixel.copy_from_slice(&[120, 160, 190].map(|level| (level + light).min(255) as u8));
+                }
+            }
+        }
+        let masked = finder.infer(&picture).unwrap();
+        assert!(!masked.boxes.is_empty(), "{name}");
+        for face in &masked.boxes {
+            assert_eq!(masked.classes.label(&face.name), Some("masked face"), "{name}");
+        }
+    }
 }

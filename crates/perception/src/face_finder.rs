@@ -50,6 +50,12 @@ pub(crate) fn largest(faces: &BoundingBoxList) -> Option<&BoundingBox> {
     faces.boxes.iter().max_by(|one, other| one.area().total_cmp(&other.area()))
 }
 
+/// Where the line from eye to eye points, the first two of a face's points; 0 without them.
+pub(crate) fn eye_angle(face: &BoundingBox) -> f32 {
+    let eyes = face.landmarks.first_chunk::<2>();
+    eyes.map_or(0.0, |[from, to]| (to[1] - from[1]).atan2(to[0] - from[0]))
+}
+
 /// The square around a face's box, `scale` times its longer side, turned by `angle`, as a crop of `side` pixels.
 pub(crate) fn square_around(face: &BoundingBox, scale: f32, angle: f32, side: usize) -> Similarity {
     let centre = [face.left + face.width / 2.0, face.top + face.height / 2.0];

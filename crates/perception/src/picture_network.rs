@@ -49,6 +49,11 @@ impl PictureNetwork {
         self.session.output_index(name)
     }
 
+    /// Width and height of the network's input.
+    pub fn size(&self) -> [usize; 2] {
+        self.preprocess.size()
+    }
+
     /// What the network says of its outputs.
     pub fn outputs(&self) -> &[TensorInfo] {
         self.session.outputs()

@@ -1,7 +1,8 @@
 //! YuNet: a face detector of 75 thousand parameters with five landmarks.
 //!
 //! Wu et al., YuNet: A Tiny Millisecond-level Face Detector, Machine Intelligence Research 2023. Faces from about 10
-//! pixels in the network's input upwards; take the variant `dynamic` with a larger `size` for crowds.
+//! pixels in the network's input upwards; take the variant `dynamic` with a larger `size` for crowds. A container may carry a
+//! network as its part `mask` that tells which faces wear one, as OpenDR's RetinaFace does.
 
 use std::array;
 
@@ -13,6 +14,7 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_vision::{Anchor, ChannelOrder, InputGeometry, Preprocess};
 
+use super::masked_face::MaskNetwork;
 use crate::picture_network::PictureNetwork;
 use crate::suppression::{Candidate, Suppression, SuppressionKind};
 
@@ -43,6 +45,7 @@ pub struct Yunet {
     network: PictureNetwork,
     side: usize,
     levels: [Level; 3],
+    masks: Option<MaskNetwork>,
     scratch: Pool<Scratch>,
 }
 
@@ -84,9 +87,11 @@ impl Learner for Yunet {
             let (class, object) = (output("cls")?, output("obj")?);
             Ok(Level { stride, class, object, corners: output("bbox")?, landmarks: output("kps")? })
         };
+        let classes = model.manifest().classes.clone();
         Ok(Self {
             levels: [level(8)?, level(16)?, level(32)?],
-            classes: model.manifest().classes.clone(),
+            masks: MaskNetwork::open(model, &classes, device)?,
+            classes,
             scratch: Pool::default(),
             network,
             side,
@@ -124,7 +129,8 @@ impl Learner for Yunet {
             suppression.run(candidates, marks);
             faces.boxes.extend(candidates.iter().map(|candidate| face(candidate, landmarks, geometry)));
             Ok(())
-        })
+        })?;
+        self.masks.as_ref().map_or(Ok(()), |masks| masks.name(image, &mut faces.boxes))
     }
 }
 

@@ -3,7 +3,7 @@
 use opendr_engine::target::{BoundingBox, Keypoint};
 use opendr_vision::Similarity;
 
-use crate::face_finder::square_around;
+use crate::face_finder::{eye_angle, square_around};
 
 /// Outer and inner corner of the eye on the picture's left, inner and outer one of the other.
 pub(super) const EYES: [[usize; 2]; 2] = [[33, 133], [362, 263]];
@@ -21,8 +21,7 @@ fn angle([from, to]: [[f32; 2]; 2]) -> f32 {
 
 /// A found face, upright by its eyes; the detector's first two points are those.
 pub(super) fn of_found(face: &BoundingBox, side: usize) -> Similarity {
-    let eyes = face.landmarks.first_chunk::<2>();
-    square_around(face, MARGIN, eyes.map_or(0.0, |eyes| angle(*eyes)), side)
+    square_around(face, MARGIN, eye_angle(face), side)
 }
 
 /// The face whose points are known from the frame before; `None` where they are no face's.

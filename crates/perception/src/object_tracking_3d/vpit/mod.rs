@@ -47,7 +47,7 @@ use view::{VIEW_LEN, ViewPainter};
 #[derive(Debug, Clone, Params)]
 pub struct VpitParams {
     /// How much a place far from where the object is expected is marked down.
-    #[param(default = 0.2, range = 0.0..=1.0, live)]
+    #[param(default = 0.4, range = 0.0..=1.0, live)]
     pub window_influence: f32,
     /// What the score of another direction than the expected one is multiplied by.
     #[param(default = 0.98, range = 0.0..=1.0, live)]
