@@ -1494,6 +1494,52 @@ static inline opendr_status opendr_infer_ab3dmot(const opendr_learner *learner,
 }
 
 /*
+ * ObjectTracking3DVpitLearner: VPIT follows one object in the scans of a lidar from a box in the first; it trains on recordings.
+ *
+ * Parameters:
+ *   window_influence (a float 0..=1, may change while it runs, default 0.4): How much a place far from where the object is expected is marked down.
+ *   rotation_penalty (a float 0..=1, may change while it runs, default 0.98): What the score of another direction than the expected one is multiplied by.
+ *   rotation_step (a float 0.01..=1 rad, may change while it runs, default 0.15): How far the directions are apart that are looked at.
+ *   rotations_count (an int 1..=9, may change while it runs, default 3): How many directions are looked at, the expected one in their middle; an even number is one more.
+ *   context_amount (a float 0..=2, default 0.25): What is seen around an object with it, in its mean sides.
+ *   target_feature_merge_scale (a float 0..=1, may change while it runs, default 0): How much of every later view goes into what the object looks like; OpenDR's default is 0, too.
+ *   extrapolation_mode (a str, one of linear+, linear, none, may change while it runs, default linear+): What is known of the object's way.
+ *   offset_interpolation (a float 0..=1, may change while it runs, default 1): How much of the way to where it is seen the box moves.
+ *   vertical_offset_interpolation (a float 0..=1, may change while it runs, default 0.5): The same for its height.
+ *   min_top_score (a float 0..=1, may change while it runs, default 0): Below this score the object is out of sight: the box goes where it is expected.
+ *
+ * Inputs:
+ *   point_cloud (PointCloud): What the lidar saw; a PointCloudWithCalibration places the boxes in its camera's frame and picture.
+ *   init_box (BoundingBox3DList): What is to be followed from this scan on: its first box. Given with the first call of a stream, else NULL.
+ *
+ * Outputs:
+ *   tracks_3d (TrackingAnnotation3DList)
+ */
+static inline opendr_status opendr_load_vpit(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("vpit", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_vpit(const opendr_learner *learner,
+    const opendr_point_cloud *point_cloud,
+    const opendr_bounding_box_3d_list *init_box,
+    opendr_tracking_annotation_3d_list **tracks_3d) {
+    opendr_input inputs_[2];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "point_cloud";
+    inputs_[0].value = (const opendr_value *)point_cloud;
+    inputs_[1].name = "init_box";
+    inputs_[1].value = (const opendr_value *)init_box;
+    outputs_[0].name = "tracks_3d";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
+    if (tracks_3d != NULL) *tracks_3d = (opendr_tracking_annotation_3d_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
  * UltraLightFaceLearner: Ultra-Light RFB finds faces in a few milliseconds; boxes only.
  *
  * Parameters:
