@@ -27,7 +27,7 @@ use opendr_vision::Preprocess;
 /// Sides of the pictures that are learned, pixels.
 const SIDE: usize = 40;
 /// Versions of a face, half of them with masks.
-const VERSIONS: usize = 40;
+const VERSIONS: usize = 80;
 /// Smaller faces show nothing, pixels.
 const SMALLEST: f32 = 20.0;
 /// What is seen of a face's surroundings while a mask is drawn, in longer sides of its box.
@@ -46,8 +46,9 @@ fn main() -> Result<()> {
     let test = Crops::of(&mut finder, Path::new(others), 2, 2)?;
     println!("{} crops to train on, {} to measure on", training.len(), test.len());
     let mut learner = Handle::<ImageClassifier>::new(ImageClassifierParams::default(), Device::Cpu)?;
-    let mut params = ImageClassifierFitParams { side: SIDE, width: 24, crop: 0.8, ..Default::default() };
-    params.training.epochs = 40;
+    let mut params =
+        ImageClassifierFitParams { side: SIDE, width: 24, crop: 0.8, dropout: 0.3, ..Default::default() };
+    params.training.epochs = 20;
     params.training.num_workers = 1;
     let job = FitJob { device: Device::Cpu, ..FitJob::new(Path::new(output)) };
     println!("{}", learner.fit(&params, (&training as &dyn DatasetIterator).into(), None, &job)?);
@@ -104,7 +105,11 @@ impl Crops {
                         found.width *= random.uniform(0.88, 1.12);
                     }
                     let crop = mask_crop(&found, SIDE);
-                    crops.push((cut(&region, &crop, SIDE)?, class));
+                    let mut crop = cut(&region, &crop, SIDE)?;
+                    if versions > 2 {
+                        relight(&mut crop, &mut random);
+                    }
+                    crops.push((crop, class));
                 }
             }
         }
@@ -227,6 +232,23 @@ fn draw_mask(image: &mut Image, points: &[Point; 5], random: &mut Random) {
         let shade = (1.0 - lit) + lit * light;
         (is_mask || is_thread).then(|| colour.map(|level| level * fold * shade))
     });
+}
+
+/// Other light, another camera.
+fn relight(image: &mut Image, random: &mut Random) {
+    let (power, gain) = (random.uniform(-0.7, 0.7).exp(), random.uniform(0.6, 1.3));
+    let tint = [0; 3].map(|_| random.uniform(0.85, 1.15));
+    // From no colours to more than there were.
+    let (colour, grain) = (random.uniform(0.0, 1.4), random.uniform(0.0, 12.0));
+    let Some(levels) = image.bytes_mut() else { return };
+    for pixel in levels.chunks_exact_mut(3) {
+        let grey = pixel.iter().map(|level| f32::from(*level)).sum::<f32>() / 3.0;
+        for (level, tint) in pixel.iter_mut().zip(tint) {
+            let own = (grey + colour * (f32::from(*level) - grey)).clamp(0.0, 255.0) / 255.0;
+            let lit = 255.0 * own.powf(power) * gain * tint + grain * random.normal() as f32;
+            *level = lit.clamp(0.0, 255.0) as u8;
+        }
+    }
 }
 
 fn draw_glasses(image: &mut Image, points: &[Point; 5], random: &mut Random) {
