@@ -20,7 +20,7 @@ use opendr::learner::{Handle, Learner};
 use opendr::metrics::{Metric, Verification, VerificationParams};
 use opendr::model::Model;
 use opendr::params::ParamValue;
-use opendr::target::{BoundingBoxList, Name, Pose, Skeleton};
+use opendr::target::{BoundingBox, BoundingBoxList, Name, Pose, Skeleton};
 use opendr::{Device, ErrorKind, FitData, FitOptions, Silent};
 
 fn handle<L: Learner>(models: &models::Models, params: L::Params) -> Option<Handle<L>> {
@@ -316,34 +316,42 @@ fn shifted(image: &Image, by: usize) -> Image {
     Image::from_rgb8(moved, width, height).unwrap()
 }
 
-/// A cloth over nose, mouth and chin makes a face another class. It is not drawn as those that were learned from.
+/// A cloth over nose, mouth and chin makes a face another class. It is not drawn as those that were learned from; of nine faces in
+/// photos, bare and covered, the network is wrong about few.
 #[test]
 fn faces_with_masks_are_told() {
     let Some(models) = models::Models::find() else { return };
     let Some(path) = models.get("yunet/masked") else { return };
     let mut finder = Handle::<Yunet>::new(YunetParams::default(), Device::Cpu).unwrap();
     finder.load(path).unwrap();
-    for (name, count) in [("astronaut.png", 1), ("zidane.jpg", 2)] {
+    let (mut bare, mut masked) = ([0; 2], [0; 2]);
+    for name in ["astronaut.png", "zidane.jpg", "t1.jpg"] {
         let mut picture = photo(&models, name);
         let faces = finder.infer(&picture).unwrap();
-        assert_eq!(faces.boxes.len(), count, "{name}");
         for face in &faces.boxes {
-            assert_eq!(faces.classes.label(&face.name), Some("face"), "{name}");
-            let (left, right) = (face.left + 0.08 * face.width, face.left + 0.92 * face.width);
-            let (top, bottom) = (face.landmarks[2][1] - 0.12 * face.height, face.top + 0.97 * face.height);
-            let width = picture.width();
-            for (at, pixel) in picture.bytes_mut().unwrap().chunks_exact_mut(3).enumerate() {
-                let (x, y) = ((at % width) as f32, (at / width) as f32);
-                if x > left && x < right && y > top && y < bottom {
-                    let light = pixel.iter().map(|level| u16::from(*level)).sum::<u16>() / 12;
-                    pixel.copy_from_slice(&[120, 160, 190].map(|level| (level + light).min(255) as u8));
-                }
-            }
+            bare[0] += 1;
+            bare[1] += usize::from(faces.classes.label(&face.name) == Some("face"));
+            cover(&mut picture, face);
         }
-        let masked = finder.infer(&picture).unwrap();
-        assert!(!masked.boxes.is_empty(), "{name}");
-        for face in &masked.boxes {
-            assert_eq!(masked.classes.label(&face.name), Some("masked face"), "{name}");
+        let faces = finder.infer(&picture).unwrap();
+        masked[0] += faces.boxes.len();
+        masked[1] +=
+            faces.boxes.iter().filter(|face| faces.classes.label(&face.name) == Some("masked face")).count();
+    }
+    assert!(bare[0] >= 9 && bare[1] + 2 >= bare[0], "bare: {bare:?}");
+    assert!(masked[0] >= 7 && masked[1] + 2 >= masked[0], "covered: {masked:?}");
+}
+
+/// Draws a light cloth over the lower half of a face, that lets a little of what it hides through.
+fn cover(picture: &mut Image, face: &BoundingBox) {
+    let (left, right) = (face.left + 0.08 * face.width, face.left + 0.92 * face.width);
+    let (top, bottom) = (face.landmarks[2][1] - 0.12 * face.height, face.top + 0.97 * face.height);
+    let width = picture.width();
+    for (at, pixel) in picture.bytes_mut().unwrap().chunks_exact_mut(3).enumerate() {
+        let (x, y) = ((at % width) as f32, (at / width) as f32);
+        if x > left && x < right && y > top && y < bottom {
+            let light = pixel.iter().map(|level| u16::from(*level)).sum::<u16>() / 12;
+            pixel.copy_from_slice(&[120, 160, 190].map(|level| (level + light).min(255) as u8));
         }
     }
 }
