@@ -30,6 +30,7 @@ INPUTS = {
     "Timeseries": ["data/ecg/ECG5000_TRAIN.txt:0", "data/ecg/ECG5000_TRAIN.txt:499"],
     "PointCloud": ["data/kitti/object_vis/velodyne/000000.bin", "data/kitti/object_vis/velodyne/000001.bin"],
     "Vector": ["wave:42:0.3", "wave:42:1.1"],
+    "Video": ["wave:3x9x32x40:0.05", "wave:3x30x32x40:0.7"],
     "SkeletonSequence": ["wave:32x15x2:0.05", "wave:32x15x2:0.7"],
 }
 #: What answers say of how sure they are, of which one case at least must have something.

@@ -187,9 +187,24 @@ fn copy<T: Element>(
         .try_reserve_exact(count)
         .map_err(|_| PyValueError::new_err(format!("no memory for {count} elements")))?;
     if count > 0 {
-        copy_axis(start, shape, strides, elements);
+        let (shape, strides) = merged_axes(shape, strides);
+        copy_axis(start, &shape, &strides, elements);
     }
     Ok(())
+}
+
+/// The same elements along as few axes as it takes: what lies one after the other is one axis, of one element is none.
+fn merged_axes(shape: &[usize], strides: &[isize]) -> (Vec<usize>, Vec<isize>) {
+    let mut axes: Vec<(usize, isize)> = Vec::with_capacity(shape.len());
+    for (&side, &stride) in shape.iter().zip(strides).filter(|(side, _)| **side != 1) {
+        match axes.last_mut() {
+            Some((outer, apart)) if *apart == side as isize * stride => {
+                (*outer, *apart) = (*outer * side, stride)
+            }
+            _ => axes.push((side, stride)),
+        }
+    }
+    axes.into_iter().unzip()
 }
 
 fn copy_axis<T: Element>(start: *const u8, shape: &[usize], strides: &[isize], elements: &mut Vec<T>) {

@@ -1,9 +1,13 @@
 //! Classes of a data set that is written, as they come up.
 
 use std::collections::HashMap;
+use std::path::{Path, PathBuf};
 
+use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::target::{Classes, Name};
-use opendr_engine::{Error, Result};
+use opendr_engine::{Error, Result, Value};
+
+use crate::folder::path_inside;
 
 /// More classes than any data set has: a number above is a mistake.
 const MOST: usize = 1 << 16;
@@ -48,6 +52,28 @@ impl ClassTable {
                 Ok(number)
             }
         }
+    }
+
+    /// The number of the class of sample `index`, and the folder in `root` that is called like it.
+    ///
+    /// # Errors
+    /// `InvalidInput` when its target is no category, or no folder can have the name; whatever its target cannot be had for.
+    pub fn folder(
+        &mut self,
+        dataset: &dyn DatasetIterator,
+        index: usize,
+        root: &Path,
+    ) -> Result<(usize, PathBuf)> {
+        let Some(Value::Category(category)) = dataset.target(index)? else {
+            return Err(Error::invalid_input("class folders hold categories, no other targets"));
+        };
+        let own = match &category.description {
+            Some(description) if dataset.classes().is_empty() => description.as_ref().into(),
+            _ => category.class.into(),
+        };
+        let class = self.number(&own, &Classes::default())?;
+        let folder = self.names[class].replace(['/', '\\', ':'], "_");
+        Ok((class, path_inside(root, &folder).map_err(Error::invalid_input)?))
     }
 
     /// The names in the order of their numbers.

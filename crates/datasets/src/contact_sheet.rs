@@ -5,6 +5,7 @@ use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::{Error, Result, Value};
 use opendr_vision::draw::{self, Style, draw};
 
+use crate::clip::frame_of;
 use crate::curve::curve;
 use crate::from_above::from_above;
 use crate::{Problem, Problems};
@@ -37,8 +38,8 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
     draw::contact_sheet(&pictures, columns, SIDE)
 }
 
-/// The first datum of a sample that can be looked at, with its target drawn onto it: a picture as it is, sound and time
-/// series as curves, a point cloud as seen from above; `None` where there is none of these.
+/// The first datum of a sample that can be looked at, with its target drawn onto it: a picture as it is, a clip as
+/// the frame in its middle, sound and time series as curves, a point cloud as seen from above; `None` where there is none of these.
 pub fn picture_with_target(sample: &Sample) -> Option<Image> {
     let mut picture = sample.data.iter().find_map(|datum| picture_of(datum, sample.target.as_ref()))?;
     // Twice as thick: the picture is made smaller after.
@@ -58,6 +59,7 @@ fn picture_of(datum: &Value, target: Option<&Value>) -> Option<Image> {
     match datum {
         Value::Image(image) => Some(image.clone()),
         Value::ImageWithDetections(both) => Some(both.image.clone()),
+        Value::Video(clip) => frame_of(clip, clip.shape()[1] / 2).ok(),
         Value::Audio(audio) => curve(&audio.mono(), 1).ok(),
         Value::Timeseries(series) => curve(series.as_slice(), series.shape()[1]).ok(),
         other => from_above(other, target).ok().flatten(),

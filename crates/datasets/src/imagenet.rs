@@ -205,16 +205,7 @@ impl Format for ImageNet {
         let mut classes = ClassTable::new(&dataset.classes());
         let mut writers = HashMap::new();
         write_each(dataset, problems, progress, |index| {
-            let Some(Value::Category(category)) = dataset.target(index)? else {
-                return Err(Error::invalid_input("class folders hold categories, no other targets"));
-            };
-            let own = match &category.description {
-                Some(description) if dataset.classes().is_empty() => description.as_ref().into(),
-                _ => category.class.into(),
-            };
-            let class = classes.number(&own, &Classes::default())?;
-            let folder = classes.names()[class].replace(['/', '\\', ':'], "_");
-            let folder = path_inside(&root, &folder).map_err(Error::invalid_input)?;
+            let (class, folder) = classes.folder(dataset, index, &root)?;
             let writer = match writers.entry(class) {
                 Entry::Occupied(entry) => entry.into_mut(),
                 Entry::Vacant(entry) => entry.insert(PictureWriter::new(dataset, folder, options)?),

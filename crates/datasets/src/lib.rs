@@ -9,6 +9,7 @@ mod camvid;
 mod check;
 mod cityscapes;
 mod class_table;
+mod clip;
 mod coco;
 mod contact_sheet;
 mod curve;
@@ -20,6 +21,7 @@ mod from_above;
 pub mod fuzzing;
 mod hands;
 mod imagenet;
+mod kinetics;
 mod kitti;
 mod label_png;
 mod lfw;
@@ -56,6 +58,7 @@ pub use contact_sheet::{contact_sheet, picture_with_target};
 pub use format::{Format, OpenOptions, WriteOptions};
 pub use hands::Hands;
 pub use imagenet::ImageNet;
+pub use kinetics::Kinetics;
 pub use kitti::{
     Kitti, KittiTracking, calibration_from_kitti, kitti_from_calibration, open_kitti_calibration,
     open_velodyne, velodyne_from_cloud,

@@ -29,6 +29,7 @@ const FORMATS: &[FormatEntry] = &[
     FormatEntry::of::<crate::Wfdb>(),
     FormatEntry::of::<crate::Mnist>(),
     FormatEntry::of::<crate::ImageNet>(),
+    FormatEntry::of::<crate::Kinetics>(),
     FormatEntry::of::<crate::Skeletons>(),
     FormatEntry::of::<crate::Ucr>(),
     FormatEntry::of::<crate::Lfw>(),

@@ -8,7 +8,8 @@ use opendr_engine::data::{Observation, SkeletonSequence, Timeseries, Vector};
 use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 use opendr_vision::Decoder;
 
-use crate::folder::{has_extension, names_in, read_bytes};
+use crate::clip::{CLIPS, open_clip};
+use crate::folder::{PICTURES, has_extension, names_in, read_bytes};
 use crate::{array_from_npy, open_velodyne, open_wav};
 
 /// Tables and targets are short; data sets are read otherwise.
@@ -22,6 +23,7 @@ pub const fn value_extensions(kind: ValueType) -> &'static [&'static str] {
         ValueType::Timeseries | ValueType::Observation | ValueType::Vector => &["csv", "tsv", "txt", "npy"],
         ValueType::SkeletonSequence => &["npy"],
         ValueType::PointCloud => &["bin"],
+        ValueType::Video => CLIPS,
         kind if kind.is_target() => &["json"],
         _ => &[],
     }
@@ -36,6 +38,8 @@ pub const fn value_extensions(kind: ValueType) -> &'static [&'static str] {
 /// * `Observation` and `Vector`: such a table, one number after the other;
 /// * `SkeletonSequence`: a `.npy` of five axes, or of three: frames, joints and channels of one person;
 /// * `PointCloud`: scans as KITTI has them;
+/// * `Video`: a video file, a folder with its frames as pictures, or a `.npy` of four axes: channels, frames, height, width.
+///   Frames of more than 640 pixels a side are made smaller, and clips of more than 256 MB are thinned evenly;
 /// * targets: their JSON.
 ///
 /// # Errors
@@ -49,6 +53,7 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
         ValueType::Image => opendr_vision::open(path).map(Value::Image),
         ValueType::Audio => open_wav(path).map(Value::Audio),
         ValueType::PointCloud => open_velodyne(path).map(Value::PointCloud),
+        ValueType::Video => open_clip(path).map(Value::Video),
         ValueType::Timeseries => {
             timeseries_from_table(&read_bytes(path, MAX_BYTES)?).map(Value::Timeseries).context(opening)
         }
@@ -77,7 +82,8 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
     }
 }
 
-/// The files of the type `kind` that `path` names: itself, or those in the folder that it is, in order.
+/// The files of the type `kind` that `path` names: itself, or those in the folder that it is, in order. A folder of pictures
+/// is one clip.
 ///
 /// # Errors
 /// `NotFound` when there is nothing of the name or nothing of the type in the folder, `Io` when it cannot be read.
@@ -91,7 +97,11 @@ pub fn value_files(kind: ValueType, path: &Path) -> Result<Vec<PathBuf>> {
         };
     }
     let mut names = names_in(path)?;
+    let is_clip = kind == ValueType::Video && names.iter().any(|name| has_extension(name, PICTURES));
     names.retain(|name| has_extension(name, value_extensions(kind)));
+    if names.is_empty() && is_clip {
+        return Ok(vec![path.to_owned()]);
+    }
     if names.is_empty() {
         let endings = value_extensions(kind).join(", .");
         return Err(Error::not_found(format!("no file .{endings} in the folder {}", path.display())));

@@ -7,7 +7,7 @@
 
 use opendr_datasets::{npy_from_f32, open_wav};
 use opendr_engine::{Error, Result};
-use opendr_perception::mfcc::{Mfcc, MfccOptions, normalise_peak};
+use opendr_perception::mfcc::{Mfcc, MfccOptions, peak_factor};
 
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -23,17 +23,13 @@ fn main() -> Result<()> {
         _ => return Err(Error::invalid_param("give keywords IN OUT, or librosa WINDOW HOP COUNT IN OUT")),
     };
     let audio = open_wav(from)?;
-    let mut samples = audio.mono().into_owned();
-    let mfcc = match recipe {
-        None => {
-            normalise_peak(&mut samples);
-            Mfcc::new(MfccOptions::keywords())?
-        }
-        Some([window, hop, count]) => {
-            Mfcc::new(MfccOptions::librosa(audio.sample_rate(), window, hop, count))?
-        }
+    let samples = audio.mono();
+    let (options, factor) = match recipe {
+        None => (MfccOptions::keywords(), peak_factor(&samples)),
+        Some([window, hop, count]) => (MfccOptions::librosa(audio.sample_rate(), window, hop, count), 1.0),
     };
+    let mfcc = Mfcc::new(options)?;
     let mut cepstra = Vec::new();
-    let frames = mfcc.run_into(&samples, &mut cepstra);
+    let frames = mfcc.run_scaled_into(&samples, factor, &mut cepstra);
     Ok(std::fs::write(to, npy_from_f32(&cepstra, &[frames, mfcc.options().coefficients])?)?)
 }

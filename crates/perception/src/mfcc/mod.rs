@@ -84,9 +84,15 @@ impl Mfcc {
 
     /// Replaces `cepstra` by those of `samples`, `[frames, coefficients]`, and tells the number of frames.
     pub fn run_into(&self, samples: &[f32], cepstra: &mut Vec<f32>) -> usize {
+        self.run_scaled_into(samples, 1.0, cepstra)
+    }
+
+    /// As [`Mfcc::run_into`] of samples that are all multiplied by `factor`, a positive number, without a pass over them: their
+    /// bands are instead.
+    pub fn run_scaled_into(&self, samples: &[f32], factor: f32, cepstra: &mut Vec<f32>) -> usize {
         let (count, coefficients) = (self.options.bands.count, self.options.coefficients);
         let Work { frames: work, bands } = &mut *self.work.take();
-        let frames = self.log_mel_of(samples, work, bands);
+        let frames = self.log_mel_of(samples, factor, work, bands);
         cepstra.resize(frames * coefficients, 0.0);
         for (bands, cepstrum) in bands.chunks_exact(count).zip(cepstra.chunks_exact_mut(coefficients)) {
             self.cosine.run(bands, cepstrum);
@@ -97,29 +103,34 @@ impl Mfcc {
     /// Replaces `bands` by the logarithms of the mel bands, `[frames, bands]`, from which cepstra are made, and tells the
     /// number of frames.
     pub fn log_mel_into(&self, samples: &[f32], bands: &mut Vec<f32>) -> usize {
-        self.log_mel_of(samples, &mut self.work.take().frames, bands)
+        self.log_mel_of(samples, 1.0, &mut self.work.take().frames, bands)
     }
 
-    fn log_mel_of(&self, samples: &[f32], work: &mut FrameWork, bands: &mut Vec<f32>) -> usize {
+    fn log_mel_of(&self, samples: &[f32], factor: f32, work: &mut FrameWork, bands: &mut Vec<f32>) -> usize {
         let (frames, count) = (self.frames(samples.len()), self.options.bands.count);
         bands.resize(frames * count, 0.0);
         for first in (0..frames).step_by(FOURIER_FRAMES) {
             let together = FOURIER_FRAMES.min(frames - first);
             (0..together).for_each(|lane| self.spectrum.fill(samples, first + lane, lane, work));
-            self.log_bands(work, &mut bands[first * count..][..together * count]);
+            self.log_bands(work, factor, &mut bands[first * count..][..together * count]);
         }
         self.limit_range(bands);
         frames
     }
 
-    /// The logarithms of the bands of the first frames in `work`, `[frames, bands]`.
-    fn log_bands(&self, work: &mut FrameWork, bands: &mut [f32]) {
+    /// The logarithms of the bands of the first frames in `work`, `[frames, bands]`, as if all samples were multiplied by
+    /// `factor`.
+    fn log_bands(&self, work: &mut FrameWork, factor: f32, bands: &mut [f32]) {
         let count = self.options.bands.count;
+        let factor = match self.options.spectrum {
+            Spectrum::Magnitude => factor,
+            Spectrum::Power => (factor * factor).min(f32::MAX),
+        };
         for (band, sums) in self.spectrum.band_sums(&self.bank, work).iter().enumerate() {
             for (bands, sum) in bands.chunks_exact_mut(count).zip(sums) {
                 bands[band] = match self.options.log {
-                    Log::Natural { offset } => (sum + offset).ln(),
-                    Log::Decibel { least, .. } => 10.0 * sum.max(least).log10(),
+                    Log::Natural { offset } => (factor * sum + offset).ln(),
+                    Log::Decibel { least, .. } => 10.0 * (factor * sum).max(least).log10(),
                 };
             }
         }
@@ -133,8 +144,9 @@ impl Mfcc {
     }
 }
 
-/// Divides sound by its highest sample, as TensorFlow's keyword spotting does; silence stays.
-pub fn normalise_peak(samples: &mut [f32]) {
+/// What brings the highest sample of sound to 1, as TensorFlow's keyword spotting does: a factor for
+/// [`Mfcc::run_scaled_into`]; 1 for silence.
+pub fn peak_factor(samples: &[f32]) -> f32 {
     // In lanes, which the compiler makes vector instructions of.
     let mut peaks = [0.0_f32; 16];
     let (chunks, rest) = samples.as_chunks::<16>();
@@ -144,7 +156,5 @@ pub fn normalise_peak(samples: &mut [f32]) {
         }
     }
     let peak = peaks.iter().copied().fold(0.0, f32::max);
-    if peak > 0.0 {
-        samples.iter_mut().for_each(|sample| *sample /= peak);
-    }
+    if peak > 0.0 { peak.recip().min(f32::MAX) } else { 1.0 }
 }

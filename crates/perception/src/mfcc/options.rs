@@ -107,7 +107,7 @@ const MOST: usize = 1 << 16;
 
 impl MfccOptions {
     /// The recipe of TensorFlow's keyword spotting (TinyML, DS-CNN): 40 bands from 20 to 4000 Hz of 30 ms every 20 ms,
-    /// ten coefficients. The sound is divided by its [peak](crate::mfcc::normalise_peak) first.
+    /// ten coefficients. The sound is brought to its [peak](crate::mfcc::peak_factor).
     pub fn keywords() -> Self {
         Self {
             sample_rate: 16_000,

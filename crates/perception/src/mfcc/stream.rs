@@ -57,7 +57,7 @@ impl Mfcc {
                 break;
             }
             let bands = &mut bands[..together * count];
-            self.log_bands(frames, bands);
+            self.log_bands(frames, 1.0, bands);
             for bands in bands.chunks_exact(count) {
                 self.cosine.run(bands, cepstrum);
                 frame(cepstrum);

@@ -86,12 +86,32 @@ impl MapEach for Vec<f32> {
 
 #[test]
 fn a_peak_becomes_one() {
-    let mut samples = [0.25, -1.0, 0.5];
-    normalise_peak(&mut samples);
-    assert_eq!(samples, [0.5, -2.0, 1.0]);
-    let mut silence = [0.0; 2];
-    normalise_peak(&mut silence);
-    assert_eq!(silence, [0.0; 2]);
+    let loud: Vec<f32> = (0..16_000).map(|at| 0.25 * (at as f32 * 0.05).sin()).collect();
+    let factor = peak_factor(&loud);
+    assert!((factor - 4.0).abs() < 1e-3, "{factor}");
+    let whole: Vec<f32> = loud.iter().map(|sample| sample * factor).collect();
+    for options in [MfccOptions::keywords(), MfccOptions::librosa(16_000, 640, 480, 64)] {
+        let mfcc = Mfcc::new(options).unwrap();
+        let (mut scaled, mut wanted) = (Vec::new(), Vec::new());
+        mfcc.run_scaled_into(&loud, factor, &mut scaled);
+        mfcc.run_into(&whole, &mut wanted);
+        assert!(scaled.iter().zip(&wanted).all(|(one, other)| (one - other).abs() < 2e-3));
+    }
+}
+
+#[test]
+fn silence_and_what_is_nearly_silence_stay_numbers() {
+    assert_eq!(peak_factor(&[0.0, -1.0]), 1.0);
+    let mut cepstra = Vec::new();
+    for level in [0.0, f32::from_bits(1), f32::MIN_POSITIVE] {
+        let sound = vec![level; 16_000];
+        Mfcc::new(MfccOptions::keywords()).unwrap().run_scaled_into(
+            &sound,
+            peak_factor(&sound),
+            &mut cepstra,
+        );
+        assert!(cepstra.iter().all(|number| number.is_finite()), "{level}");
+    }
 }
 
 #[test]

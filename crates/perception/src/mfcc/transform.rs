@@ -94,15 +94,15 @@ fn reflected(at: isize, count: usize) -> usize {
 
 /// The first coefficients of a DCT-II.
 pub(super) struct CosineTransform {
-    bands: usize,
-    /// `[coefficients, bands]`.
+    coefficients: usize,
+    /// `[bands, coefficients]`.
     table: Vec<f32>,
 }
 
 impl CosineTransform {
     pub fn new(bands: usize, coefficients: usize, scale: CosineScale) -> Self {
         let entry = |index: usize| {
-            let (coefficient, band) = (index / bands, index % bands);
+            let (band, coefficient) = (index / coefficients, index % coefficients);
             let size = match (coefficient, scale) {
                 (0, CosineScale::Orthonormal) => 1.0,
                 _ => 2.0,
@@ -110,26 +110,17 @@ impl CosineTransform {
             let angle = PI * coefficient as f64 * (2 * band + 1) as f64 / (2 * bands) as f64;
             ((size / bands as f64).sqrt() * angle.cos()) as f32
         };
-        Self { bands, table: (0..bands * coefficients).map(entry).collect() }
+        Self { coefficients, table: (0..bands * coefficients).map(entry).collect() }
     }
 
     /// Replaces `cepstrum` by the coefficients of `bands`.
     pub fn run(&self, bands: &[f32], cepstrum: &mut [f32]) {
-        for (row, coefficient) in self.table.chunks_exact(self.bands).zip(cepstrum) {
-            *coefficient = dot_product(row, bands);
+        cepstrum.fill(0.0);
+        // Band by band, all coefficients of one at once: sums that do not wait for each other.
+        for (band, row) in bands.iter().zip(self.table.chunks_exact(self.coefficients)) {
+            cepstrum.iter_mut().zip(row).for_each(|(sum, weight)| *sum += band * weight);
         }
     }
-}
-
-/// Sums in lanes, which the compiler makes vector instructions of.
-fn dot_product(a: &[f32], b: &[f32]) -> f32 {
-    let mut sums = [0.0; 8];
-    let ((a, a_left), (b, b_left)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
-    for (a, b) in a.iter().zip(b) {
-        sums.iter_mut().zip(a.iter().zip(b)).for_each(|(sum, (a, b))| *sum += a * b);
-    }
-    let left: f32 = a_left.iter().zip(b_left).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f32>() + left
 }
 
 #[cfg(test)]

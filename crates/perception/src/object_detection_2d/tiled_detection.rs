@@ -7,12 +7,12 @@ use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::params::{ParamMap, Params};
-use opendr_engine::target::{BoundingBoxList, Classes};
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 
 use crate::tiling::{
-    Allowance, DETECTORS, PictureLearner, Piece, TilePicture, Tiles, TilingParams, look_side_by_side,
-    merge_pieces, open_copies,
+    Allowance, DETECTORS, Looks, PictureLearner, Piece, Slot, TilePicture, Tiles, TilingParams,
+    look_side_by_side, merge_pieces, open_copies,
 };
 
 /// What a user may set.
@@ -50,6 +50,9 @@ struct Scratch {
 #[derive(Default)]
 pub struct TiledDetectionState {
     tiles: Tiles,
+    looks: Looks,
+    /// The numbers of the looks.
+    numbers: Vec<usize>,
     /// What was found in each tile when it was looked at last.
     found: Vec<Vec<Piece>>,
     pieces: Vec<Piece>,
@@ -98,18 +101,29 @@ impl Learner for TiledDetection {
     ) -> Result<()> {
         let tiling = &self.params.tiling;
         let allowance = Allowance::of_milliseconds(tiling.time_budget);
-        let TiledDetectionState { tiles, found, pieces } = state;
+        let TiledDetectionState { tiles, looks, numbers, found, pieces } = state;
         let has_some = |index: usize| found.get(index).is_some_and(|found: &Vec<_>| !found.is_empty());
         if tiles.plan(tiling, image.view(), |index, _| has_some(index))? {
             found.clear();
         }
         found.resize_with(tiles.tiles().len(), Vec::new);
-        let looked = look_side_by_side(self.detectors.len(), tiles.order(), allowance, |worker, index| {
-            self.look(worker, image, tiles, index)
+        match tiling.time_budget > 0.0 {
+            true => looks.plan_packed(tiles, tiling.tile),
+            false => looks.plan_whole(tiles),
+        }
+        numbers.clear();
+        numbers.extend(0..looks.len());
+        let looked = look_side_by_side(self.detectors.len(), numbers, allowance, |worker, number| {
+            self.look(worker, image, looks.look(number))
         })?;
-        for (index, pieces) in looked {
-            tiles.saw(index);
-            found[index] = pieces;
+        for (number, mut seen) in looked {
+            for (place, slot) in looks.look(number).iter().enumerate() {
+                let is_whole = tiles.tiles().get(slot.tile).is_some_and(|tile| tile.region == slot.part);
+                let found = &mut found[slot.tile];
+                found.retain(|piece| !is_whole && !slot.part.holds(middle(&piece.found)));
+                found.extend(seen.extract_if(.., |(of, _)| *of == place).map(|(_, piece)| piece));
+                tiles.saw(slot.tile, is_whole);
+            }
         }
         self.gather(tiles, found, pieces);
         merge_pieces(pieces, self.params.iou_threshold);
@@ -121,17 +135,26 @@ impl Learner for TiledDetection {
 }
 
 impl TiledDetection {
-    /// What is in a tile.
-    fn look(&self, worker: usize, image: &Image, tiles: &Tiles, index: usize) -> Result<Vec<Piece>> {
-        let (Some(tile), Some(detector)) = (tiles.tiles().get(index), self.detectors.get(worker)) else {
-            return Ok(Vec::new());
-        };
+    /// What is in a tile or in parts of several: by the place of the part.
+    fn look(&self, worker: usize, image: &Image, slots: &[Slot]) -> Result<Vec<(usize, Piece)>> {
+        let Some(detector) = self.detectors.get(worker) else { return Ok(Vec::new()) };
         let Scratch { tile: picture, found } = &mut *self.scratch.take();
         let size = [image.width(), image.height()];
-        let is_whole = [tile.region.width, tile.region.height] == size;
-        let picture = if is_whole { image } else { picture.cut(image.view(), &tile.region)? };
+        let picture = match slots {
+            [Slot { part, .. }] if [part.width, part.height] == size => image,
+            [Slot { part, .. }] => picture.cut(image.view(), part)?,
+            _ => picture.put_together(image.view(), slots, self.params.tiling.tile)?,
+        };
         detector.answer(picture, found)?;
-        Ok(found.boxes.drain(..).map(|found| Piece::new(found, &tile.region, size)).collect())
+        let pieces = found.boxes.drain(..).filter_map(|found| {
+            if let [slot] = slots {
+                return Some((0, Piece::new(found, &slot.part, size)));
+            }
+            let place = slots.iter().position(|slot| slot.shows(middle(&found)))?;
+            let slot = slots.get(place)?;
+            Some((place, Piece::new(slot.within(found), &slot.part, size)))
+        });
+        Ok(pieces.collect())
     }
 
     /// What is known to be in the picture now.
@@ -146,11 +169,15 @@ impl TiledDetection {
                     .iter()
                     .filter(|piece| {
                         let one = &piece.found;
-                        let middle = [one.left + one.width / 2.0, one.top + one.height / 2.0];
-                        one.confidence >= self.params.threshold && !tiles.is_superseded(index, middle)
+                        one.confidence >= self.params.threshold && !tiles.is_superseded(index, middle(one))
                     })
                     .cloned(),
             );
         }
     }
+}
+
+/// The middle of a box.
+fn middle(one: &BoundingBox) -> [f32; 2] {
+    [one.left + one.width / 2.0, one.top + one.height / 2.0]
 }

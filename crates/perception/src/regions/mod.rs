@@ -60,6 +60,12 @@ impl Region {
         Self { x, y, width: right - x, height: bottom - y }
     }
 
+    /// Whether a place lies in it.
+    pub fn holds(&self, [x, y]: [f32; 2]) -> bool {
+        let [left, top, right, bottom] = self.corners();
+        (left..right).contains(&x) && (top..bottom).contains(&y)
+    }
+
     /// Whether both share a pixel.
     pub fn overlaps(&self, other: &Self) -> bool {
         let meet = |a: usize, a_long: usize, b: usize, b_long: usize| a < b + b_long && b < a + a_long;

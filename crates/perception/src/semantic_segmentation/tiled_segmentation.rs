@@ -94,7 +94,7 @@ impl Learner for TiledSegmentation {
             self.look(worker, image, tiles, index)
         })?;
         for (index, labels) in looked {
-            tiles.saw(index);
+            tiles.saw(index, true);
             let Some(tile) = tiles.tiles().get(index) else { continue };
             match tile.core.is_empty() {
                 true => coarse.copy_from_slice(&labels),

@@ -12,7 +12,7 @@ use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{ElementType, Session, TensorView};
 
 use crate::category_scores::category_from_probabilities;
-use crate::mfcc::{Mfcc, MfccOptions, normalise_peak};
+use crate::mfcc::{Mfcc, MfccOptions, peak_factor};
 use crate::speech_recognition::Sound;
 use crate::speech_recognition::word_stream::{Listening, WordStream, WordStreamParams};
 
@@ -36,6 +36,7 @@ pub struct DsCnn {
 
 #[derive(Default)]
 struct Work {
+    /// What is shorter than a second, filled up.
     second: Vec<f32>,
     cepstra: Vec<f32>,
 }
@@ -51,11 +52,16 @@ const COEFFICIENTS: usize = 10;
 impl DsCnn {
     fn category(&self, samples: &[f32], category: &mut Category) -> Result<()> {
         let Work { second, cepstra } = &mut *self.work.take();
-        second.clear();
-        second.extend(samples.iter().take(SAMPLE_RATE as usize));
-        second.resize(SAMPLE_RATE as usize, 0.0);
-        normalise_peak(second);
-        self.mfcc.run_into(second, cepstra);
+        let samples = match samples.get(..SAMPLE_RATE as usize) {
+            Some(whole) => whole,
+            None => {
+                second.clear();
+                second.extend(samples);
+                second.resize(SAMPLE_RATE as usize, 0.0);
+                &second[..]
+            }
+        };
+        self.mfcc.run_scaled_into(samples, peak_factor(samples), cepstra);
         let input = TensorView::new(&[1, 1, FRAMES, COEFFICIENTS], &cepstra[..])?;
         self.session.run(&[input], |outputs| {
             let probabilities = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;

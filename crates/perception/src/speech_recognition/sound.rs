@@ -49,13 +49,16 @@ impl<'a> Sound<'a> {
                 )));
             }
         };
-        match samples.iter().position(|sample| !(-LOUDEST..=LOUDEST).contains(sample)) {
-            Some(at) => Err(Error::invalid_input(format!(
-                "sample {at} of the sound is {}; give numbers within -1 and 1",
-                samples[at]
-            ))),
-            None => Ok(samples),
+        let is_bad = |sample: &f32| !(-LOUDEST..=LOUDEST).contains(sample);
+        // Without an early end, many are compared at once.
+        if !samples.iter().fold(false, |bad, sample| bad | is_bad(sample)) {
+            return Ok(samples);
         }
+        let at = samples.iter().position(is_bad).unwrap_or_default();
+        Err(Error::invalid_input(format!(
+            "sample {at} of the sound is {}; give numbers within -1 and 1",
+            samples[at]
+        )))
     }
 }
 

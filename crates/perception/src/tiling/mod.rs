@@ -2,7 +2,8 @@
 //!
 //! [`Tiles`] says which tiles of a picture are worth a look, and in which order: those with detail that were not looked at
 //! yet or changed since, where objects were seen first, the others in turn. [`look_side_by_side`] looks at them on several
-//! threads until the time is over. What lies in the overlap of tiles or is cut by their borders is put together by
+//! threads until the time is over; where time is short, small parts of several tiles are put side by side and looked at as one
+//! ([`Looks`]). What lies in the overlap of tiles or is cut by their borders is put together by
 //! [`merge_pieces`]. [`picture_learner`](PictureLearner) is what looks: any learner of one picture that remembers nothing.
 //!
 //! Tiles that did not change keep the answer of their last look, so a camera that stands pays for what moves (the idea of
@@ -10,6 +11,7 @@
 //! Workshops 2019, and F. C. Akyon et al., "Slicing Aided Hyper Inference", ICIP 2022, for tiles and their merging).
 
 mod looking;
+mod packing;
 mod picture_learner;
 mod pieces;
 mod schedule;
@@ -18,6 +20,7 @@ mod tile_picture;
 use opendr_engine::params::Params;
 
 pub use looking::{Allowance, look_side_by_side};
+pub use packing::{Looks, Slot};
 pub use picture_learner::{DETECTORS, Open, PictureLearner, SEGMENTERS, open_copies, open_picture_learner};
 pub use pieces::{Cut, Piece, merge_pieces};
 pub use schedule::{Tile, Tiles};

@@ -15,6 +15,8 @@ pub struct Tile {
     pub seen: Option<u64>,
     /// The first picture since then in which it had changed.
     pub changed: Option<u64>,
+    /// The part that is worth a look, with what is around it: where there is detail, or what changed.
+    pub due: Region,
     /// The brightness of its cells when it was looked at.
     reference: Vec<u8>,
 }
@@ -40,6 +42,8 @@ pub struct Tiles {
 const CELL: usize = 16;
 /// Points of a cell that are looked at, each way: every fourth pixel.
 const POINTS: usize = 4;
+/// What belongs to what is worth a look, pixels on each side: things are told by what is around them.
+const AROUND: usize = 2 * CELL;
 /// A scene is another one where this share of its cells changed by more than [`OTHER_LEVEL`] since the picture before.
 const OTHER_SHARE: f32 = 0.4;
 const OTHER_LEVEL: u8 = 32;
@@ -98,18 +102,26 @@ impl Tiles {
         &self.tiles
     }
 
-    /// Notes that a tile was looked at in the picture that was planned last.
-    pub fn saw(&mut self, index: usize) {
-        let size = self.size;
-        if let Some(tile) = self.tiles.get_mut(index) {
-            tile.seen = Some(self.pictures.saturating_sub(1));
-            tile.changed = None;
-            let mut reference = std::mem::take(&mut tile.reference);
-            reference.clear();
-            reference
-                .extend(cells_of(&tile.region, size, &self.coarse).map(|cell| self.coarse.means()[cell]));
-            tile.reference = reference;
+    /// Notes that a tile was looked at in the picture that was planned last: all of it, or the part that was due.
+    pub fn saw(&mut self, index: usize, is_whole: bool) {
+        let Some(tile) = self.tiles.get_mut(index) else { return };
+        let [columns, rows] = self.coarse.size();
+        let levels = cells_of(&tile.region, self.size, &self.coarse).map(|cell| self.coarse.means()[cell]);
+        // Around the part nothing changed by much: what it is compared with stays, so that it cannot creep.
+        let is_new = is_whole || tile.seen.is_none();
+        if is_new {
+            tile.reference.clear();
+            tile.reference.extend(levels);
+        } else {
+            let cells = cells_of(&tile.region, self.size, &self.coarse);
+            for ((cell, level), reference) in cells.zip(levels).zip(&mut tile.reference) {
+                if cell_region(cell, [columns, rows], self.size).overlaps(&tile.due) {
+                    *reference = level;
+                }
+            }
         }
+        tile.seen = Some(self.pictures.saturating_sub(1));
+        tile.changed = None;
     }
 
     /// Whether the last look at a tile still holds: it is as it was, or changed no more than `memory` pictures ago.
@@ -121,12 +133,9 @@ impl Tiles {
     }
 
     /// Whether a place of a tile that has changed was looked at later, with another tile.
-    pub fn is_superseded(&self, index: usize, [x, y]: [f32; 2]) -> bool {
+    pub fn is_superseded(&self, index: usize, place: [f32; 2]) -> bool {
         let Some(own) = self.tiles.get(index).filter(|tile| tile.changed.is_some()) else { return false };
-        self.tiles.iter().any(|tile| {
-            let [left, top, right, bottom] = tile.region.corners();
-            tile.seen > own.seen && (left..right).contains(&x) && (top..bottom).contains(&y)
-        })
+        self.tiles.iter().any(|tile| tile.seen > own.seen && tile.region.holds(place))
     }
 
     fn cut(&mut self) {
@@ -134,7 +143,14 @@ impl Tiles {
         let [width, height] = self.size;
         let picture = Region { x: 0, y: 0, width, height };
         self.tiles.clear();
-        let tile = |region, core| Tile { region, core, seen: None, changed: None, reference: Vec::new() };
+        let tile = |region, core| Tile {
+            region,
+            core,
+            seen: None,
+            changed: None,
+            due: Region::default(),
+            reference: Vec::new(),
+        };
         let is_small = width.max(height) <= side;
         if whole || is_small {
             self.tiles.push(tile(picture, if is_small { picture } else { Region::default() }));
@@ -192,24 +208,53 @@ impl Tiles {
 }
 
 impl Tile {
-    /// Whether it is worth a look; notes when it changed first.
+    /// Whether it is worth a look; notes where, and when it changed first.
     fn is_due(&mut self, coarse: &CoarsePicture, size: [usize; 2], params: &TilingParams, now: u64) -> bool {
-        let mut cells = cells_of(&self.region, size, coarse);
+        let cells = cells_of(&self.region, size, coarse);
         if self.seen.is_none() {
-            return params.detail_threshold <= 0.0
-                || self.core.is_empty()
-                || cells.any(|cell| f32::from(coarse.ranges()[cell]) > params.detail_threshold);
+            let has_detail = |cell: &usize| f32::from(coarse.ranges()[*cell]) > params.detail_threshold;
+            self.due = match params.detail_threshold <= 0.0 || self.core.is_empty() {
+                true => self.region,
+                false => self.around(cells.filter(has_detail), coarse.size(), size),
+            };
+            return !self.due.is_empty();
         }
-        let differs = |(cell, then): (usize, &u8)| {
-            f32::from(coarse.means()[cell].abs_diff(*then)) > params.change_threshold
+        let differs = |(cell, then): &(usize, &u8)| {
+            f32::from(coarse.means()[*cell].abs_diff(**then)) > params.change_threshold
         };
-        if params.change_threshold <= 0.0 || cells.zip(&self.reference).any(differs) {
-            self.changed = self.changed.or(Some(now));
-        } else {
-            self.changed = None;
-        }
+        self.due = match params.change_threshold <= 0.0 {
+            true => self.region,
+            false => {
+                let changed = cells.zip(&self.reference).filter(differs).map(|(cell, _)| cell);
+                self.around(changed, coarse.size(), size)
+            }
+        };
+        self.changed = (!self.due.is_empty()).then(|| self.changed.unwrap_or(now));
         self.changed.is_some()
     }
+
+    /// What lies in the tile of the smallest region with all `cells` and what is around it; empty without cells.
+    fn around(&self, cells: impl Iterator<Item = usize>, grid: [usize; 2], size: [usize; 2]) -> Region {
+        let regions = cells.map(|cell| cell_region(cell, grid, size));
+        let Some(all) = regions.reduce(|all, region| all.joined(&region)) else { return Region::default() };
+        let (x, y) = (
+            all.x.saturating_sub(AROUND).max(self.region.x),
+            all.y.saturating_sub(AROUND).max(self.region.y),
+        );
+        let end =
+            |begin: usize, long: usize, own: usize, side: usize| (begin + long + AROUND).min(own + side);
+        let right = end(all.x, all.width, self.region.x, self.region.width);
+        let below = end(all.y, all.height, self.region.y, self.region.height);
+        Region { x, y, width: right.saturating_sub(x), height: below.saturating_sub(y) }
+    }
+}
+
+/// The pixels of a cell of a coarse picture.
+fn cell_region(cell: usize, [columns, rows]: [usize; 2], [width, height]: [usize; 2]) -> Region {
+    let side = |at: usize, count: usize, long: usize| (at * long / count, ((at + 1) * long).div_ceil(count));
+    let (x, right) = side(cell % columns, columns, width);
+    let (y, below) = side(cell / columns, rows, height);
+    Region { x, y, width: right - x, height: below - y }
 }
 
 /// The numbers of the cells of a coarse picture that a region touches.
@@ -270,7 +315,7 @@ mod tests {
     fn looked(tiles: &mut Tiles, params: &TilingParams, image: &Image) -> Vec<usize> {
         tiles.plan(params, image.view(), |_, _| false).unwrap();
         let order = tiles.order().to_vec();
-        order.iter().for_each(|index| tiles.saw(*index));
+        order.iter().for_each(|index| tiles.saw(*index, true));
         order
     }
 
@@ -336,7 +381,7 @@ mod tests {
         for picture in 1..200 {
             tiles.plan(&params, scene(&[]).view(), |index, _| index % 7 == 0).unwrap();
             for index in tiles.order().to_vec() {
-                tiles.saw(index);
+                tiles.saw(index, true);
                 last[index] = picture;
             }
         }
