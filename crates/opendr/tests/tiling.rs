@@ -180,6 +180,25 @@ fn things_of_24_pixels_are_found_in_4k() {
     }
 }
 
+/// With a budget (here one that nothing exceeds), parts of tiles that have something in them are looked at side by side.
+#[test]
+fn parts_side_by_side_show_nearly_as_much() {
+    let Some(models) = Models::find() else { return };
+    let Scene { image, truth, parts } = scene(&models);
+    let wishes = [("rotation", 0.0), ("time_budget", 60_000.0)];
+    let Some(mut whole) = learner(&models, "tiled_detection", &wishes[..1]) else { return };
+    let Some(mut packed) = learner(&models, "tiled_detection", &wishes) else { return };
+    let (all, found) = (boxes(&mut *whole, &image), boxes(&mut *packed, &image));
+    let [wanted, hit] = [&all, &found].map(|found| hits(found, &truth));
+    let [on_ground, twice] = mistakes(&found, &parts);
+    println!("{hit} of {OBJECTS} in parts, {wanted} in tiles; {on_ground} of nothing, {twice} twice");
+    assert!(3 * hit >= 2 * wanted && on_ground <= 3 && twice == 0, "{hit} of {wanted}, {on_ground}, {twice}");
+    // Nothing moved: the answer stays. Everything goes: nothing stays.
+    assert_eq!(boxes(&mut *packed, &image), found);
+    let ground = Image::from_rgb8(vec![130; SIZE[0] * SIZE[1] * 3], SIZE[0], SIZE[1]).unwrap();
+    assert!(boxes(&mut *packed, &ground).boxes.is_empty());
+}
+
 /// With few tiles a picture, what is there is found little by little, and stays.
 #[test]
 fn a_few_tiles_at_a_time_find_the_same_in_the_end() {

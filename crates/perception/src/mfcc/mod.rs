@@ -90,13 +90,10 @@ impl Mfcc {
     /// As [`Mfcc::run_into`] of samples that are all multiplied by `factor`, a positive number, without a pass over them: their
     /// bands are instead.
     pub fn run_scaled_into(&self, samples: &[f32], factor: f32, cepstra: &mut Vec<f32>) -> usize {
-        let (count, coefficients) = (self.options.bands.count, self.options.coefficients);
         let Work { frames: work, bands } = &mut *self.work.take();
         let frames = self.log_mel_of(samples, factor, work, bands);
-        cepstra.resize(frames * coefficients, 0.0);
-        for (bands, cepstrum) in bands.chunks_exact(count).zip(cepstra.chunks_exact_mut(coefficients)) {
-            self.cosine.run(bands, cepstrum);
-        }
+        cepstra.resize(frames * self.options.coefficients, 0.0);
+        self.cosine.run(bands, cepstra);
         frames
     }
 

@@ -41,8 +41,8 @@ impl Mfcc {
         stream.pending.extend(&piece[left_out..]);
         let Work { frames, bands } = &mut *self.work.take();
         let (count, coefficients) = (options.bands.count, options.coefficients);
-        bands.resize(FOURIER_FRAMES * count + coefficients, 0.0);
-        let (bands, cepstrum) = bands.split_at_mut(FOURIER_FRAMES * count);
+        bands.resize(FOURIER_FRAMES * (count + coefficients), 0.0);
+        let (bands, cepstra) = bands.split_at_mut(FOURIER_FRAMES * count);
         let mut start = 0;
         loop {
             let mut together = 0;
@@ -56,12 +56,10 @@ impl Mfcc {
             if together == 0 {
                 break;
             }
-            let bands = &mut bands[..together * count];
+            let (bands, cepstra) = (&mut bands[..together * count], &mut cepstra[..together * coefficients]);
             self.log_bands(frames, 1.0, bands);
-            for bands in bands.chunks_exact(count) {
-                self.cosine.run(bands, cepstrum);
-                frame(cepstrum);
-            }
+            self.cosine.run(bands, cepstra);
+            cepstra.chunks_exact(coefficients).for_each(&mut frame);
         }
         stream.skip += start.saturating_sub(stream.pending.len());
         stream.pending.drain(..start.min(stream.pending.len()));

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use opendr_kernels::{FOURIER_FRAMES, FourierWork, Isa, RealFourier, Spectrum};
+use opendr_kernels::{
+    Compute, FOURIER_FRAMES, FourierWork, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum,
+};
 
 use crate::mfcc::mel_bank::MelBank;
 use crate::mfcc::options::{CosineScale, Edges, MfccOptions};
@@ -94,9 +96,11 @@ fn reflected(at: isize, count: usize) -> usize {
 
 /// The first coefficients of a DCT-II.
 pub(super) struct CosineTransform {
+    bands: usize,
     coefficients: usize,
     /// `[bands, coefficients]`.
     table: Vec<f32>,
+    compute: Compute,
 }
 
 impl CosineTransform {
@@ -110,16 +114,19 @@ impl CosineTransform {
             let angle = PI * coefficient as f64 * (2 * band + 1) as f64 / (2 * bands) as f64;
             ((size / bands as f64).sqrt() * angle.cos()) as f32
         };
-        Self { coefficients, table: (0..bands * coefficients).map(entry).collect() }
+        let table = (0..bands * coefficients).map(entry).collect();
+        Self { bands, coefficients, table, compute: Compute::single() }
     }
 
-    /// Replaces `cepstrum` by the coefficients of `bands`.
-    pub fn run(&self, bands: &[f32], cepstrum: &mut [f32]) {
-        cepstrum.fill(0.0);
-        // Band by band, all coefficients of one at once: sums that do not wait for each other.
-        for (band, row) in bands.iter().zip(self.table.chunks_exact(self.coefficients)) {
-            cepstrum.iter_mut().zip(row).for_each(|(sum, weight)| *sum += band * weight);
-        }
+    /// Replaces `cepstra`, `[frames, coefficients]`, by the coefficients of `bands`, `[frames, bands]`.
+    pub fn run(&self, bands: &[f32], cepstra: &mut [f32]) {
+        let frames = bands.len() / self.bands;
+        Product::new().run(
+            &self.compute,
+            Matrix::new(bands, frames, self.bands),
+            Matrix::new(&self.table, self.bands, self.coefficients),
+            MatrixMut::new(cepstra, frames, self.coefficients),
+        );
     }
 }
 

@@ -64,7 +64,8 @@ impl Looks {
         let (mut x, mut y, mut high) = (0, 0, 0);
         for index in tiles.order() {
             let Some(part) = tiles.tiles().get(*index).map(|tile| tile.due) else { continue };
-            if 2 * part.width.max(part.height) > side {
+            // A tile whose turn it is has no such part.
+            if part.is_empty() || 2 * part.width.max(part.height) > side {
                 self.add_tile(tiles, *index);
                 continue;
             }
@@ -146,9 +147,12 @@ mod tests {
     }
 
     fn plan(squares: &[[usize; 2]]) -> (Tiles, Looks) {
-        let params = TilingParams { whole: false, rotation: 0, ..TilingParams::default() };
+        plan_with(&TilingParams { whole: false, rotation: 0, ..TilingParams::default() }, squares)
+    }
+
+    fn plan_with(params: &TilingParams, squares: &[[usize; 2]]) -> (Tiles, Looks) {
         let (mut tiles, mut looks) = (Tiles::default(), Looks::default());
-        tiles.plan(&params, scene(squares).view(), |_, _| false).unwrap();
+        tiles.plan(params, scene(squares).view(), |_, _| false).unwrap();
         looks.plan_packed(&tiles, params.tile);
         (tiles, looks)
     }
@@ -185,6 +189,10 @@ mod tests {
         let (tiles, looks) = plan(&[[130, 130]]);
         assert_eq!((looks.len(), tiles.order().len()), (1, 1));
         assert_eq!(looks.look(0)[0].part, tiles.tiles()[tiles.order()[0]].region);
+        // Nothing is there, and it is its turn.
+        let turn = TilingParams { whole: false, rotation: 1, ..TilingParams::default() };
+        let (tiles_in_turn, looks) = plan_with(&turn, &[]);
+        assert_eq!(looks.look(0)[0].part, tiles_in_turn.tiles()[0].region);
         let (_, mut looks) = plan(&[]);
         assert!(looks.is_empty());
         looks.plan_whole(&tiles);

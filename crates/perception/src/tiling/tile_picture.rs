@@ -63,7 +63,8 @@ impl TilePicture {
         bytes.fill(BETWEEN);
         let channels = view.format().rgb_offsets();
         for Slot { part: Region { x, y, width, height }, at: [left, top], .. } in slots {
-            let part = view.crop(*x, *y, *width, *height).ok_or_else(outside)?;
+            let part = view.crop(*x, *y, *width, *height).filter(|part| left + part.width() <= side);
+            let part = part.ok_or_else(outside)?;
             for row in 0..part.height() {
                 let begin = 3 * ((top + row) * side + left);
                 let line = bytes.get_mut(begin..begin + 3 * part.width()).ok_or_else(outside)?;
