@@ -5,48 +5,26 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
-use opendr_engine::target::{Category, Classes};
+use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, Value, ValueType};
 
+use crate::class_folders::{ClassFolders, SPLITS};
 use crate::class_table::ClassTable;
 use crate::fields::lines;
-use crate::folder::{PICTURES, files_in, folders_in, past_end, path_inside, read_text};
+use crate::folder::{PICTURES, files_in, folders_in, part_folder, path_inside, read_text};
 use crate::picture_files::{PictureWriter, split_name, write_each};
 use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 /// Files that tell what the names of class folders mean: `n01440764 tench, Tinca tinca`.
 const WORDS: [&str; 4] = ["LOC_synset_mapping.txt", "synset_words.txt", "words.txt", "synsets.txt"];
 
-/// Names of parts, the first that is there is taken.
-const SPLITS: [&str; 4] = ["val", "validation", "test", "train"];
-
 /// A data set of pictures in class folders, numbered in the order of the folders' names.
 #[derive(Debug)]
-pub struct ImageNet {
-    root: PathBuf,
-    classes: Classes,
-    /// Class and path within the root.
-    samples: Vec<(u32, String)>,
-}
+pub struct ImageNet(ClassFolders);
 
 /// The folder of a part: one of the usual names, or the folder itself.
 fn part(path: &Path, split: Option<&str>) -> Result<PathBuf> {
-    let there = folders_in(path);
-    match split {
-        Some(split) => {
-            there.iter().find(|name| *name == split).map(|name| path.join(name)).ok_or_else(|| {
-                Error::not_found(format!(
-                    "no part {split:?} in {}; there are: {}",
-                    path.display(),
-                    there.join(", ")
-                ))
-            })
-        }
-        None => {
-            let usual = SPLITS.iter().find(|split| there.iter().any(|name| name == *split));
-            Ok(usual.map_or_else(|| path.to_owned(), |split| path.join(split)))
-        }
-    }
+    Ok(part_folder(path, split, &SPLITS)?.unwrap_or_else(|| path.to_owned()))
 }
 
 /// A file that names the class of each picture of a flat folder: `ILSVRC2012_val_00000001.JPEG 65`.
@@ -72,16 +50,8 @@ fn words(path: &Path, root: &Path) -> Result<BTreeMap<String, String>> {
 
 impl ImageNet {
     fn from_folders(root: PathBuf, words: &BTreeMap<String, String>) -> Self {
-        let (mut names, mut samples) = (Vec::new(), Vec::new());
-        for folder in folders_in(&root) {
-            let files = files_in(&root.join(&folder), PICTURES);
-            if !files.is_empty() {
-                let class = names.len() as u32;
-                samples.extend(files.into_iter().map(|file| (class, format!("{folder}/{file}"))));
-                names.push(words.get(&folder).cloned().unwrap_or(folder));
-            }
-        }
-        Self { root, classes: names.into(), samples }
+        let pictures_in = |folder: &Path| files_in(folder, PICTURES);
+        Self(ClassFolders::new(root, pictures_in, |folder| words.get(&folder).cloned().unwrap_or(folder)))
     }
 
     fn from_map(
@@ -110,11 +80,7 @@ impl ImageNet {
                 Err(message) => problems.report(Problem::at_line(map, number, message))?,
             }
         }
-        Ok(Self { root, classes: words.values().map(String::as_str).collect(), samples })
-    }
-
-    fn sample(&self, index: usize) -> Result<&(u32, String)> {
-        self.samples.get(index).ok_or_else(|| past_end(index, self.samples.len()))
+        Ok(Self(ClassFolders { root, classes: words.values().map(String::as_str).collect(), samples }))
     }
 }
 
@@ -122,30 +88,28 @@ impl Dataset for ImageNet {}
 
 impl DatasetIterator for ImageNet {
     fn len(&self) -> usize {
-        self.samples.len()
+        self.0.samples.len()
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let image = opendr_vision::open(self.root.join(&self.sample(index)?.1))?;
+        let image = opendr_vision::open(self.0.file(index)?)?;
         Ok(Sample { data: vec![image.into()], target: self.target(index)? })
     }
 
     fn target(&self, index: usize) -> Result<Option<Value>> {
-        let class = i64::from(self.sample(index)?.0);
-        let description = self.classes.name(class).cloned();
-        Ok(Some(Category { description, ..Category::new(class, None) }.into()))
+        self.0.target(index)
     }
 
     fn name(&self, index: usize) -> String {
-        self.sample(index).map_or_else(|_| index.to_string(), |(_, name)| name.clone())
+        self.0.name(index)
     }
 
     fn path(&self, index: usize) -> Option<PathBuf> {
-        self.sample(index).ok().map(|(_, name)| self.root.join(name))
+        self.0.file(index).ok()
     }
 
     fn classes(&self) -> Classes {
-        self.classes.clone()
+        self.0.classes.clone()
     }
 }
 
@@ -188,7 +152,7 @@ impl Format for ImageNet {
             _ => Self::from_folders(root, &words),
         };
         if dataset.is_empty() {
-            let path = dataset.root.display();
+            let path = dataset.0.root.display();
             return Err(Error::not_found(format!("no pictures in folders for classes in {path}")));
         }
         Ok(dataset)

@@ -4,27 +4,20 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
-use opendr_engine::target::{Category, Classes};
+use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
 
+use crate::class_folders::{ClassFolders, SPLITS};
 use crate::class_table::ClassTable;
 use crate::clip::{CLIPS, frame_of, open_clip};
-use crate::folder::{PICTURES, files_in, folders_in, has_extension, names_in, part_folder, past_end};
+use crate::folder::{PICTURES, files_in, folders_in, has_extension, names_in, part_folder};
 use crate::picture_files::{split_name, write_each};
 use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
-
-/// Names of parts, the first that is there is taken.
-const SPLITS: [&str; 4] = ["val", "validation", "test", "train"];
 
 /// Clips in class folders, numbered in the order of the folders' names. A clip is a video file, a `.npy`, or a folder with its
 /// frames as pictures.
 #[derive(Debug)]
-pub struct Kinetics {
-    root: PathBuf,
-    classes: Classes,
-    /// Class and path within the root.
-    clips: Vec<(u32, String)>,
-}
+pub struct Kinetics(ClassFolders);
 
 /// The clips in a folder.
 fn clips_in(folder: &Path) -> Vec<String> {
@@ -36,40 +29,32 @@ fn clips_in(folder: &Path) -> Vec<String> {
     names
 }
 
-impl Kinetics {
-    fn clip(&self, index: usize) -> Result<&(u32, String)> {
-        self.clips.get(index).ok_or_else(|| past_end(index, self.clips.len()))
-    }
-}
-
 impl Dataset for Kinetics {}
 
 impl DatasetIterator for Kinetics {
     fn len(&self) -> usize {
-        self.clips.len()
+        self.0.samples.len()
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let clip = open_clip(&self.root.join(&self.clip(index)?.1))?;
+        let clip = open_clip(&self.0.file(index)?)?;
         Ok(Sample { data: vec![Value::Video(clip)], target: self.target(index)? })
     }
 
     fn target(&self, index: usize) -> Result<Option<Value>> {
-        let class = i64::from(self.clip(index)?.0);
-        let description = self.classes.name(class).cloned();
-        Ok(Some(Category { description, ..Category::new(class, None) }.into()))
+        self.0.target(index)
     }
 
     fn name(&self, index: usize) -> String {
-        self.clip(index).map_or_else(|_| index.to_string(), |(_, name)| name.clone())
+        self.0.name(index)
     }
 
     fn path(&self, index: usize) -> Option<PathBuf> {
-        self.clip(index).ok().map(|(_, name)| self.root.join(name))
+        self.0.file(index).ok()
     }
 
     fn classes(&self) -> Classes {
-        self.classes.clone()
+        self.0.classes.clone()
     }
 }
 
@@ -93,22 +78,12 @@ impl Format for Kinetics {
 
     fn open(path: &Path, options: &OpenOptions, _: &Problems) -> Result<Self> {
         let root = part_folder(path, options.split.as_deref(), &SPLITS)?.unwrap_or_else(|| path.to_owned());
-        let (mut names, mut clips) = (Vec::new(), Vec::new());
-        for folder in folders_in(&root) {
-            let class = names.len() as u32;
-            let before = clips.len();
-            clips.extend(
-                clips_in(&root.join(&folder)).into_iter().map(|clip| (class, format!("{folder}/{clip}"))),
-            );
-            if clips.len() > before {
-                names.push(folder);
-            }
-        }
-        if clips.is_empty() {
-            let (root, layout) = (root.display(), Self::LAYOUT);
+        let clips = ClassFolders::new(root, clips_in, |folder| folder);
+        if clips.samples.is_empty() {
+            let (root, layout) = (clips.root.display(), Self::LAYOUT);
             return Err(Error::not_found(format!("no clips in {root}; it should have {layout}")));
         }
-        Ok(Self { root, classes: names.into(), clips })
+        Ok(Self(clips))
     }
 
     /// Videos are copied or linked; other clips become folders of pictures.

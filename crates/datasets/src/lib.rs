@@ -8,6 +8,7 @@ pub mod augment;
 mod camvid;
 mod check;
 mod cityscapes;
+mod class_folders;
 mod class_table;
 mod clip;
 mod coco;

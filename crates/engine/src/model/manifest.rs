@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use serde::de::IgnoredAny;
+use serde::de::{DeserializeOwned, IgnoredAny};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -116,6 +116,30 @@ impl Manifest {
             metrics: Map::new(),
             lineage: Lineage::default(),
         }
+    }
+
+    /// What [`inputs`](Self::inputs) say, read as a type of the learner's; `what` names it in the error.
+    ///
+    /// # Errors
+    /// `Format` where they say something else.
+    pub fn read_inputs<T: DeserializeOwned>(&self, what: &str) -> Result<T> {
+        serde_json::from_value(Value::Object(self.inputs.clone())).map_err(|error| {
+            Error::format(format!("the model's \"inputs\" do not tell {what}; train or get it anew"))
+                .with_source(error)
+        })
+    }
+
+    /// Replaces [`inputs`](Self::inputs) by what a type of the learner's says, for [`Manifest::read_inputs`].
+    ///
+    /// # Errors
+    /// `Internal` for a type that has no names in JSON.
+    pub fn write_inputs(&mut self, layout: &impl Serialize) -> Result<()> {
+        self.inputs = match serde_json::to_value(layout) {
+            Ok(Value::Object(inputs)) => inputs,
+            Ok(_) => return Err(Error::internal("a layout is no object")),
+            Err(error) => return Err(Error::internal("a layout has no JSON form").with_source(error)),
+        };
+        Ok(())
     }
 
     /// Reads `model.json`, or OpenDR's own JSON when it points to ONNX files.

@@ -90,7 +90,7 @@ impl Objective for GemObjective {
         let mut manifest = Manifest::new(Gem::SPEC.name, "");
         manifest.task = Some(Gem::SPEC.task);
         manifest.classes.clone_from(&self.classes);
-        manifest.inputs = self.layout.to_inputs()?;
+        manifest.write_inputs(&self.layout)?;
         Ok(Container {
             manifest,
             files: vec![(FILE.into(), model), (TRAINABLE.into(), bytes_from_network(network)?)],

@@ -4,7 +4,6 @@ use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
 use opendr_vision::{Anchor, Preprocess};
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 
 use super::anchors::Anchors;
 
@@ -83,27 +82,10 @@ impl Layout {
     /// # Errors
     /// `Format` when they are not of this learner, or make no sense.
     pub fn from_manifest(manifest: &Manifest) -> Result<Self> {
-        let inputs = Value::Object(manifest.inputs.clone());
-        let layout: Self = serde_json::from_value(inputs).map_err(|error| {
-            Error::format(
-                "the model's \"inputs\" do not tell its image and its anchors; train or get it anew",
-            )
-            .with_source(error)
-        })?;
+        let layout: Self = manifest.read_inputs("its image and its anchors")?;
         layout.image.check()?;
         layout.anchors.check()?;
         Ok(layout)
-    }
-
-    /// What stands in a container's `inputs`.
-    ///
-    /// # Errors
-    /// `Internal`, which a layout that passes [`Layout::from_manifest`] never gives.
-    pub fn to_inputs(&self) -> Result<Map<String, Value>> {
-        match serde_json::to_value(self) {
-            Ok(Value::Object(inputs)) => Ok(inputs),
-            _ => Err(Error::internal("the layout of a detector cannot be written as JSON")),
-        }
     }
 }
 
@@ -113,7 +95,7 @@ mod tests {
 
     fn manifest(layout: &Layout) -> Manifest {
         let mut manifest = Manifest::new("single_shot_detector", "");
-        manifest.inputs = layout.to_inputs().unwrap();
+        manifest.write_inputs(layout).unwrap();
         manifest
     }
 

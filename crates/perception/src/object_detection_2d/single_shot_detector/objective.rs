@@ -83,7 +83,7 @@ impl Objective for DetectionObjective {
         let mut manifest = Manifest::new(spec.name, "");
         manifest.task = Some(spec.task);
         manifest.classes = self.classes.clone();
-        manifest.inputs = self.layout.to_inputs()?;
+        manifest.write_inputs(&self.layout)?;
         Ok(Container { manifest, files: vec![("model.onnx".to_owned(), onnx)] })
     }
 }

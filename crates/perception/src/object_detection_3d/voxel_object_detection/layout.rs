@@ -3,7 +3,6 @@
 use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 use super::anchors::AnchorKind;
 use crate::pillars::PillarGrid;
@@ -36,30 +35,12 @@ impl PillarLayout {
     /// # Errors
     /// `Format` when they are not of this learner, or make no sense.
     pub fn from_manifest(manifest: &Manifest) -> Result<Self> {
-        let layout: Self =
-            serde_json::from_value(Value::Object(manifest.inputs.clone())).map_err(|error| {
-                Error::format(
-                    "the model's \"inputs\" do not tell its grid and its anchors; train or get it anew",
-                )
-                .with_source(error)
-            })?;
+        let layout: Self = manifest.read_inputs("its grid and its anchors")?;
         layout.grid.check()?;
         AnchorKind::check(&layout.anchors, manifest.classes.len())?;
         if (1..=64).contains(&layout.stride) {
             return Ok(layout);
         }
         Err(Error::format(format!("anchors stand 1 to 64 cells apart; the model says {}", layout.stride)))
-    }
-
-    /// What stands in a container's `inputs`.
-    ///
-    /// # Errors
-    /// `Internal` when it has no JSON form.
-    pub fn to_inputs(&self) -> Result<serde_json::Map<String, Value>> {
-        match serde_json::to_value(self) {
-            Ok(Value::Object(inputs)) => Ok(inputs),
-            Ok(_) => Err(Error::internal("a layout is no object")),
-            Err(error) => Err(Error::internal("a layout has no JSON form").with_source(error)),
-        }
     }
 }

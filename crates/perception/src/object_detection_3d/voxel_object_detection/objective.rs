@@ -76,7 +76,7 @@ impl Objective for PillarObjective {
         let mut manifest = Manifest::new(spec.name, "");
         manifest.task = Some(spec.task);
         manifest.classes = self.classes.clone();
-        manifest.inputs = self.layout.to_inputs()?;
+        manifest.write_inputs(&self.layout)?;
         let files = vec![
             (POINT_FILE.to_owned(), points),
             (PILLAR_FILE.to_owned(), pillars),

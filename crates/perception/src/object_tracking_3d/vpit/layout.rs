@@ -3,7 +3,6 @@
 use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
 
 use crate::pillars::{PillarGrid, Voxeliser};
 
@@ -64,28 +63,12 @@ impl VpitLayout {
     /// # Errors
     /// `Format` when they are not of this learner, or make no sense.
     pub fn from_manifest(manifest: &Manifest) -> Result<Self> {
-        let layout: Self =
-            serde_json::from_value(Value::Object(manifest.inputs.clone())).map_err(|error| {
-                Error::format("the model's \"inputs\" do not tell its views; train or get it anew")
-                    .with_source(error)
-            })?;
+        let layout: Self = manifest.read_inputs("its views")?;
         layout.grid().check()?;
         if layout.scale.is_finite() && layout.bias.is_finite() {
             return Ok(layout);
         }
         Err(Error::format("the model's scale and bias are no numbers; train or get it anew"))
-    }
-
-    /// What stands in a container's `inputs`.
-    ///
-    /// # Errors
-    /// `Internal` when it has no JSON form.
-    pub fn to_inputs(&self) -> Result<Map<String, Value>> {
-        match serde_json::to_value(self) {
-            Ok(Value::Object(inputs)) => Ok(inputs),
-            Ok(_) => Err(Error::internal("a layout is no object")),
-            Err(error) => Err(Error::internal("a layout has no JSON form").with_source(error)),
-        }
     }
 }
 
@@ -108,7 +91,7 @@ mod tests {
     #[test]
     fn what_a_container_says_is_checked() {
         let mut manifest = Manifest::new("vpit", "");
-        manifest.inputs = LAYOUT.to_inputs().unwrap();
+        manifest.write_inputs(&LAYOUT).unwrap();
         assert_eq!(VpitLayout::from_manifest(&manifest).unwrap(), LAYOUT);
         manifest.inputs.insert("pillar".into(), (-1.0).into());
         assert!(VpitLayout::from_manifest(&manifest).is_err());

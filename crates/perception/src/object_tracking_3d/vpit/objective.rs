@@ -64,7 +64,7 @@ impl Objective for VpitObjective {
         let [scale, bias] = network.scale_and_bias();
         let mut manifest = Manifest::new(Vpit::SPEC.name, "");
         manifest.task = Some(Vpit::SPEC.task);
-        manifest.inputs = VpitLayout { scale, bias, ..self.layout }.to_inputs()?;
+        manifest.write_inputs(&VpitLayout { scale, bias, ..self.layout })?;
         let files = vec![(FILE.to_owned(), features), (TRAINABLE.to_owned(), bytes_from_network(network)?)];
         Ok(Container { manifest, files })
     }

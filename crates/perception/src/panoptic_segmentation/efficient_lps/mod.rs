@@ -23,7 +23,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
 
 use crate::object_detection_3d::Scan;
 use crate::range_image::{RangeImage, RangeView};
@@ -90,15 +90,15 @@ const LABEL_DIVISOR: u32 = 1000;
 /// The class of what is not known.
 const UNKNOWN: u32 = 255;
 
-/// Where a container's `inputs` say how its range image looks.
-const VIEW: &str = "view";
+/// What stands in a container's `inputs`.
+#[derive(Debug, Serialize, Deserialize)]
+struct Described {
+    /// How its range image looks.
+    view: RangeView,
+}
 
 fn view_of(manifest: &Manifest) -> Result<RangeView> {
-    let view = manifest.inputs.get(VIEW).cloned().unwrap_or(Value::Null);
-    let view: RangeView = serde_json::from_value(view).map_err(|error| {
-        Error::format("the model's \"inputs\" do not tell the view of its range image; train or get it anew")
-            .with_source(error)
-    })?;
+    let Described { view } = manifest.read_inputs("the view of its range image")?;
     view.check()?;
     Ok(view)
 }

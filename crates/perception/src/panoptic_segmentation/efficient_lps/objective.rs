@@ -13,7 +13,9 @@ use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::RangeNetwork;
-use super::{CHANNELS, EfficientLps, EfficientLpsParams, FILE, LABEL_DIVISOR, UNKNOWN, VIEW, paint, project};
+use super::{
+    CHANNELS, Described, EfficientLps, EfficientLpsParams, FILE, LABEL_DIVISOR, UNKNOWN, paint, project,
+};
 use crate::object_detection_3d::Scan;
 use crate::range_image::{NOWHERE, RangeImage, RangeView};
 use crate::trainable_weights::{TRAINABLE, bytes_from_network};
@@ -126,9 +128,7 @@ impl Objective for LabelledScans {
         manifest.classes = self.classes.clone();
         let params = EfficientLpsParams { things: self.things.clone(), ..EfficientLpsParams::default() };
         manifest.params.extend(params.to_map().into_iter().filter(|(name, _)| name == "things"));
-        let view = serde_json::to_value(self.view)
-            .map_err(|error| Error::internal("a view has no JSON form").with_source(error))?;
-        manifest.inputs.insert(VIEW.to_owned(), view);
+        manifest.write_inputs(&Described { view: self.view })?;
         let weights = (TRAINABLE.to_owned(), bytes_from_network(network)?);
         Ok(Container { manifest, files: vec![(FILE.to_owned(), model), weights] })
     }

@@ -1,1 +1,0 @@
-"""Minimal shadow package for generated cydr codecs."""
