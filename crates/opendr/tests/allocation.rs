@@ -8,12 +8,14 @@ mod models;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use opendr::data::Image;
+use opendr::data::{Audio, Image};
 use opendr::inference::{Session, TensorView};
 use opendr::learner::{Handle, Inputs, Learner};
 use opendr::object_tracking_2d::{ByteTrack, OcSort, Sort, TrackerInputs};
 use opendr::params::{ParamMap, Params};
-use opendr::target::{BoundingBox, BoundingBoxList, TrackingAnnotationList};
+use opendr::speech_recognition::DsCnn;
+use opendr::stereo_matching::{SemiGlobalMatching, SemiGlobalMatchingInputs, SemiGlobalMatchingTargets};
+use opendr::target::{BoundingBox, BoundingBoxList, Category, TrackingAnnotationList};
 use opendr::{Device, Model};
 
 struct Counting;
@@ -109,6 +111,48 @@ fn trackers_allocate_nothing() {
     check_tracker(Sort::with_params);
     check_tracker(ByteTrack::with_params);
     check_tracker(OcSort::with_params);
+}
+
+#[test]
+fn stereo_allocates_nothing() {
+    let wishes = [("focal_length", 300.0), ("baseline", 0.1), ("camera_height", 1.0)];
+    let wishes = wishes.map(|(name, value)| (name.to_owned(), value.into()));
+    let matcher = SemiGlobalMatching::with_params(Params::from_map(&ParamMap::from(wishes)).unwrap());
+    let picture = |shift: usize| {
+        let level = |at: usize| ((at % 160 + shift).pow(2) * 7 + at / 160 * 31) as u8;
+        Image::from_rgb8((0..160 * 120).flat_map(|at| [level(at); 3]).collect(), 160, 120).unwrap()
+    };
+    let (left, right, mut answer) = (picture(0), picture(9), SemiGlobalMatchingTargets::default());
+    let mut call = || {
+        let input = SemiGlobalMatchingInputs { left: &left, right: &right };
+        matcher.infer_into(&mut (), input, &mut answer).unwrap();
+    };
+    (0..3).for_each(|_| call());
+    assert_eq!(fewest(call), 0);
+}
+
+#[test]
+fn words_allocate_nothing_around_the_session() {
+    let Some(models) = models::Models::find() else { return };
+    let Some(path) = models.get("ds_cnn") else { return };
+    let mut handle = Handle::<DsCnn>::new(Params::from_map(&ParamMap::new()).unwrap(), Device::Cpu).unwrap();
+    handle.load(&path).unwrap();
+    let session =
+        Session::open(&Model::open(&path).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
+    let cepstra = [0.0_f32; 49 * 10];
+    let input = [TensorView::new(&[1, 1, 49, 10], &cepstra).unwrap()];
+    let mut bare = || session.run(&input, |_| Ok(())).unwrap();
+    (0..3).for_each(|_| bare());
+    let bare = fewest(bare);
+    // A whole second, and one that has to be filled up.
+    for samples in [16_000, 9_000] {
+        let levels = (0..samples).map(|at| (at as f32 * 0.1).sin()).collect::<Vec<_>>();
+        let (sound, mut word) = (Audio::new(levels, 1, 16_000).unwrap(), Category::default());
+        let mut call = || handle.infer_into((&sound).into(), &mut word).unwrap();
+        (0..3).for_each(|_| call());
+        let whole = fewest(call);
+        assert!(whole <= bare, "a word allocates {whole} times, its bare session {bare} times");
+    }
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! Any detector in tiles of a large picture: what is small in it is found.
 //!
 //! How is said in [`tiling`](crate::tiling). A stream remembers what was found in each tile, so that tiles in which nothing
-//! moves cost nothing, and those for which there was no time in one picture are looked at in the next.
+//! moves cost nothing, and those for which there was no time in one picture are looked at in the next. With a time budget, small
+//! parts of several tiles are looked at side by side, which keeps up with many small things that move.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
