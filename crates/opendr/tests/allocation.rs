@@ -141,7 +141,7 @@ fn words_allocate_nothing_around_the_session() {
         Session::open(&Model::open(&path).unwrap().file("model.onnx").unwrap(), Device::Cpu).unwrap();
     let cepstra = [0.0_f32; 49 * 10];
     let input = [TensorView::new(&[1, 1, 49, 10], &cepstra).unwrap()];
-    let mut bare = || session.run(&input, |_| Ok(())).unwrap();
+    let bare = || session.run(&input, |_| Ok(())).unwrap();
     (0..3).for_each(|_| bare());
     let bare = fewest(bare);
     // A whole second, and one that has to be filled up.
