@@ -16,8 +16,8 @@ from opendr.engine.learners import BaseLearner, Learner
 
 PathLike = Union[str, "os.PathLike[str]"]
 Table = dict[str, Any]
-#: What a path of a file may stand for: pictures, WAVE, tables of numbers (CSV, text, NPY), scans as KITTI has them.
-IN_FILES = ("Image", "Audio", "Timeseries", "Vector", "SkeletonSequence", "PointCloud")
+#: What a path may stand for: pictures, videos and folders of frames, WAVE, tables (CSV, text, NPY), scans as KITTI has them.
+IN_FILES = ("Image", "Video", "Audio", "Timeseries", "Vector", "SkeletonSequence", "PointCloud")
 #: Data that no array alone can stand for.
 OF_SEVERAL_PARTS = ("Audio", "Calibration", "ImageWithDetections", "PointCloudWithCalibration")
 
