@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from programs import example
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -14,8 +15,7 @@ class Data:
     """Checks, prints and converts data sets, as crates/datasets/examples/data.rs."""
 
     def __init__(self):
-        program = os.environ.get("OPENDR_DATASETS_DATA")
-        self.command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-datasets", "--example", "data", "--"]
+        self.command = example("datasets", "data")
 
     def run(self, *arguments):
         return subprocess.run([*self.command, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True)

@@ -18,6 +18,7 @@ import trackeval
 import wfdb
 from aeon import datasets
 from scipy.io import wavfile
+from programs import example
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -26,10 +27,7 @@ class Signals:
     """Reads and writes files, as crates/datasets/examples/signals.rs."""
 
     def __init__(self):
-        # The other example is named, this one lies beside it.
-        data = os.environ.get("OPENDR_DATASETS_DATA")
-        cargo = ["cargo", "run", "-q", "-p", "opendr-datasets", "--example", "signals", "--"]
-        self.command = [str(Path(data).with_name("signals"))] if data else cargo
+        self.command = example("datasets", "signals")
 
     def run(self, *arguments):
         done = subprocess.run([*self.command, *map(str, arguments)], cwd=ROOT, capture_output=True, text=True)

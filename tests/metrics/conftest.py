@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from programs import example
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -13,8 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def compute():
     """Computes cases `{"metric": .., "params": .., "samples": ..}` by crates/metrics/examples/compute.rs."""
-    program = os.environ.get("OPENDR_METRICS_COMPUTE")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-metrics", "--example", "compute"]
+    command = example("metrics", "compute")
 
     def run(*cases):
         lines = "".join(json.dumps(case) + "\n" for case in cases)

@@ -4,7 +4,6 @@ import contextlib
 import copy
 import io
 import json
-import os
 import subprocess
 
 import hotcoco
@@ -14,6 +13,7 @@ from conftest import ROOT
 from pycocotools import mask as masks
 from pycocotools.coco import COCO
 from pycocotools.cocoeval import COCOeval
+from programs import example
 
 OBJECT_KEYS = "map map50 map75 map_small map_medium map_large mar1 mar10 mar mar_small mar_medium mar_large".split()
 PERSON_KEYS = "map map50 map75 map_medium map_large mar mar50 mar75 mar_medium mar_large".split()
@@ -29,8 +29,7 @@ WIDTH, HEIGHT = 320, 240
 @pytest.fixture(scope="session")
 def coco_files():
     """The numbers of pairs of files, by crates/metrics/examples/coco_files.rs."""
-    program = os.environ.get("OPENDR_METRICS_COCO_FILES")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-metrics", "--example", "coco_files"]
+    command = example("metrics", "coco_files")
 
     def run(kind, *paths):
         done = subprocess.run([*command, kind, *paths], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)

@@ -1,13 +1,13 @@
 """Success and returns of policies: SciPy, NumPy, and the bootstrap of Agarwal et al. (2021) written out."""
 
 import json
-import os
 import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.stats import binomtest, trim_mean
+from programs import example
 
 MASK = 2**64 - 1
 STEP = 0x9E3779B97F4A7C15
@@ -16,9 +16,7 @@ STEP = 0x9E3779B97F4A7C15
 @pytest.fixture(scope="session")
 def statistics_of():
     """Computes the reports of cases, as crates/metrics/examples/episodes.rs."""
-    compute = os.environ.get("OPENDR_METRICS_COMPUTE")
-    built = compute and Path(compute).with_name("episodes")
-    command = [built] if built else ["cargo", "run", "-q", "-p", "opendr-metrics", "--example", "episodes"]
+    command = example("metrics", "episodes")
 
     def run(*cases):
         lines = "".join(json.dumps(case) + "\n" for case in cases)

@@ -4,7 +4,6 @@ The boxes are those that motmetrics has of two videos, without their identities 
 """
 
 import json
-import os
 import subprocess
 from pathlib import Path
 
@@ -14,6 +13,7 @@ import pytest
 import supervision
 from test_tracking import case
 from trackers import ByteTrackTracker, OCSORTTracker, SORTTracker
+from programs import example
 
 ROOT = Path(__file__).resolve().parents[2]
 VIDEOS = ["TUD-Campus", "TUD-Stadtmitte"]
@@ -41,8 +41,7 @@ def frames_of(video):
 
 
 def ours(tracker, frames):
-    program = os.environ.get("OPENDR_PERCEPTION_FOLLOW")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-perception", "--example", "follow", "--"]
+    command = example("perception", "follow")
     lines = "".join(json.dumps([[*row[1:], 1.0] for row in found]) + "\n" for _, found in frames)
     done = subprocess.run([*command, tracker, "{}"], cwd=ROOT, input=lines, stdout=subprocess.PIPE, text=True, check=True)
     return [json.loads(line) for line in done.stdout.splitlines()[:-1]]

@@ -37,7 +37,7 @@ class Opendr:
     """The `opendr` command."""
 
     def __init__(self, cache):
-        self.binary = os.environ.get("OPENDR_BIN", str(ROOT / "target/release/opendr"))
+        self.binary = os.environ.get("OPENDR_BIN", str(ROOT / "target/debug/opendr"))
         self.environment = {**os.environ, "OPENDR_CACHE": str(cache)}
         models = data_folder()
         if models is not None:

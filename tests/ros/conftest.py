@@ -12,12 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import peers  # noqa: E402
 from message_echo import MessageEcho  # noqa: E402
-
-
-def example(name):
-    """A built example of crates/messages."""
-    named = os.environ.get(f"OPENDR_{name.upper()}")
-    return named or str(peers.TARGET / "debug/examples" / name)
+from programs import example  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -25,7 +20,7 @@ def message_types_file(tmp_path_factory):
     """What the example message_types prints."""
     file = tmp_path_factory.mktemp("messages") / "message_types.jsonl"
     with file.open("wb") as out:
-        subprocess.run([example("message_types")], stdout=out, check=True)
+        subprocess.run(example("messages", "message_types"), stdout=out, check=True)
     return file
 
 
@@ -38,7 +33,7 @@ def known(message_types_file):
 @pytest.fixture
 def echo():
     """OpenDR reads messages and writes them again."""
-    with MessageEcho(example("message_echo")) as echo:
+    with MessageEcho(example("messages", "message_echo")) as echo:
         yield echo
 
 

@@ -15,7 +15,7 @@ START = 120
 
 def opendr():
     """The built command."""
-    return os.environ.get("OPENDR_BIN", str(TARGET / "release/opendr"))
+    return os.environ.get("OPENDR_BIN", str(TARGET / "debug/opendr"))
 
 
 def environment():

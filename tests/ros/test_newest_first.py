@@ -1,11 +1,9 @@
 """A learner that takes 100 ms, and pictures at 30 Hz: what it takes next is always the newest."""
 
-import os
-
-import peers
 from node import Node
 from patience import wait_until
 from pictures import image_fields, noise
+from programs import example
 
 IMAGE, CATEGORY = "sensor_msgs/msg/Image", "vision_msgs/msg/Classification"
 
@@ -14,7 +12,7 @@ class Slow(Node):
     """The example slow_node."""
 
     def command(self, *_):
-        return [os.environ.get("OPENDR_SLOW_NODE", str(peers.TARGET / "debug/examples/slow_node"))]
+        return example("ros", "slow_node")
 
 
 def test_every_picture_it_takes_is_the_newest(ros2):

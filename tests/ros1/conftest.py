@@ -11,8 +11,8 @@ import xmlrpc.client
 from pathlib import Path
 
 import pytest
+from programs import example
 
-ROOT = Path(__file__).resolve().parents[2]
 ROS = Path(os.environ.get("OPENDR_ROS1_BIN", "/usr/bin"))
 PEER = [str(ROS / "python3"), str(Path(__file__).with_name("peer.py"))]
 STRING = ("std_msgs/String", "992ce8a1687cec8c8bd883ec73ca41d1")
@@ -136,7 +136,7 @@ class Ros:
         return self.processes[-1]
 
     def probe(self, *words):
-        return self.run([self.program, *words])
+        return self.run([*self.program, *words])
 
     def peer(self, *words):
         return self.run([*PEER, *words])
@@ -173,13 +173,7 @@ class Ros:
 
 @pytest.fixture(scope="session")
 def program():
-    named = os.environ.get("OPENDR_ROS1_PROBE")
-    if named is None:
-        subprocess.run(["cargo", "build", "-q", "--release", "-p", "opendr-ros1", "--example", "ros1_probe"], cwd=ROOT,
-                       check=True)
-        target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-        named = target / "release/examples/ros1_probe"
-    return named
+    return example("ros1", "ros1_probe")
 
 
 @pytest.fixture(scope="module")

@@ -1,11 +1,11 @@
 """What trainings leave behind, read by the tools that people use."""
 
 import json
-import os
 import subprocess
 from pathlib import Path
 
 import pytest
+from programs import example
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -13,8 +13,7 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope="session")
 def log():
     """Writes lines `{"tag": .., "step": .., "value": ..}` into the log in a folder by crates/runlog/examples/log.rs."""
-    program = os.environ.get("OPENDR_RUNLOG_LOG")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-runlog", "--example", "log", "--"]
+    command = example("runlog", "log")
 
     def write(folder, lines, resume_from=None):
         arguments = [str(folder)] + ([] if resume_from is None else [str(resume_from)])
@@ -27,8 +26,7 @@ def log():
 @pytest.fixture(scope="session")
 def shrink():
     """Makes an ONNX file smaller by crates/optimize/examples/shrink.rs."""
-    program = os.environ.get("OPENDR_OPTIMIZE_SHRINK")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-optimize", "--example", "shrink", "--"]
+    command = example("optimize", "shrink")
 
     def run(precision, source, target):
         subprocess.run([*command, precision, str(source), str(target)], cwd=ROOT, check=True)
@@ -40,8 +38,7 @@ def shrink():
 def exported(tmp_path_factory):
     """The folder that crates/training/examples/export_all.rs fills."""
     folder = tmp_path_factory.mktemp("exported")
-    program = os.environ.get("OPENDR_TRAINING_EXPORT_ALL")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-training", "--example", "export_all", "--"]
+    command = example("training", "export_all")
     subprocess.run([*command, str(folder)], cwd=ROOT, check=True)
     return folder
 
@@ -49,8 +46,7 @@ def exported(tmp_path_factory):
 @pytest.fixture(scope="session")
 def own_module():
     """Trains the module of crates/training/examples/own_module.rs on the pictures in a folder."""
-    program = os.environ.get("OPENDR_TRAINING_OWN_MODULE")
-    command = [program] if program else ["cargo", "run", "-q", "-p", "opendr-training", "--example", "own_module", "--"]
+    command = example("training", "own_module")
 
     def run(pictures, output):
         subprocess.run([*command, str(pictures), str(output)], cwd=ROOT, check=True)

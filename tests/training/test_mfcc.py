@@ -10,6 +10,7 @@ import onnxruntime
 import pytest
 import scipy
 import soundfile
+from programs import example
 
 ROOT = Path(__file__).resolve().parents[2]
 #: In the order of the network's outputs.
@@ -19,8 +20,7 @@ WORDS = ["down", "go", "left", "no", "off", "on", "right", "stop", "up", "yes", 
 @pytest.fixture(scope="session")
 def program():
     """crates/perception/examples/mfcc.rs."""
-    built = os.environ.get("OPENDR_MFCC")
-    return [built] if built else ["cargo", "run", "-q", "-p", "opendr-perception", "--example", "mfcc", "--"]
+    return example("perception", "mfcc")
 
 
 @pytest.fixture

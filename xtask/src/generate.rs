@@ -1,8 +1,8 @@
 //! `cargo xtask generate`: writes what is made of the registry and checked in.
 
-use crate::python_package;
 use crate::shell::{Result, command, root, step, target};
 use crate::test::TEST_LEARNER;
+use crate::wheel;
 
 /// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md` and the C headers; tests fail when these are stale.
 pub fn run() -> Result<()> {
@@ -13,7 +13,7 @@ pub fn run() -> Result<()> {
     topics.args(["test", "-p", "opendr-cli", "--test", "topics"]).env("OPENDR_UPDATE", "1");
     step("topics of nodes", &mut topics)?;
     let folder = target().join("generate");
-    python_package::build(&folder)?;
+    wheel::package(&folder)?;
     let mut stubs = command("python3");
     stubs.arg(root().join("bindings/python/stubs.py")).env("PYTHONPATH", &folder);
     step("stubs and pages", &mut stubs)?;

@@ -4,7 +4,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, command, root, step, target};
-use crate::surfaces;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
@@ -17,9 +16,8 @@ pub fn run(prefix: &Path) -> Result<()> {
     install(prefix, &target().join("release"))
 }
 
-/// As [`run`], with the learner that tests use, built quickly.
-pub fn run_for_tests(prefix: &Path) -> Result<()> {
-    surfaces::build()?;
+/// As [`run`], the library that [`surfaces::build`](crate::surfaces::build) built, with the learner that tests use.
+pub fn install_for_tests(prefix: &Path) -> Result<()> {
     install(prefix, &target().join("debug"))
 }
 

@@ -1,28 +1,32 @@
 //! The chores of this repository: `cargo xtask test`, `cargo xtask test-c`, `cargo xtask ros`, `cargo xtask realtime`, `cargo xtask install-c PREFIX`.
 
+mod checks;
 mod generate;
+mod inputs;
 mod install_c;
+mod junit;
 mod parity;
-mod python_package;
 mod realtime;
 mod ros;
+mod rust_tests;
 mod shell;
 mod speed;
 mod surfaces;
 mod test;
 mod tools;
+mod wheel;
 
 use std::process::ExitCode;
 
 const USAGE: &str = "\
 usage: cargo xtask VERB
 
-  test       everything that CI checks; installs what it needs (Debian packages, a Python environment in target/)
-  test --from CHECK
-             that, beginning with the check CHECK (as the run names it), where an earlier run failed
-  test --extended
-             that and the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON; test-extended is
-             these alone
+  test       everything that CI checks; installs what it needs (Debian packages, Python environments in target/);
+             what has passed in this build folder and has not changed since is left out
+  test --all
+             that, with nothing left out
+  test-extended
+             the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON
   test-c     the part of it that tests the C library
   ros        the part of it that tests messages and nodes beside real ROS peers
   ros --zenoh
@@ -40,12 +44,8 @@ environment:
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        ["test"] => test::run(),
-        ["test", "--from", name] => {
-            shell::begin_with(name);
-            test::run()
-        }
-        ["test", "--extended"] => test::run().and_then(|()| test::run_extended()),
+        ["test"] => test::run(false),
+        ["test", "--all"] => test::run(true),
         ["test-extended"] => test::run_extended(),
         ["test-c"] => test::run_c(),
         ["ros"] => ros::run_alone(),

@@ -3,26 +3,17 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::python_package;
-use crate::shell::{Result, check, command, step, target};
-use crate::tools::Python;
+use crate::shell::{Result, command, step, target};
+use crate::surfaces;
 
-/// Builds the runner of each surface and compares what they print; the C library is installed under `prefix`.
-pub fn run(python: &Python, prefix: &Path, environment: impl Fn(&mut Command)) -> Result<()> {
-    let folder = target().join("parity");
-    python_package::build(&folder)?;
-    let runner = folder.join("runner");
+/// Builds the runner in C and names the runner of each surface to `pytest`; the C library is installed under `prefix`.
+pub fn prepare(pytest: &mut Command, prefix: &Path) -> Result<()> {
+    let runner = target().join("parity-runner");
     let mut gcc = command("gcc");
     gcc.args(["-std=c11", "-O1", "bindings/c/tests/runner.c", "-o"]).arg(&runner).arg("-I");
     gcc.arg(prefix.join("include")).arg("-L").arg(prefix.join("lib")).arg("-lopendr");
     step("c runner", &mut gcc)?;
-    let debug = target().join("debug");
-    let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra", "tests/parity"]).env("PYTHONPATH", &folder);
-    pytest
-        .env("OPENDR_BIN", debug.join("opendr"))
-        .env("OPENDR_INFER_JSON", debug.join("examples/infer_json"));
+    pytest.env("OPENDR_INFER_JSON", surfaces::example("infer_json"));
     pytest.env("OPENDR_INFER_JSON_C", &runner).env("LD_LIBRARY_PATH", prefix.join("lib"));
-    environment(&mut pytest);
-    check("parity of all surfaces", &mut pytest)
+    Ok(())
 }

@@ -1,23 +1,29 @@
 //! The tests beside real ROS peers: ROS 2 Jazzy and Kilted out of wheels, Cyclone DDS, Debian's ROS 1.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use crate::python_package;
-use crate::shell::{Result, check, command, step, target};
-use crate::tools::{Python, install_debian};
+use crate::shell::{Result, command, step, target};
+use crate::test::Suite;
+use crate::tools::{Python, install_debian, requirements};
+use crate::{surfaces, wheel};
 
-/// The ROS 2 distributions that are peers; each has `tests/ros/environment/NAME.txt`.
-const DISTRIBUTIONS: [&str; 2] = ["jazzy", "kilted"];
-
-/// The examples that the tests speak to.
-const EXAMPLES: [&str; 3] = ["message_types", "message_echo", "slow_node"];
+/// The ROS 2 distributions that are peers: name, environment, requirements.
+const DISTRIBUTIONS: [(&str, &str, &str); 2] = [
+    ("jazzy", "ros-jazzy-venv", "tests/ros/environment/jazzy.txt"),
+    ("kilted", "ros-kilted-venv", "tests/ros/environment/kilted.txt"),
+];
 
 /// What the tests need and nothing else of the test command, then the tests.
 pub fn run_alone() -> Result<()> {
-    install_debian()?;
-    step("release build", command("cargo").args(["build", "--release"]))?;
-    run(|_| ())
+    let environments = Environments::install()?;
+    surfaces::build()?;
+    let package = target().join("ros-python");
+    wheel::package(&package)?;
+    for mut suite in environments.suites(&package, |_| (), &[]) {
+        step(suite.name, &mut suite.command)?;
+    }
+    Ok(())
 }
 
 /// The command over Zenoh, beside a router and a peer out of Python packages. Zenoh takes minutes to build, so that this is no
@@ -32,41 +38,56 @@ pub fn run_zenoh() -> Result<()> {
         "tests of keys and tokens",
         command("cargo").args(["test", "--package", "opendr-ros", "--features=zenoh", "--lib"]),
     )?;
-    let python = Python::install("ros-zenoh-venv", "tests/ros_zenoh/requirements.txt")?;
+    let python = Python::install(&requirements("ros-zenoh-venv", &["tests/ros_zenoh/requirements.txt"]))?;
     let mut pytest = command(python.program());
     pytest.args(["-m", "pytest", "-ra", "tests/ros_zenoh"]).env("OPENDR_BIN", target().join("debug/opendr"));
     step("tests over Zenoh", &mut pytest)
 }
 
-/// Brings the peers up to date and runs `tests/ros1`, then `tests/ros`; the command is built.
-pub fn run(environment: impl Fn(&mut Command)) -> Result<()> {
-    let tests = Python::install("ros-venv", "tests/ros/requirements.txt")?;
-    let package = target().join("ros-python");
-    python_package::build(&package)?;
-    let mut ros1 = command(tests.program());
-    ros1.args(["-m", "pytest", "-ra", "tests/ros1"]);
-    ros1.env("OPENDR_ROS1_PROBE", target().join("debug/examples/ros1_probe"));
-    check("tests of the ROS 1 client", &mut ros1)?;
-    let mut pytest = isolated(&tests.program());
-    pytest.args(["-m", "pytest", "-ra", "tests/ros"]);
-    for name in DISTRIBUTIONS {
-        let requirements = format!("tests/ros/environment/{name}.txt");
-        let python = Python::install(&format!("ros-{name}-venv"), &requirements)?.program();
-        let title = format!("messages of ROS 2 {name}");
-        step(&title, command(&python).arg("tests/ros/environment/build_messages.py"))?;
-        pytest.env(format!("OPENDR_ROS_{}", name.to_uppercase()), python);
+/// The peers: interpreters with the packages of each distribution, and our messages built for them.
+pub struct Environments {
+    tests: Python,
+    distributions: Vec<(&'static str, PathBuf)>,
+    ros1_messages: PathBuf,
+}
+
+impl Environments {
+    /// Brings the peers up to date.
+    pub fn install() -> Result<Self> {
+        install_debian()?;
+        let tests = Python::install(&requirements("ros-venv", &["tests/ros/requirements.txt"]))?;
+        let mut distributions = Vec::new();
+        for (name, environment, file) in DISTRIBUTIONS {
+            let python = Python::install(&requirements(environment, &[file]))?.program();
+            let mut build = command(&python);
+            step(&format!("messages of ROS 2 {name}"), build.arg("tests/ros/environment/build_messages.py"))?;
+            distributions.push((name, python));
+        }
+        let ros1_messages = target().join("ros1-messages");
+        let mut generate = command("/usr/bin/python3");
+        generate.arg("tests/ros/environment/generate_ros1.py").arg(&ros1_messages);
+        step("messages of ROS 1", &mut generate)?;
+        Ok(Self { tests, distributions, ros1_messages })
     }
-    let ros1 = target().join("ros1-messages");
-    let mut generate = command("/usr/bin/python3");
-    step("messages of ROS 1", generate.arg("tests/ros/environment/generate_ros1.py").arg(&ros1))?;
-    pytest.env("OPENDR_ROS1_MESSAGES", ros1);
-    for example in EXAMPLES {
-        let program = target().join("debug/examples").join(example);
-        pytest.env(format!("OPENDR_{}", example.to_uppercase()), program);
+
+    /// The suites; `package` is a folder with the Python package, `inputs` the numbers of the programs that they start.
+    pub fn suites(&self, package: &Path, environment: impl Fn(&mut Command), inputs: &[u64]) -> [Suite; 2] {
+        let mut peers = isolated(&self.tests.program());
+        peers.args(["-m", "pytest", "-ra", "tests/ros"]);
+        for (name, python) in &self.distributions {
+            peers.env(format!("OPENDR_ROS_{}", name.to_uppercase()), python);
+        }
+        peers.env("OPENDR_ROS1_MESSAGES", &self.ros1_messages).env("OPENDR_PYTHON_PACKAGE", package);
+        environment(&mut peers);
+        let mut ros1 = command(self.tests.program());
+        ros1.args(["-m", "pytest", "-ra", "tests/ros1"]);
+        environment(&mut ros1);
+        let suite = |name, folders, command| Suite { name, folders, command, inputs: inputs.to_vec() };
+        [
+            suite("tests beside real ROS peers", &["tests/ros"], peers),
+            suite("tests of the ROS 1 client", &["tests/ros1"], ros1),
+        ]
     }
-    environment(&mut pytest);
-    pytest.env("OPENDR_BIN", target().join("release/opendr")).env("OPENDR_PYTHON_PACKAGE", package);
-    check("tests beside real ROS peers", &mut pytest)
 }
 
 /// A program in a network of its own, which has only loopback, with multicast: peers find each other and nobody else.

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// An error is a line for the person at the terminal.
@@ -25,34 +24,6 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     let mut command = Command::new(program);
     command.current_dir(root());
     command
-}
-
-/// The check to begin with; those before it are left out.
-static BEGIN: Mutex<Option<String>> = Mutex::new(None);
-
-/// Leaves out the checks before `name`: to go on where an earlier run failed. What later ones need is still made.
-pub fn begin_with(name: &str) {
-    *BEGIN.lock().unwrap_or_else(PoisonError::into_inner) = Some(name.to_owned());
-}
-
-/// Refuses a name to begin with that no check had: all were left out.
-pub fn begun() -> Result<()> {
-    match &*BEGIN.lock().unwrap_or_else(PoisonError::into_inner) {
-        Some(name) => Err(format!("no check is called {name:?}; the lines that begin with === name them")),
-        None => Ok(()),
-    }
-}
-
-/// A step that nothing else needs.
-pub fn check(name: &str, command: &mut Command) -> Result<()> {
-    let mut begin = BEGIN.lock().unwrap_or_else(PoisonError::into_inner);
-    if begin.as_deref().is_some_and(|begin| begin != name) {
-        println!("=== {name}: left out");
-        return Ok(());
-    }
-    *begin = None;
-    drop(begin);
-    step(name, command)
 }
 
 /// Runs a step, says what it is and how long it took.
@@ -81,7 +52,8 @@ pub fn is_installed(program: &str) -> bool {
     std::env::split_paths(&path).any(|folder| folder.join(program).is_file())
 }
 
-fn line(command: &Command) -> String {
+/// A command as one would type it.
+pub fn line(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());
     words.map(|word| word.to_string_lossy().into_owned()).collect::<Vec<_>>().join(" ")
 }

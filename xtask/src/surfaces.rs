@@ -1,14 +1,61 @@
-//! Every surface, built for tests.
+//! Everything that the tests start, in one build.
 
-use crate::shell::{Result, command, step};
+use std::path::PathBuf;
+
+use crate::shell::{Result, command, step, target};
 use crate::test::TEST_LEARNER;
 
-/// Builds the command, the Python module, the C library and every example in `target/debug`, with the test learner.
-/// All at once, always the same, and as the tests are: a choice of packages has features of its own, for which cargo
-/// compiles anew.
+/// The examples that tests start.
+pub const EXAMPLES: [&str; 22] = [
+    "bag_copy",
+    "bag_dump",
+    "coco_files",
+    "compute",
+    "data",
+    "episodes",
+    "export_all",
+    "follow",
+    "infer_json",
+    "log",
+    "message_echo",
+    "message_types",
+    "mfcc",
+    "own_module",
+    "ros1_probe",
+    "run_rten",
+    "serve_environments",
+    "shrink",
+    "signals",
+    "slow_node",
+    "tfjs_to_onnx",
+    "tflite_to_onnx",
+];
+
+/// The arguments of `cargo build` for the command, the C library and [`EXAMPLES`], with the test learner. The features are those of the
+/// tests, so that nothing is compiled twice. The Python module comes with its wheel.
+pub fn arguments() -> Vec<&'static str> {
+    let words = ["build", "--workspace", "--exclude", "opendr-python", "--lib", "--bins", TEST_LEARNER];
+    words.into_iter().chain(EXAMPLES.into_iter().flat_map(|name| ["--example", name])).collect()
+}
+
+/// Builds them.
 pub fn build() -> Result<()> {
-    step(
-        "all surfaces and examples",
-        command("cargo").args(["build", "--workspace", "--lib", "--bins", "--examples", TEST_LEARNER]),
-    )
+    step("command, C library and examples", command("cargo").args(arguments()))
+}
+
+/// Where an example lies.
+pub fn example(name: &str) -> PathBuf {
+    target().join("debug/examples").join(name)
+}
+
+/// Where the command lies.
+pub fn opendr() -> PathBuf {
+    target().join("debug/opendr")
+}
+
+/// The built programs of these names that exist, for their numbers.
+pub fn programs() -> impl Iterator<Item = PathBuf> {
+    let library = ["debug/libopendr_c.so", "debug/libopendr_c.a"].map(|name| target().join(name));
+    let examples = EXAMPLES.iter().map(|name| example(name));
+    std::iter::once(opendr()).chain(library).chain(examples).filter(|path| path.is_file())
 }

@@ -1,106 +1,204 @@
 //! `cargo xtask test`: everything that CI checks.
 
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::{Mutex, PoisonError};
 
-use crate::shell::{Result, begun, check, command, is_installed, root, step, target};
-use crate::tools::{Python, install_debian};
-use crate::{install_c, parity, python_package, ros, surfaces};
+use crate::checks::{Checks, Output};
+use crate::inputs::{Tree, of_file};
+use crate::shell::{Result, command, root, step, target};
+use crate::tools::{self, Python, install_debian};
+use crate::{install_c, parity, ros, rust_tests, surfaces, wheel};
 
-/// Runs every check; the first that fails ends it.
-pub fn run() -> Result<()> {
-    install_debian()?;
-    let outside = Python::install("test-venv", "tests/python/requirements.txt")?;
-    let environment = Environment { library: outside.onnxruntime()?, data: test_data(), cache: cache()? };
-    if environment.data.is_none() {
+/// The learner that every surface is tested with is in every build for tests.
+pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
+
+/// How many suites of Python run beside each other: they wait for programs, sockets and clocks more than they compute.
+const LANES: usize = 2;
+
+/// A suite of tests in Python.
+pub struct Suite {
+    /// Name of the check.
+    pub name: &'static str,
+    /// Folders of the tests, and files that they share.
+    pub folders: &'static [&'static str],
+    /// The program with its arguments and environment, without the report.
+    pub command: Command,
+    /// The number of what else it depends on.
+    pub inputs: Vec<u64>,
+}
+
+/// Runs every check, or with `all` unset those whose inputs have changed since they passed; fails if one does.
+pub fn run(all: bool) -> Result<()> {
+    let data = test_data();
+    let tree = Tree::read(data.as_deref());
+    let checks = Checks::begin(all);
+    let everything = tree.as_ref().map(|tree| tree.of(|_| true, &[]));
+    if checks.is_unchanged("all checks", everything) {
+        return checks.finish();
+    }
+    if data.is_none() {
         println!("skipped: no OPENDR_TEST_DATA (tests with real models and pictures)");
     }
-    let cargo = |arguments: &[&str]| {
-        let mut cargo = command("cargo");
-        cargo.args(arguments);
-        environment.apply(&mut cargo);
-        cargo
-    };
-    check("format", &mut cargo(&["fmt", "--all", "--check"]))?;
-    // With the features that no other check builds: what needs a GPU, and ROS 2 over Zenoh. Burn's CUDA compiler comes through
-    // a build script that downloads LLVM, except where only documentation is built; a check needs no more than that.
-    let features = format!("{TEST_LEARNER},opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh");
-    check(
-        "lints",
-        cargo(&["clippy", "--workspace", "--all-targets", &features, "--", "--deny", "warnings"])
-            .env("DOCS_RS", "1"),
-    )?;
-    check("without training", &mut cargo(&["check", "--package", "opendr-cli"]))?;
-    check(
-        "free-threaded Python",
-        cargo(&["check", "--package", "opendr-python", "--no-default-features"])
-            .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
-            .env("PYO3_BUILD_EXTENSION_MODULE", "1"),
-    )?;
-    if is_installed("cargo-nextest") {
-        check("tests", &mut cargo(&["nextest", "run", "--workspace", "--no-fail-fast", TEST_LEARNER]))?;
-    } else {
-        check("tests", &mut cargo(&["test", "--workspace", "--lib", "--bins", "--tests", TEST_LEARNER]))?;
+    if let Err(error) = check_all(&checks, tree.as_ref(), data) {
+        checks.fail("what the checks need", &error);
     }
-    check("documentation tests", &mut cargo(&["test", "--workspace", "--doc", TEST_LEARNER]))?;
-    check(
-        "documentation",
-        cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "--deny warnings"),
-    )?;
-    step("release build", &mut cargo(&["build", "--release", TRAINING]))?;
-    surfaces::build()?;
-    let examples = target().join("debug/examples");
-    check(
-        "tests from outside",
-        pytest(&outside, "tests/python", &environment).env("OPENDR_EXAMPLES", &examples),
-    )?;
-    references(&environment)?;
-    ros::run(|pytest| environment.apply(pytest))?;
-    let python = Python::install("python-venv", "bindings/python/tests/requirements.txt")?;
-    let wheel = python.install_wheel()?;
-    check(
-        "tests of the Python package",
-        pytest(&python, "bindings/python/tests", &environment).env("OPENDR_WHEEL", wheel),
-    )?;
-    let prefix = c_library(&outside, &environment)?;
-    parity::run(&python, &prefix, |pytest| environment.apply(pytest))?;
-    begun()?;
+    checks.finish()?;
+    checks.keep("all checks", everything)?;
     println!("\nall checks passed");
     Ok(())
 }
 
-/// Metrics, data sets, logs of trainings and exported networks beside the tools that papers cite and people use.
-fn references(environment: &Environment) -> Result<()> {
-    let tests = ["tests/metrics", "tests/datasets", "tests/training", "tests/simulation", "tests/bags"];
-    let requirements = tests.map(|tests| format!("{tests}/requirements.txt"));
-    let alone = Some("tests/metrics/requirements_without_dependencies.txt");
-    let python = Python::install_all("reference-venv", &requirements.each_ref().map(String::as_str), alone)?;
-    let examples = target().join("debug/examples");
-    let [of_libraries @ .., of_recordings] = tests;
-    let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra"]).args(of_libraries);
-    pytest
-        .env("OPENDR_METRICS_COMPUTE", examples.join("compute"))
-        .env("OPENDR_METRICS_COCO_FILES", examples.join("coco_files"))
-        .env("OPENDR_DATASETS_DATA", examples.join("data"))
-        .env("OPENDR_MFCC", examples.join("mfcc"))
-        .env("OPENDR_PERCEPTION_FOLLOW", examples.join("follow"))
-        .env("OPENDR_SIMULATION_SERVE", examples.join("serve_environments"))
-        .env("OPENDR_RUNLOG_LOG", examples.join("log"))
-        .env("OPENDR_OPTIMIZE_SHRINK", examples.join("shrink"))
-        .env("OPENDR_TRAINING_EXPORT_ALL", examples.join("export_all"))
-        .env("OPENDR_TRAINING_OWN_MODULE", examples.join("own_module"));
-    environment.apply(&mut pytest);
-    check("tests beside the reference tools", &mut pytest)?;
-    // They import from their own conftest, of which a run has one by that name.
-    let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra", of_recordings]);
-    pytest
-        .env("OPENDR_BIN", target().join("debug/opendr"))
-        .env("OPENDR_BAG_DUMP", examples.join("bag_dump"))
-        .env("OPENDR_BAG_COPY", examples.join("bag_copy"));
-    environment.apply(&mut pytest);
-    check("tests of recordings beside their tools", &mut pytest)
+fn check_all(checks: &Checks, tree: Option<&Tree>, data: Option<PathBuf>) -> Result<()> {
+    std::thread::scope(|scope| {
+        let environments = scope.spawn(Environments::install);
+        check_sources(checks, tree)?;
+        let build = &mut cargo(&surfaces::arguments());
+        if !checks.run("build", None, Output::Live, None, build)? {
+            return Ok(());
+        }
+        let environments = environments.join().map_err(|_| "installing what the tests need has panicked")??;
+        let environment = Environment { library: environments.outside.onnxruntime()?, data, cache: cache()? };
+        let tests = |arguments: &[&str]| {
+            let mut cargo = cargo(arguments);
+            environment.apply(&mut cargo);
+            cargo
+        };
+        let programs = programs()?;
+        let built = ["--workspace", "--lib", "--bins", "--tests", TEST_LEARNER];
+        rust_tests::run(checks, tree, programs, &tests, &built)?;
+        documentation(checks, tree, &tests)?;
+        let suites = suites(&environments, &environment, programs)?;
+        run_beside_each_other(checks, tree, suites)
+    })
+}
+
+/// Format, lints, and that what no test builds compiles.
+fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
+    let sources = tree.map(|tree| tree.of(is_source, &[]));
+    let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
+    live("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    live("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]))?;
+    // What needs a GPU, and ROS 2 over Zenoh, in the two crates that have it. Burn's CUDA compiler comes through a build script
+    // that downloads LLVM, except where only documentation is built; a check needs no more than that.
+    let devices = ["--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh"];
+    let packages = ["clippy", "--package=opendr-training", "--package=opendr-ros"];
+    live("lints of cuda, wgpu, zenoh", cargo(&packages).args(devices).args(["--", "--deny", "warnings"]).env("DOCS_RS", "1"))?;
+    // Surfaces that turn training on are left out of the choice of packages; the rest is chosen with the workspace, so that what it
+    // depends on has the features that it has everywhere.
+    live("without training", &mut cargo(&["check", "--workspace", "--exclude=opendr-python", "--exclude=opendr-c"]))?;
+    live(
+        "free-threaded Python",
+        cargo(&["check", "--workspace", "--exclude=opendr-c", "--no-default-features"])
+            .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
+            .env("PYO3_BUILD_EXTENSION_MODULE", "1"),
+    )?;
+    Ok(())
+}
+
+/// Examples in documentation run, and pages have no broken link.
+fn documentation(checks: &Checks, tree: Option<&Tree>, cargo: &dyn Fn(&[&str]) -> Command) -> Result<()> {
+    let sources = tree.map(|tree| tree.of(is_source, &[]));
+    let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
+    live("documentation tests", &mut cargo(&["test", "--workspace", "--doc", TEST_LEARNER]))?;
+    live(
+        "documentation",
+        cargo(&["doc", "--workspace", "--no-deps", TEST_LEARNER]).env("RUSTDOCFLAGS", "--deny warnings"),
+    )?;
+    Ok(())
+}
+
+/// The suites of Python, the longest first.
+fn suites(environments: &Environments, environment: &Environment, programs: u64) -> Result<Vec<Suite>> {
+    let wheel = wheel::build(&environments.package, wheel::For::Tests)?;
+    environments.package.install_wheel(&wheel)?;
+    let prefix = target().join("c");
+    install_c::install_for_tests(&prefix)?;
+    let package = target().join("python-package");
+    wheel::unpack(&environments.package, &wheel, &package)?;
+    let module = of_file(&package.join("opendr/_opendr.abi3.so"))?;
+    let pytest = |python: &Python, folders: &[&str]| {
+        let mut pytest = command(python.program());
+        pytest.args(["-m", "pytest", "-ra"]).args(folders);
+        environment.apply(&mut pytest);
+        pytest
+    };
+    let suite = |name, python: &Python, folders: &'static [&'static str], inputs: &[u64]| Suite {
+        name,
+        folders,
+        command: pytest(python, folders),
+        inputs: inputs.to_vec(),
+    };
+    let mut of_package =
+        suite("tests of the Python package", &environments.package, &["bindings/python/tests"], &[programs, module]);
+    of_package.command.env("OPENDR_WHEEL", &wheel);
+    let mut of_c = suite("tests of C programs", &environments.outside, &["tests/c"], &[programs]);
+    of_c.command.env("OPENDR_C_PREFIX", &prefix);
+    let mut parity = suite("parity of all surfaces", &environments.package, &["tests/parity"], &[programs, module]);
+    parity::prepare(&mut parity.command, &prefix)?;
+    let mut suites = vec![
+        suite("tests of recordings beside their tools", &environments.references, &["tests/bags"], &[programs]),
+        suite(
+            "tests beside the reference tools",
+            &environments.references,
+            &["tests/metrics", "tests/datasets", "tests/training", "tests/simulation"],
+            &[programs],
+        ),
+        of_package,
+        suite("tests from outside", &environments.outside, &["tests/python"], &[programs]),
+        parity,
+        of_c,
+    ];
+    suites.extend(environments.ros.suites(&package, |command| environment.apply(command), &[programs, module]));
+    Ok(suites)
+}
+
+/// Runs suites in [`LANES`]; the first free lane takes the next.
+fn run_beside_each_other(checks: &Checks, tree: Option<&Tree>, suites: Vec<Suite>) -> Result<()> {
+    let waiting = Mutex::new(VecDeque::from(suites));
+    let next = || waiting.lock().unwrap_or_else(PoisonError::into_inner).pop_front();
+    std::thread::scope(|scope| {
+        for _ in 0..LANES {
+            scope.spawn(|| {
+                while let Some(mut suite) = next() {
+                    let inputs = tree.map(|tree| tree.of(|file| concerns(&suite, file), &suite.inputs));
+                    let report = target().join(format!("xtask/reports/{}.xml", suite.folders[0].replace('/', "-")));
+                    suite.command.arg("--junitxml").arg(&report);
+                    let done = checks.run(suite.name, inputs, Output::Kept, Some(report), &mut suite.command);
+                    if let Err(error) = done {
+                        checks.fail(suite.name, &error);
+                    }
+                }
+            });
+        }
+    });
+    Ok(())
+}
+
+/// Whether a suite may read a file: its own, what suites share, and every page and table; but no source in Rust, since it starts programs.
+fn concerns(suite: &Suite, file: &str) -> bool {
+    let own = suite.folders.iter().any(|folder| file.starts_with(folder));
+    let others = file.starts_with("tests/") && !file.starts_with("tests/support/") && !file.starts_with("tests/cases/")
+        || file.starts_with("bindings/python/tests/");
+    own || !others && !file.ends_with(".rs")
+}
+
+/// Whether a file can change what cargo builds or says: all but the tests in Python and the package's Python half.
+fn is_source(file: &str) -> bool {
+    !(file.ends_with(".py") || file.ends_with(".pyi") || file.starts_with("tests/") || file.starts_with("docs/"))
+}
+
+/// The number of every program that the tests start.
+fn programs() -> Result<u64> {
+    let numbers = surfaces::programs().map(|path| of_file(&path)).collect::<Result<Vec<_>>>()?;
+    Ok(numbers.iter().fold(0, |all: u64, number| all.rotate_left(7) ^ number))
+}
+
+fn cargo(arguments: &[&str]) -> Command {
+    let mut cargo = command("cargo");
+    cargo.args(arguments);
+    cargo
 }
 
 /// What needs PyTorch, with an interpreter that has it and `tests/extended/requirements.txt`: the normal run does
@@ -110,47 +208,52 @@ pub fn run_extended() -> Result<()> {
         "OPENDR_TORCH_PYTHON is not set; name an interpreter with torch and tests/extended/requirements.txt",
     )?;
     let folder = target().join("extended");
-    python_package::build(&folder)?;
+    wheel::package(&folder)?;
     let mut pytest = command(python);
     pytest.args(["-m", "pytest", "-ra", "tests/extended"]).env("PYTHONPATH", folder);
     step("tests with PyTorch", &mut pytest)
 }
 
-/// The learner that every surface is tested with is in every build for tests.
-pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
-
-/// The command with everything in it; without, it is built in half the time.
-const TRAINING: &str = "--features=training";
-
 /// The tests of the C library alone.
 pub fn run_c() -> Result<()> {
     install_debian()?;
-    let outside = Python::install("test-venv", "tests/python/requirements.txt")?;
+    let outside = Python::install(&tools::OUTSIDE)?;
     let environment = Environment { library: outside.onnxruntime()?, data: test_data(), cache: cache()? };
-    step("release build", command("cargo").args(["build", "--release", TRAINING]))?;
+    surfaces::build()?;
     let mut cargo = command("cargo");
     cargo.args(["test", "--package", "opendr-c", TEST_LEARNER, "--tests"]);
     environment.apply(&mut cargo);
     step("tests of the C library", &mut cargo)?;
-    c_library(&outside, &environment).map(drop)
-}
-
-/// Installs the C library under the build folder and tests programs against it; where it is.
-fn c_library(outside: &Python, environment: &Environment) -> Result<PathBuf> {
     let prefix = target().join("c");
-    install_c::run_for_tests(&prefix)?;
-    check("tests of C programs", pytest(outside, "tests/c", environment).env("OPENDR_C_PREFIX", &prefix))?;
-    Ok(prefix)
-}
-
-fn pytest(python: &Python, tests: &str, environment: &Environment) -> Command {
-    let mut pytest = command(python.program());
-    pytest.args(["-m", "pytest", "-ra", tests]).env("OPENDR_BIN", target().join("release/opendr"));
+    install_c::install_for_tests(&prefix)?;
+    let mut pytest = command(outside.program());
+    pytest.args(["-m", "pytest", "-ra", "tests/c"]).env("OPENDR_C_PREFIX", &prefix);
     environment.apply(&mut pytest);
-    pytest
+    step("tests of C programs", &mut pytest)
 }
 
-struct Environment {
+/// What the tests need besides Rust.
+struct Environments {
+    outside: Python,
+    references: Python,
+    package: Python,
+    ros: ros::Environments,
+}
+
+impl Environments {
+    fn install() -> Result<Self> {
+        install_debian()?;
+        Ok(Self {
+            outside: Python::install(&tools::OUTSIDE)?,
+            references: Python::install(&tools::REFERENCES)?,
+            package: Python::install(&tools::PACKAGE)?,
+            ros: ros::Environments::install()?,
+        })
+    }
+}
+
+/// What every test is given.
+pub struct Environment {
     library: PathBuf,
     data: Option<PathBuf>,
     cache: PathBuf,
@@ -159,6 +262,7 @@ struct Environment {
 impl Environment {
     fn apply(&self, command: &mut Command) {
         command.env("ORT_DYLIB_PATH", &self.library).env("OPENDR_TEST_CACHE", &self.cache);
+        command.env("OPENDR_BIN", surfaces::opendr()).env("OPENDR_EXAMPLES", target().join("debug/examples"));
         if let Some(data) = &self.data {
             command.env("OPENDR_TEST_DATA", data);
         }

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use crate::shell::{Result, command, is_installed, root, step, target};
 
@@ -29,62 +30,78 @@ const DEBIAN: [(&str, &str); 20] = [
     ("/usr/share/sensor_msgs/msg", "ros-sensor-msgs"),
 ];
 
-/// A Python environment with the packages of a file of requirements.
+/// A Python environment with the packages of files of requirements.
 pub struct Python {
     folder: PathBuf,
 }
 
-impl Python {
-    /// Makes the environment `name` under the build folder, or brings it up to date when the requirements have
-    /// changed.
-    pub fn install(name: &str, requirements: &str) -> Result<Self> {
-        Self::install_all(name, &[requirements], None)
-    }
+/// What to install: requirements with all that they depend on, and packages of which only single files are read.
+pub struct Requirements<'a> {
+    /// Name of the environment, a folder under the build folder.
+    pub name: &'a str,
+    /// Files of requirements.
+    pub files: &'a [&'a str],
+    /// A file of packages that come without what they depend on.
+    pub alone: Option<&'a str>,
+}
 
-    /// As [`Python::install`] of several files; of the packages of `alone`, what they depend on is left out.
-    pub fn install_all(name: &str, requirements: &[&str], alone: Option<&str>) -> Result<Self> {
-        let python = Self { folder: target().join(name) };
-        let files: Vec<_> = requirements.iter().chain(&alone).map(|file| root().join(file)).collect();
-        let wanted = files.iter().map(fs::read_to_string).collect::<std::io::Result<String>>();
+/// Requirements without packages that come alone.
+pub const fn requirements<'a>(name: &'a str, files: &'a [&'a str]) -> Requirements<'a> {
+    Requirements { name, files, alone: None }
+}
+
+/// What the tests from outside compare with.
+pub const OUTSIDE: Requirements = requirements("test-venv", &["tests/python/requirements.txt"]);
+
+/// The tools that papers cite and people use, beside which metrics, data sets, logs, networks and recordings are tested.
+pub const REFERENCES: Requirements = Requirements {
+    name: "reference-venv",
+    files: &[
+        "tests/metrics/requirements.txt",
+        "tests/datasets/requirements.txt",
+        "tests/training/requirements.txt",
+        "tests/simulation/requirements.txt",
+        "tests/bags/requirements.txt",
+    ],
+    alone: Some("tests/metrics/requirements_without_dependencies.txt"),
+};
+
+/// What the tests of the Python package need; the package itself comes as a wheel.
+pub const PACKAGE: Requirements = requirements("python-venv", &["bindings/python/tests/requirements.txt"]);
+
+impl Python {
+    /// Makes the environment, or makes it anew when the requirements have changed.
+    pub fn install(requirements: &Requirements) -> Result<Self> {
+        let python = Self { folder: target().join(requirements.name) };
+        let paths = |files: &[&str]| files.iter().map(|file| root().join(file)).collect::<Vec<_>>();
+        let with = paths(requirements.files);
+        let without = paths(requirements.alone.as_slice());
+        let wanted = with.iter().chain(&without).map(fs::read_to_string).collect::<std::io::Result<String>>();
         let wanted = wanted.map_err(|error| error.to_string())?;
         let stamp = python.folder.join("requirements.installed");
         if fs::read_to_string(&stamp).ok().as_deref() == Some(wanted.as_str()) {
             return Ok(python);
         }
-        step("python environment", command("python3").args(["-m", "venv", "--clear"]).arg(&python.folder))?;
-        let pip = || {
-            let mut pip = command(python.program());
-            pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]);
-            pip
-        };
-        let (with, without) = files.split_at(requirements.len());
-        step("python packages", pip().args(with.iter().flat_map(|file| [Path::new("-r"), file.as_path()])))?;
-        for file in without {
-            step("python packages, alone", pip().arg("--no-deps").arg("-r").arg(file))?;
+        let uv = uv()?;
+        step("python environment", command(&uv).args(["venv", "--quiet", "--seed", "--clear", "--no-python-downloads", "--python", "python3"]).arg(&python.folder))?;
+        for (files, options) in [(with, &[][..]), (without, &["--no-deps"][..])] {
+            if files.is_empty() {
+                continue;
+            }
+            let mut install = command(&uv);
+            install.args(["pip", "install", "--quiet", "--python"]).arg(python.program()).args(options);
+            install.args(files.iter().flat_map(|file| [Path::new("-r"), file.as_path()]));
+            step(&format!("python packages of {}", requirements.name), &mut install)?;
         }
         fs::write(&stamp, wanted).map_err(|error| error.to_string())?;
         Ok(python)
     }
 
-    /// Builds the wheel of `bindings/python` and installs it, without what it depends on; the wheel.
-    pub fn install_wheel(&self) -> Result<PathBuf> {
-        let folder = target().join("wheels");
-        // Nothing there is what is wanted.
-        fs::remove_dir_all(&folder).ok();
-        let pip = |words: &[&str]| {
-            let mut pip = command(self.program());
-            pip.args(["-m", "pip", "--quiet", "--disable-pip-version-check"]).args(words);
-            pip
-        };
-        let mut wheel = pip(&["wheel", "--no-deps", "--wheel-dir"]);
-        // Slower to make and smaller to get.
-        wheel.env("MATURIN_PEP517_ARGS", "--compression-level 9");
-        step("wheel", wheel.arg(&folder).arg("./bindings/python"))?;
-        let wheels = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-        let wheels: Vec<_> = wheels.flatten().map(|entry| entry.path()).collect();
-        let [wheel] = &wheels[..] else { return Err(format!("one wheel is wanted, not {wheels:?}")) };
-        step("wheel's installation", pip(&["install", "--force-reinstall", "--no-deps"]).arg(wheel))?;
-        Ok(wheel.clone())
+    /// Installs a wheel, and nothing that it depends on.
+    pub fn install_wheel(&self, wheel: &Path) -> Result<()> {
+        let mut install = command(uv()?);
+        install.args(["pip", "install", "--quiet", "--reinstall", "--no-deps", "--python"]).arg(self.program()).arg(wheel);
+        step("wheel's installation", &mut install)
     }
 
     /// Its interpreter.
@@ -103,6 +120,23 @@ impl Python {
         });
         libraries.next().ok_or_else(|| format!("no libonnxruntime.so under {}", lib.display()))
     }
+}
+
+/// The installer of Python packages: the one of this machine, or one of our own under the build folder.
+fn uv() -> Result<PathBuf> {
+    static INSTALLED: Mutex<()> = Mutex::new(());
+    if is_installed("uv") {
+        return Ok(PathBuf::from("uv"));
+    }
+    let _one_at_a_time = INSTALLED.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = target().join("uv");
+    let uv = folder.join("bin/uv");
+    if !uv.is_file() {
+        step("python environment of uv", command("python3").args(["-m", "venv", "--clear"]).arg(&folder))?;
+        let mut pip = command(folder.join("bin/python"));
+        step("uv", pip.args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "uv"]))?;
+    }
+    Ok(uv)
 }
 
 /// Installs the Debian packages that are missing.

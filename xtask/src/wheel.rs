@@ -1,0 +1,66 @@
+//! The wheel of `bindings/python`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Result, command, root, step, target};
+use crate::test::TEST_LEARNER;
+use crate::tools::Python;
+
+/// What a wheel is built for.
+#[derive(Clone, Copy, PartialEq)]
+pub enum For {
+    /// Tests: out of the same build as everything else that they test, with the test learner.
+    Tests,
+    /// Users: the release profile, packed as small as it goes.
+    Users,
+}
+
+impl For {
+    /// What maturin is given.
+    fn arguments(self) -> String {
+        match self {
+            Self::Tests => format!("--profile dev --compression-level 1 {TEST_LEARNER}"),
+            Self::Users => "--compression-level 9".to_owned(),
+        }
+    }
+
+    fn folder(self) -> PathBuf {
+        target().join(if self == Self::Tests { "wheels" } else { "wheels-release" })
+    }
+}
+
+/// Builds a wheel with the pip of `python`, as a user does.
+pub fn build(python: &Python, purpose: For) -> Result<PathBuf> {
+    let folder = purpose.folder();
+    // Nothing there is what is wanted.
+    fs::remove_dir_all(&folder).ok();
+    let mut wheel = command(python.program());
+    wheel.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "wheel", "--no-deps", "--wheel-dir"]);
+    wheel.env("MATURIN_PEP517_ARGS", purpose.arguments());
+    step("wheel", wheel.arg(&folder).arg("./bindings/python"))?;
+    only_wheel(&folder)
+}
+
+/// Unpacks a wheel into a folder for `PYTHONPATH`.
+pub fn unpack(python: &Python, wheel: &Path, folder: &Path) -> Result<()> {
+    // Nothing there is what is wanted.
+    fs::remove_dir_all(folder).ok();
+    step("wheel's files", command(python.program()).args(["-m", "zipfile", "-e"]).arg(wheel).arg(folder))
+}
+
+/// The package as it stands in the working tree, with the test learner, below `folder`, for `PYTHONPATH`.
+pub fn package(folder: &Path) -> Result<()> {
+    let python = Python::install(&crate::tools::PACKAGE)?;
+    unpack(&python, &build(&python, For::Tests)?, folder)
+}
+
+/// Returns the wheel of a folder that has one.
+fn only_wheel(folder: &Path) -> Result<PathBuf> {
+    let wheels = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let wheels: Vec<_> = wheels.flatten().map(|entry| root().join(entry.path())).collect();
+    match &wheels[..] {
+        [wheel] => Ok(wheel.clone()),
+        _ => Err(format!("{}: one wheel is wanted, not {wheels:?}", folder.display())),
+    }
+}
