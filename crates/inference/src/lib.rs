@@ -1,6 +1,7 @@
 //! Inference module: sessions over ONNX Runtime or the built-in runtime, one interface for both.
 
 mod builtin;
+mod measured;
 mod onnx_header;
 mod onnx_runtime;
 mod protobuf;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use opendr_engine::{Device, Error, Result};
 
 use crate::builtin::Builtin;
+use crate::measured::SLOWER_THAN_ONNX_RUNTIME;
 use crate::onnx_runtime::OnnxRuntime;
 use crate::runtime::{Runtime, SessionOptions};
 
@@ -86,7 +87,10 @@ pub fn describe(options: impl Into<SessionOptions>) -> Result<String> {
     let plural = if threads == 1 { "" } else { "s" };
     let mut line = format!("{}, {device}, {threads} thread{plural}", runtime.describe());
     if runtime.name() == Builtin.name() && Wish::from_environment()? == Wish::Auto {
-        line.push_str("; ONNX Runtime is about 3 times faster: run \"opendr runtime install\"");
+        let [least, most] = SLOWER_THAN_ONNX_RUNTIME;
+        line.push_str(&format!(
+            "; ONNX Runtime was {least} to {most} times faster on detectors, measured: run \"opendr runtime install\""
+        ));
         line.extend(OnnxRuntime::skipped().iter().flat_map(|skipped| ["; passed over: ", skipped]));
     }
     Ok(line)
