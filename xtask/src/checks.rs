@@ -166,8 +166,11 @@ impl Checks {
             count(Outcome::Failed),
             count(Outcome::Skipped)
         );
-        let failed: Vec<_> =
-            done.iter().filter(|check| check.state == State::Failed).map(|check| check.name.as_str()).collect();
+        let failed: Vec<_> = done
+            .iter()
+            .filter(|check| check.state == State::Failed)
+            .map(|check| check.name.as_str())
+            .collect();
         if failed.is_empty() { Ok(()) } else { Err(format!("failed: {}", failed.join(", "))) }
     }
 }
@@ -181,7 +184,8 @@ impl Check {
             State::Failed => "failed",
             State::Unchanged => "unchanged",
         };
-        let mut line = json!({ "step": self.name, "outcome": outcome, "seconds": (self.seconds * 10.0).round() / 10.0 });
+        let mut line =
+            json!({ "step": self.name, "outcome": outcome, "seconds": (self.seconds * 10.0).round() / 10.0 });
         if !self.tests.is_empty() {
             line["passed"] = count(Outcome::Passed).into();
             line["skipped"] = count(Outcome::Skipped).into();

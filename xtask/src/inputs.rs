@@ -23,7 +23,8 @@ impl Tree {
     /// Reads the tree; none where git does not know it (an unpacked archive), so that nothing counts as unchanged.
     pub fn read(data: Option<&Path>) -> Option<Self> {
         let listed =
-            output(command("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])).ok()?;
+            output(command("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))
+                .ok()?;
         let mut files = BTreeMap::new();
         for name in listed.split('\0').filter(|name| !name.is_empty()) {
             // A file that was deleted and is still in the index is not there.

@@ -10,6 +10,7 @@ mod realtime;
 mod ros;
 mod rust_tests;
 mod shell;
+mod ship;
 mod speed;
 mod surfaces;
 mod test;
@@ -25,6 +26,7 @@ usage: cargo xtask VERB
              what has passed in this build folder and has not changed since is left out
   test --all
              that, with nothing left out
+  ship       the wheels that users get, in the release profile, and the tests of what they are
   test-extended
              the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON
   test-c     the part of it that tests the C library
@@ -46,6 +48,7 @@ fn main() -> ExitCode {
     let done = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["test"] => test::run(false),
         ["test", "--all"] => test::run(true),
+        ["ship"] => ship::run(),
         ["test-extended"] => test::run_extended(),
         ["test-c"] => test::run_c(),
         ["ros"] => ros::run_alone(),

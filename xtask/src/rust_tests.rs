@@ -44,8 +44,11 @@ pub fn run(
         .map(|program| tree.map(|tree| inputs_of(tree, program, programs)).transpose())
         .collect::<Result<Vec<_>>>()?;
     let part = |program: &Program| format!("tests of {}", program.id);
-    let changed: Vec<_> =
-        found.iter().zip(&inputs).filter(|(program, inputs)| !checks.has_passed(&part(program), **inputs)).collect();
+    let changed: Vec<_> = found
+        .iter()
+        .zip(&inputs)
+        .filter(|(program, inputs)| !checks.has_passed(&part(program), **inputs))
+        .collect();
     println!(
         "=== {NAME}: {} test programs, {} of them changed since they passed ({:.0} s to build and compare)",
         found.len(),
@@ -61,7 +64,8 @@ pub fn run(
         return Ok(checks.is_unchanged(NAME, all));
     }
     if changed.len() < found.len() {
-        let wanted: Vec<_> = changed.iter().map(|(program, _)| format!("binary_id(={})", program.id)).collect();
+        let wanted: Vec<_> =
+            changed.iter().map(|(program, _)| format!("binary_id(={})", program.id)).collect();
         nextest.args(["--filterset", &wanted.join(" | ")]);
     }
     let passed = checks.run(NAME, None, Output::Live, Some(report.clone()), &mut nextest)?;
@@ -84,11 +88,14 @@ pub fn run(
 fn list(cargo: &dyn Fn(&[&str]) -> Command, build: &[&str]) -> Result<Vec<Program>> {
     let mut list = cargo(&["nextest", "list", "--list-type", "binaries-only", "--message-format", "json"]);
     let listed = output(list.args(build))?;
-    let listed: Value = serde_json::from_str(&listed).map_err(|error| format!("cargo nextest list: {error}"))?;
+    let listed: Value =
+        serde_json::from_str(&listed).map_err(|error| format!("cargo nextest list: {error}"))?;
     let programs = listed["rust-binaries"].as_object().into_iter().flatten();
     programs
         .map(|(id, program)| {
-            let text = |key: &str| program[key].as_str().ok_or_else(|| format!("cargo nextest list: no {key} of {id}"));
+            let text = |key: &str| {
+                program[key].as_str().ok_or_else(|| format!("cargo nextest list: no {key} of {id}"))
+            };
             let package = text("package-id")?;
             let folder = package.split_once("file://").map_or(package, |(_, folder)| folder);
             let folder = folder.split_once('#').map_or(folder, |(folder, _)| folder);

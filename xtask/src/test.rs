@@ -41,7 +41,7 @@ pub fn run(all: bool) -> Result<()> {
     if data.is_none() {
         println!("skipped: no OPENDR_TEST_DATA (tests with real models and pictures)");
     }
-    if let Err(error) = check_all(&checks, tree.as_ref(), data) {
+    if let Err(error) = check_all(&checks, tree.as_ref()) {
         checks.fail("what the checks need", &error);
     }
     checks.finish()?;
@@ -50,7 +50,7 @@ pub fn run(all: bool) -> Result<()> {
     Ok(())
 }
 
-fn check_all(checks: &Checks, tree: Option<&Tree>, data: Option<PathBuf>) -> Result<()> {
+fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     std::thread::scope(|scope| {
         let environments = scope.spawn(Environments::install);
         check_sources(checks, tree)?;
@@ -58,8 +58,9 @@ fn check_all(checks: &Checks, tree: Option<&Tree>, data: Option<PathBuf>) -> Res
         if !checks.run("build", None, Output::Live, None, build)? {
             return Ok(());
         }
-        let environments = environments.join().map_err(|_| "installing what the tests need has panicked")??;
-        let environment = Environment { library: environments.outside.onnxruntime()?, data, cache: cache()? };
+        let environments =
+            environments.join().map_err(|_| "installing what the tests need has panicked")??;
+        let environment = Environment::of(&environments.outside)?;
         let tests = |arguments: &[&str]| {
             let mut cargo = cargo(arguments);
             environment.apply(&mut cargo);
@@ -79,15 +80,24 @@ fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     let sources = tree.map(|tree| tree.of(is_source, &[]));
     let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
     live("format", &mut cargo(&["fmt", "--all", "--check"]))?;
-    live("lints", &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]))?;
+    live(
+        "lints",
+        &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]),
+    )?;
     // What needs a GPU, and ROS 2 over Zenoh, in the two crates that have it. Burn's CUDA compiler comes through a build script
     // that downloads LLVM, except where only documentation is built; a check needs no more than that.
     let devices = ["--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh"];
     let packages = ["clippy", "--package=opendr-training", "--package=opendr-ros"];
-    live("lints of cuda, wgpu, zenoh", cargo(&packages).args(devices).args(["--", "--deny", "warnings"]).env("DOCS_RS", "1"))?;
+    live(
+        "lints of cuda, wgpu, zenoh",
+        cargo(&packages).args(devices).args(["--", "--deny", "warnings"]).env("DOCS_RS", "1"),
+    )?;
     // Surfaces that turn training on are left out of the choice of packages; the rest is chosen with the workspace, so that what it
     // depends on has the features that it has everywhere.
-    live("without training", &mut cargo(&["check", "--workspace", "--exclude=opendr-python", "--exclude=opendr-c"]))?;
+    live(
+        "without training",
+        &mut cargo(&["check", "--workspace", "--exclude=opendr-python", "--exclude=opendr-c"]),
+    )?;
     live(
         "free-threaded Python",
         cargo(&["check", "--workspace", "--exclude=opendr-c", "--no-default-features"])
@@ -130,15 +140,25 @@ fn suites(environments: &Environments, environment: &Environment, programs: u64)
         command: pytest(python, folders),
         inputs: inputs.to_vec(),
     };
-    let mut of_package =
-        suite("tests of the Python package", &environments.package, &["bindings/python/tests"], &[programs, module]);
+    let mut of_package = suite(
+        "tests of the Python package",
+        &environments.package,
+        &["bindings/python/tests"],
+        &[programs, module],
+    );
     of_package.command.env("OPENDR_WHEEL", &wheel);
     let mut of_c = suite("tests of C programs", &environments.outside, &["tests/c"], &[programs]);
     of_c.command.env("OPENDR_C_PREFIX", &prefix);
-    let mut parity = suite("parity of all surfaces", &environments.package, &["tests/parity"], &[programs, module]);
+    let mut parity =
+        suite("parity of all surfaces", &environments.package, &["tests/parity"], &[programs, module]);
     parity::prepare(&mut parity.command, &prefix)?;
     let mut suites = vec![
-        suite("tests of recordings beside their tools", &environments.references, &["tests/bags"], &[programs]),
+        suite(
+            "tests of recordings beside their tools",
+            &environments.references,
+            &["tests/bags"],
+            &[programs],
+        ),
         suite(
             "tests beside the reference tools",
             &environments.references,
@@ -150,7 +170,11 @@ fn suites(environments: &Environments, environment: &Environment, programs: u64)
         parity,
         of_c,
     ];
-    suites.extend(environments.ros.suites(&package, |command| environment.apply(command), &[programs, module]));
+    suites.extend(environments.ros.suites(
+        &package,
+        |command| environment.apply(command),
+        &[programs, module],
+    ));
     Ok(suites)
 }
 
@@ -163,7 +187,8 @@ fn run_beside_each_other(checks: &Checks, tree: Option<&Tree>, suites: Vec<Suite
             scope.spawn(|| {
                 while let Some(mut suite) = next() {
                     let inputs = tree.map(|tree| tree.of(|file| concerns(&suite, file), &suite.inputs));
-                    let report = target().join(format!("xtask/reports/{}.xml", suite.folders[0].replace('/', "-")));
+                    let report =
+                        target().join(format!("xtask/reports/{}.xml", suite.folders[0].replace('/', "-")));
                     suite.command.arg("--junitxml").arg(&report);
                     let done = checks.run(suite.name, inputs, Output::Kept, Some(report), &mut suite.command);
                     if let Err(error) = done {
@@ -179,14 +204,19 @@ fn run_beside_each_other(checks: &Checks, tree: Option<&Tree>, suites: Vec<Suite
 /// Whether a suite may read a file: its own, what suites share, and every page and table; but no source in Rust, since it starts programs.
 fn concerns(suite: &Suite, file: &str) -> bool {
     let own = suite.folders.iter().any(|folder| file.starts_with(folder));
-    let others = file.starts_with("tests/") && !file.starts_with("tests/support/") && !file.starts_with("tests/cases/")
+    let others = file.starts_with("tests/")
+        && !file.starts_with("tests/support/")
+        && !file.starts_with("tests/cases/")
         || file.starts_with("bindings/python/tests/");
     own || !others && !file.ends_with(".rs")
 }
 
 /// Whether a file can change what cargo builds or says: all but the tests in Python and the package's Python half.
 fn is_source(file: &str) -> bool {
-    !(file.ends_with(".py") || file.ends_with(".pyi") || file.starts_with("tests/") || file.starts_with("docs/"))
+    !(file.ends_with(".py")
+        || file.ends_with(".pyi")
+        || file.starts_with("tests/")
+        || file.starts_with("docs/"))
 }
 
 /// The number of every program that the tests start.
@@ -218,7 +248,7 @@ pub fn run_extended() -> Result<()> {
 pub fn run_c() -> Result<()> {
     install_debian()?;
     let outside = Python::install(&tools::OUTSIDE)?;
-    let environment = Environment { library: outside.onnxruntime()?, data: test_data(), cache: cache()? };
+    let environment = Environment::of(&outside)?;
     surfaces::build()?;
     let mut cargo = command("cargo");
     cargo.args(["test", "--package", "opendr-c", TEST_LEARNER, "--tests"]);
@@ -260,7 +290,13 @@ pub struct Environment {
 }
 
 impl Environment {
-    fn apply(&self, command: &mut Command) {
+    /// Returns the environment with ONNX Runtime's library out of `python`.
+    pub fn of(python: &Python) -> Result<Self> {
+        Ok(Self { library: python.onnxruntime()?, data: test_data(), cache: cache()? })
+    }
+
+    /// Gives it to a program.
+    pub fn apply(&self, command: &mut Command) {
         command.env("ORT_DYLIB_PATH", &self.library).env("OPENDR_TEST_CACHE", &self.cache);
         command.env("OPENDR_BIN", surfaces::opendr()).env("OPENDR_EXAMPLES", target().join("debug/examples"));
         if let Some(data) = &self.data {

@@ -83,7 +83,20 @@ impl Python {
             return Ok(python);
         }
         let uv = uv()?;
-        step("python environment", command(&uv).args(["venv", "--quiet", "--seed", "--clear", "--no-python-downloads", "--python", "python3"]).arg(&python.folder))?;
+        step(
+            "python environment",
+            command(&uv)
+                .args([
+                    "venv",
+                    "--quiet",
+                    "--seed",
+                    "--clear",
+                    "--no-python-downloads",
+                    "--python",
+                    "python3",
+                ])
+                .arg(&python.folder),
+        )?;
         for (files, options) in [(with, &[][..]), (without, &["--no-deps"][..])] {
             if files.is_empty() {
                 continue;
@@ -100,7 +113,10 @@ impl Python {
     /// Installs a wheel, and nothing that it depends on.
     pub fn install_wheel(&self, wheel: &Path) -> Result<()> {
         let mut install = command(uv()?);
-        install.args(["pip", "install", "--quiet", "--reinstall", "--no-deps", "--python"]).arg(self.program()).arg(wheel);
+        install
+            .args(["pip", "install", "--quiet", "--reinstall", "--no-deps", "--python"])
+            .arg(self.program())
+            .arg(wheel);
         step("wheel's installation", &mut install)
     }
 

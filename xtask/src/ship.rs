@@ -1,0 +1,20 @@
+//! `cargo xtask ship`: the wheels that users get, and the tests of what they are: small, quick to import, whole.
+
+use crate::shell::{Result, command, step};
+use crate::test::Environment;
+use crate::tools::{self, Python, install_debian};
+use crate::wheel;
+
+/// Builds the wheels in the release profile and tests them in environments of their own.
+pub fn run() -> Result<()> {
+    install_debian()?;
+    let python = Python::install(&tools::PACKAGE)?;
+    let wheel = wheel::build(&python, wheel::For::Users)?;
+    let size = std::fs::metadata(&wheel).map_err(|error| format!("{}: {error}", wheel.display()))?.len();
+    println!("{}: {:.2} MB", wheel.display(), size as f64 / 1e6);
+    python.install_wheel(&wheel)?;
+    let mut pytest = command(python.program());
+    pytest.args(["-m", "pytest", "-ra", "bindings/python/tests/test_install.py"]);
+    Environment::of(&Python::install(&tools::OUTSIDE)?)?.apply(&mut pytest);
+    step("tests of the shipped wheel", pytest.env("OPENDR_WHEEL", &wheel).env("OPENDR_SHIPPED", "1"))
+}
