@@ -1,5 +1,5 @@
 // The C API driven by bytes: each call is a byte and what it takes from those after it. Shared with the test that replays
-// the corpus (`bindings/c/tests/corpus.rs`). Lengths are true or impossible, since the rest is the caller's promise.
+// the corpus (`bindings/c/tests/suite/corpus.rs`). Lengths are true or impossible, since the rest is the caller's promise.
 
 use std::ffi::{CString, c_char};
 use std::ptr::{null, null_mut};

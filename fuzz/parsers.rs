@@ -1,4 +1,4 @@
-// What every fuzz target feeds, shared with the test that replays the corpora (`crates/opendr/tests/corpus.rs`).
+// What every fuzz target feeds, shared with the test that replays the corpora (`crates/opendr/tests/suite/corpus.rs`).
 
 use opendr_bags::{Bag, Selection};
 use opendr_engine::Value;

@@ -1,4 +1,4 @@
-"""Points of the astronaut's face by ONNX Runtime alone, with MediaPipe's own weights: what ``crates/opendr/tests/faces.rs``
+"""Points of the astronaut's face by ONNX Runtime alone, with MediaPipe's own weights: what ``crates/opendr/tests/suite/faces.rs``
 compares with.
 
     python tests/python/face_mesh_reference.py ../shared

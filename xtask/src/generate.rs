@@ -10,7 +10,7 @@ pub fn run() -> Result<()> {
     messages.args(["test", "-p", "opendr-message-generator", "--test", "messages"]).env("OPENDR_UPDATE", "1");
     step("ROS messages", &mut messages)?;
     let mut topics = command("cargo");
-    topics.args(["test", "-p", "opendr-cli", "--test", "topics"]).env("OPENDR_UPDATE", "1");
+    topics.args(["test", "-p", "opendr-cli", "--test", "suite", "topics::"]).env("OPENDR_UPDATE", "1");
     step("topics of nodes", &mut topics)?;
     let folder = target().join("generate");
     wheel::package(&folder)?;

@@ -1,33 +1,13 @@
 //! After the first step, training allocates nothing.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use opendr_kernels::{
     Activation, Adam, AdamOptions, Compute, Conv2d, Dense, Gru, GruTape, Layer, Network, Tape,
     clip_gradient_norm,
 };
-
-struct Counting;
-
-static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: passes everything on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: the caller's promise.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller's promise.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
+use opendr_test_allocator::{Counting, allocations};
 
 #[global_allocator]
-static COUNTING: Counting = Counting;
+static ALLOCATOR: Counting = Counting;
 
 #[test]
 fn steps_after_the_first_allocate_nothing() {
@@ -64,7 +44,7 @@ fn steps_after_the_first_allocate_nothing() {
         adam.step(&compute, 1e-3, &mut parameters, &gradients);
     };
     step();
-    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    let before = allocations();
     (0..5).for_each(|_| step());
-    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed) - before, 0);
+    assert_eq!(allocations() - before, 0);
 }

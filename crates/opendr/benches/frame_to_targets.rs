@@ -5,7 +5,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
-#[path = "../tests/models/mod.rs"]
+#[path = "../tests/suite/models/mod.rs"]
 mod models;
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,12 +1,12 @@
 //! After warm-up, pre- and post-processing of every learner allocate nothing: a call allocates what the bare run of its
 //! network allocates, and no more.
+//!
+//! A program of its own: work of other threads counts, so no other test may run beside these.
 
 #![allow(clippy::unwrap_used)]
 
+#[path = "suite/models/mod.rs"]
 mod models;
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use opendr::data::{Audio, Image};
 use opendr::inference::{Session, TensorView};
@@ -17,30 +17,7 @@ use opendr::speech_recognition::DsCnn;
 use opendr::stereo_matching::{SemiGlobalMatching, SemiGlobalMatchingInputs, SemiGlobalMatchingTargets};
 use opendr::target::{BoundingBox, BoundingBoxList, Category, TrackingAnnotationList};
 use opendr::{Device, Model};
-
-struct Counting;
-
-static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: every call goes to the system's allocator unchanged.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: the caller keeps the contract of `alloc`.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
-        // SAFETY: the caller keeps the contract of `dealloc`.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-
-    unsafe fn realloc(&self, pointer: *mut u8, layout: Layout, size: usize) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: the caller keeps the contract of `realloc`.
-        unsafe { System.realloc(pointer, layout, size) }
-    }
-}
+use opendr_test_allocator::{Counting, allocations};
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -48,9 +25,9 @@ static ALLOCATOR: Counting = Counting;
 /// The fewest allocations of ten calls: other threads of the test runner may allocate meanwhile.
 fn fewest(mut call: impl FnMut()) -> usize {
     let count = |_| {
-        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        let before = allocations();
         call();
-        ALLOCATIONS.load(Ordering::Relaxed) - before
+        allocations() - before
     };
     (0..10).map(count).min().unwrap_or(0)
 }

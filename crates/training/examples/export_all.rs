@@ -1,7 +1,7 @@
 //! Writes every architecture of the tests into a folder, for the comparisons in tests/training: the models, inputs with
 //! what Burn answers (JSON), and the parameters (safetensors).
 
-#[path = "../tests/architectures/mod.rs"]
+#[path = "../tests/suite/architectures/mod.rs"]
 mod architectures;
 
 use std::error::Error;

@@ -1,28 +1,10 @@
 //! After the first frames, pre-processing allocates nothing, on any thread.
-
-use std::alloc::{GlobalAlloc, Layout as MemoryLayout, System};
-use std::sync::atomic::{AtomicUsize, Ordering};
+//!
+//! A program of its own: work of other threads counts, so no other test may run beside it.
 
 use opendr_engine::data::{Image, Layout, PixelFormat};
+use opendr_test_allocator::{Counting, allocations};
 use opendr_vision::{Anchor, Preprocess};
-
-struct Counting;
-
-static ALLOCATIONS: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: everything is passed on to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: MemoryLayout) -> *mut u8 {
-        ALLOCATIONS.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, pointer: *mut u8, layout: MemoryLayout) {
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(pointer, layout) }
-    }
-}
 
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
@@ -44,7 +26,7 @@ fn a_stream_of_frames_allocates_nothing() {
         }
     };
     (0..50).for_each(&mut frame);
-    let before = ALLOCATIONS.load(Ordering::Relaxed);
+    let before = allocations();
     (50..100).for_each(&mut frame);
-    assert_eq!(ALLOCATIONS.load(Ordering::Relaxed) - before, 0);
+    assert_eq!(allocations() - before, 0);
 }

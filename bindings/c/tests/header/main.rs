@@ -1,5 +1,7 @@
 //! `include/opendr.h` is made here: what the library exports, and what follows from the types and the registry.
 //! `cargo xtask generate` writes it anew.
+//!
+//! A program of its own, so that to write it anew links no other test of the workspace.
 
 #![allow(clippy::unwrap_used)]
 

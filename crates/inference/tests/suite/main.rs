@@ -1,0 +1,13 @@
+//! The integration tests of this crate, one program: each program more is linked once more.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod agreement;
+mod hostile;
+mod pictures;
+mod selection;
+mod session;
+mod test_data;
+
+#[global_allocator]
+static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;

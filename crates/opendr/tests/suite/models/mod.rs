@@ -1,0 +1,51 @@
+//! Real models and pictures for tests.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+#![allow(dead_code, reason = "each program uses some")]
+
+use std::env;
+use std::path::PathBuf;
+
+use opendr::zoo::{Zoo, ZooOptions};
+use opendr::{ErrorKind, Silent};
+
+pub struct Models {
+    shared: PathBuf,
+    zoo: Zoo,
+}
+
+impl Models {
+    /// The models of `OPENDR_TEST_DATA`; what is not there comes from the public packages into a cache that tests keep.
+    pub fn find() -> Option<Self> {
+        let Some(shared) = env::var_os("OPENDR_TEST_DATA").map(PathBuf::from) else {
+            println!("skipped: no OPENDR_TEST_DATA");
+            return None;
+        };
+        let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR")?).join("../..");
+        let cache =
+            env::var_os("OPENDR_TEST_CACHE").map_or_else(|| root.join("target/test-cache"), PathBuf::from);
+        let mut options = ZooOptions::new(cache.join("opendr"));
+        options.repository = Some(shared.join("models").to_string_lossy().into_owned());
+        Some(Self { zoo: Zoo::new(options).unwrap(), shared })
+    }
+
+    pub fn data(&self, name: &str) -> PathBuf {
+        self.shared.join("data").join(name)
+    }
+
+    /// The container of a learner; `None`, said aloud, where no package can be had, or where the learner has no weights.
+    pub fn get(&self, spec: &str) -> Option<PathBuf> {
+        if self.zoo.cards().iter().any(|card| card.learner == spec && card.variants.is_empty()) {
+            println!("skipped: no weights for {spec}; the tests beside it train some");
+            return None;
+        }
+        match self.zoo.get(spec, &Silent) {
+            Ok(path) => Some(path),
+            Err(error) if error.kind() == ErrorKind::Network => {
+                println!("skipped: no network for {spec}: {error}");
+                None
+            }
+            Err(error) => panic!("{spec}: {error}"),
+        }
+    }
+}

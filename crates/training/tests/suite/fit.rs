@@ -1,0 +1,244 @@
+//! The loop of every `fit`: it learns, resumes bit for bit after a kill, and tells what went wrong.
+
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use crate::small::{Network, Spirals, TellApart};
+use crate::turn;
+use opendr_engine::learner::FitJob;
+use opendr_engine::model::Model;
+use opendr_engine::{Device, ErrorKind, Progress, Random, Result, Statistics, Unit};
+use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, begin, fit_network};
+
+/// Set for the process that is killed: where it trains.
+const CHILD: &str = "OPENDR_TEST_TRAINS_INTO";
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = env::temp_dir().join(format!("opendr-fit-{}-{name}", std::process::id()));
+    fs::remove_dir_all(&folder).ok();
+    folder
+}
+
+fn params() -> TrainingParams {
+    TrainingParams {
+        epochs: 30,
+        batch_size: 32,
+        lr: 0.01,
+        lr_schedule: ScheduleKind::Cosine,
+        ema: 0.9,
+        grad_clip: 5.0,
+        accumulate: 2,
+        checkpoint_after_iter: 7,
+        seed: 3,
+        ..TrainingParams::default()
+    }
+}
+
+fn train(params: &TrainingParams, dataset: &Spirals, job: &FitJob<'_>) -> Result<Statistics> {
+    let _turn = turn();
+    let network = Network::new(&begin(job, params)?);
+    fit_network(&TellApart::default(), network, params, dataset, None, job)
+}
+
+fn job(output: &Path) -> FitJob<'_> {
+    FitJob { device: Device::Cpu, ..FitJob::new(output) }
+}
+
+fn weights(output: &Path) -> Vec<u8> {
+    Model::open(output.join("model")).unwrap().file("weights.bin").unwrap()
+}
+
+#[test]
+fn every_optimiser_learns() {
+    for optimizer in [OptimizerKind::Adamw, OptimizerKind::Adam, OptimizerKind::Sgd, OptimizerKind::Rmsprop] {
+        let output = scratch(optimizer.name());
+        let lr = if optimizer == OptimizerKind::Sgd { 0.1 } else { 0.005 };
+        let params = TrainingParams { optimizer, lr, epochs: 60, accumulate: 1, ..params() };
+        let statistics = train(&params, &Spirals { count: 256, broken: None }, &job(&output)).unwrap();
+        let losses = &statistics.curves["loss"];
+        assert_eq!((losses.len(), statistics.get("steps")), (60, Some(480.0)));
+        assert!(losses[59] < 0.35 * losses[0], "{}: {losses:?}", optimizer.name());
+        fs::remove_dir_all(output).unwrap();
+    }
+}
+
+/// The child's part of the next test; nothing when it is not the child.
+#[test]
+fn child_trains() {
+    let Some(output) = env::var_os(CHILD).map(PathBuf::from) else { return };
+    let job = FitJob { resume: true, ..job(&output) };
+    train(&params(), &Spirals { count: 320, broken: None }, &job).unwrap();
+}
+
+#[test]
+fn killed_and_resumed_is_the_same() {
+    let (whole, killed) = (scratch("whole"), scratch("killed"));
+    let whole_statistics = train(&params(), &Spirals { count: 320, broken: None }, &job(&whole)).unwrap();
+    let mut random = Random::new(u64::from(std::process::id()));
+    let mut kills = 0;
+    loop {
+        let mut child = Command::new(env::current_exe().unwrap())
+            .args(["fit::child_trains", "--exact", "--test-threads=1"])
+            .env(CHILD, &killed)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        if kills < 5 {
+            std::thread::sleep(Duration::from_secs_f32(random.uniform(0.05, 0.6)));
+        }
+        if kills < 5 && child.try_wait().unwrap().is_none() {
+            child.kill().unwrap();
+            child.wait().unwrap();
+            kills += 1;
+            continue;
+        }
+        assert!(child.wait().unwrap().success());
+        break;
+    }
+    assert!(weights(&whole) == weights(&killed), "after {kills} kills the weights are others");
+    assert!(whole_statistics.get("steps") == Some(150.0));
+    for folder in [whole, killed] {
+        fs::remove_dir_all(folder).unwrap();
+    }
+}
+
+/// Stops after so many steps.
+struct StopAfter(AtomicU64);
+
+impl Progress for StopAfter {
+    fn begin(&self, _: &str, _: Option<u64>, _: Unit) {}
+
+    fn advance(&self, amount: u64) {
+        self.0
+            .fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| Some(left.saturating_sub(amount)))
+            .ok();
+    }
+
+    fn end(&self) {}
+
+    fn stopped(&self) -> bool {
+        self.0.load(Ordering::Relaxed) == 0
+    }
+}
+
+#[test]
+fn stopped_and_resumed_is_the_same_with_its_log() {
+    let (whole, stopped) = (scratch("unstopped"), scratch("stopped"));
+    let logs = [whole.join("log"), stopped.join("log")];
+    let dataset = Spirals { count: 320, broken: None };
+    let statistics =
+        train(&params(), &dataset, &FitJob { logging_path: Some(&logs[0]), ..job(&whole) }).unwrap();
+    let stop = StopAfter(AtomicU64::new(33));
+    let first = FitJob { progress: &stop, logging_path: Some(&logs[1]), ..job(&stopped) };
+    assert_eq!(train(&params(), &dataset, &first).unwrap().get("steps"), Some(33.0));
+    assert!(stopped.join("model/weights.bin").exists(), "what was reached is there to be used");
+    let again = FitJob { resume: true, logging_path: Some(&logs[1]), ..job(&stopped) };
+    let resumed = train(&params(), &dataset, &again).unwrap();
+    assert!(weights(&whole) == weights(&stopped));
+    assert_eq!(resumed.curves, statistics.curves);
+    let table = |folder: &Path| fs::read_to_string(folder.join("log.csv")).unwrap();
+    assert_eq!(table(&logs[0]), table(&logs[1]));
+    for folder in [whole, stopped] {
+        fs::remove_dir_all(folder).unwrap();
+    }
+}
+
+#[test]
+fn an_earlier_training_is_never_overwritten() {
+    let output = scratch("earlier");
+    let dataset = Spirals { count: 64, broken: None };
+    let params = TrainingParams { epochs: 2, accumulate: 1, ..params() };
+    train(&params, &dataset, &job(&output)).unwrap();
+    let error = train(&params, &dataset, &job(&output)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidInput);
+    assert!(error.to_string().contains("resume it, or give another folder"), "{error}");
+    let resumed = FitJob { resume: true, ..job(&output) };
+    let other = TrainingParams { batch_size: 16, ..params.clone() };
+    let error = train(&other, &dataset, &resumed).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidParam);
+    assert!(error.to_string().contains("batch_size = 32, not 16"), "{error}");
+    let error = train(&params, &Spirals { count: 65, broken: None }, &resumed).unwrap_err();
+    assert!(error.to_string().contains("64 samples, this one has 65"), "{error}");
+    let longer = TrainingParams { epochs: 3, ..params };
+    assert_eq!(train(&longer, &dataset, &resumed).unwrap().get("epochs"), Some(3.0));
+    fs::remove_dir_all(output).unwrap();
+}
+
+#[test]
+fn a_loss_that_is_no_number_names_step_samples_and_checkpoint() {
+    let output = scratch("nan");
+    let params = TrainingParams { checkpoint_after_iter: 1, accumulate: 1, epochs: 1, ..params() };
+    let error = train(&params, &Spirals { count: 320, broken: Some(77) }, &job(&output)).unwrap_err();
+    let text = error.to_string();
+    assert_eq!(error.kind(), ErrorKind::Internal);
+    assert!(text.contains("loss of step") && text.contains("point ") && text.contains("lower lr"), "{text}");
+    let kept = text.contains("checkpoints/step-") || text.contains("no checkpoint yet");
+    assert!(kept, "{text}");
+    fs::remove_dir_all(output).unwrap();
+}
+
+#[test]
+fn the_best_by_metric_is_kept_and_early_stopping_stops() {
+    let output = scratch("best");
+    let dataset = Spirals { count: 64, broken: None };
+    let params = TrainingParams { epochs: 50, early_stop: 3, accumulate: 1, ..params() };
+    let values = [0.1, 0.5, 0.3, 0.2, 0.4, 0.9];
+    let mut seen = Vec::new();
+    let mut validate = |candidate: &Path| -> Result<Score> {
+        seen.push(Model::open(candidate)?.file("weights.bin")?);
+        let value = values[seen.len() - 1];
+        let numbers = [("score".to_owned(), value)].into();
+        Ok(Score { name: "score".to_owned(), value, is_error: false, numbers, picture: None })
+    };
+    let _turn = turn();
+    let job = job(&output);
+    let network = Network::new(&begin(&job, &params).unwrap());
+    let statistics =
+        fit_network(&TellApart::default(), network, &params, &dataset, Some(&mut validate), &job).unwrap();
+    assert_eq!(statistics.curves["val_score"], values[..5]);
+    assert_eq!((statistics.get("best"), statistics.get("best_step")), (Some(0.5), Some(4.0)));
+    assert!(weights(&output) == seen[1]);
+    assert!(!output.join("candidate").exists());
+    fs::remove_dir_all(output).unwrap();
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_batch_too_large_for_memory_is_refused() {
+    let output = scratch("memory");
+    let params = TrainingParams { batch_size: 65_536, accumulate: 1, ..params() };
+    let _turn = turn();
+    let job = job(&output);
+    let network = Network::new(&begin(&job, &params).unwrap());
+    let objective = TellApart { ballast: 8 << 20 };
+    let dataset = Spirals { count: 65_536, broken: None };
+    let error = fit_network(&objective, network, &params, &dataset, None, &job).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidParam);
+    let text = error.to_string();
+    assert!(text.contains("batch_size = 65536 needs about") && text.contains("accumulate"), "{text}");
+}
+
+#[test]
+fn what_cannot_be_trained_is_told() {
+    let output = scratch("refused");
+    let error = train(&params(), &Spirals { count: 0, broken: None }, &job(&output)).unwrap_err();
+    assert!(error.kind() == ErrorKind::InvalidInput && error.to_string().contains("empty"));
+    let wrong = TrainingParams { lr: -1.0, ..params() };
+    let error = train(&wrong, &Spirals { count: 8, broken: None }, &job(&output)).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::InvalidParam);
+    let device = FitJob { device: Device::Cuda(0), ..job(&output) };
+    if !cfg!(feature = "cuda") && env::var_os("OPENDR_DEVICE").is_none() {
+        let error = train(&params(), &Spirals { count: 8, broken: None }, &device).unwrap_err();
+        assert!(error.kind() == ErrorKind::Device && error.to_string().contains("trains on cpu"), "{error}");
+    }
+    let file = env::temp_dir().join(format!("opendr-fit-{}-file", std::process::id()));
+    fs::write(&file, "in the way").unwrap();
+    let error = train(&params(), &Spirals { count: 8, broken: None }, &job(&file)).unwrap_err();
+    assert!(error.to_string().contains(&*file.display().to_string()), "{error}");
+    fs::remove_file(file).unwrap();
+}

@@ -1,0 +1,7 @@
+//! The integration tests of this crate, one program: each program more is linked once more.
+
+#![allow(clippy::unwrap_used)]
+
+#[cfg(target_os = "linux")]
+mod processes;
+mod reinforcement_learning;

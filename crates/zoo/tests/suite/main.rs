@@ -1,0 +1,14 @@
+//! The integration tests of this crate, one program: each program more is linked once more.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod cards;
+mod http;
+#[cfg(unix)]
+mod onnx_runtime;
+mod parts;
+mod place;
+mod processes;
+mod registries;
+mod repository;
+mod server;
