@@ -38,6 +38,8 @@ mod fit;
 mod pipeline;
 mod registry;
 mod smaller;
+#[cfg(any(feature = "detection", feature = "segmentation"))]
+pub mod tiling;
 mod tune;
 
 pub use by_name::{download, learner, learner_with};
@@ -46,17 +48,41 @@ pub use export::export;
 pub use fit::{
     FitData, FitEnvironments, FitOptions, Fitted, Opening, check_fit, fit, fit_in, teacher, teacher_with,
 };
+#[cfg(feature = "actions")]
+pub use opendr_actions::{activity_recognition, skeleton_based_action_recognition};
+#[cfg(feature = "classification")]
+pub use opendr_classification::{compressive_learning, image_classification};
+#[cfg(feature = "clouds")]
+pub use opendr_clouds::{object_detection_3d, pillars, range_image};
+#[cfg(feature = "detection")]
+pub use opendr_detection::object_detection_2d;
 pub use opendr_engine::*;
-pub use opendr_perception::{
-    activity_recognition, ambiguity_measure, beats, binary_high_resolution, compressive_learning,
-    face_detection, face_recognition, facial_expression_recognition, facial_landmarks, fall_detection,
-    gesture_recognition, grasp_detection, hand_pose_estimation, heart_anomaly_detection,
-    image_classification, instance_segmentation, mfcc, multimodal_human_centric, object_detection_2d,
-    object_detection_3d, object_tracking_2d, object_tracking_3d, panoptic_segmentation, pillars,
-    pose_estimation, range_image, regions, resampler, semantic_segmentation,
-    skeleton_based_action_recognition, speech_recognition, speech_transcription, stereo_matching,
-    suppression, tiling, tracking, voice_activity, voice_activity_detection,
-};
+#[cfg(feature = "faces")]
+pub use opendr_face_detection::face_detection;
+#[cfg(feature = "faces")]
+pub use opendr_faces::{face_recognition, facial_expression_recognition, facial_landmarks};
+#[cfg(feature = "grasping")]
+pub use opendr_grasping::{ambiguity_measure, grasp_detection};
+#[cfg(feature = "hands")]
+pub use opendr_hands::{gesture_recognition, hand_pose_estimation};
+#[cfg(feature = "multimodal")]
+pub use opendr_multimodal::multimodal_human_centric;
+#[cfg(feature = "panoptic")]
+pub use opendr_panoptic::panoptic_segmentation;
+pub use opendr_perception_common::{regions, suppression};
+#[cfg(feature = "pose")]
+pub use opendr_pose::{fall_detection, pose_estimation};
+#[cfg(feature = "segmentation")]
+pub use opendr_segmentation::{binary_high_resolution, instance_segmentation, semantic_segmentation};
+#[cfg(feature = "signals")]
+pub use opendr_signals::{beats, heart_anomaly_detection};
+pub use opendr_sound::{mfcc, resampler};
+#[cfg(feature = "speech")]
+pub use opendr_speech::{speech_recognition, speech_transcription, voice_activity, voice_activity_detection};
+#[cfg(feature = "stereo")]
+pub use opendr_stereo::stereo_matching;
+#[cfg(feature = "tracking")]
+pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
 pub use pipeline::Pipeline;
 pub use registry::registry;
 pub use smaller::optimize_loaded;

@@ -123,23 +123,30 @@ impl Registry {
     }
 }
 
-/// Makes a [`Registry`](crate::learner::Registry) of learner types: one line a learner.
+/// Makes a [`Registry`](crate::learner::Registry) of learner types: one line a learner. Learners may stand in groups,
+/// `#[cfg(feature = "stereo")] { SemiGlobalMatching }`, each compiled in or not.
 ///
 /// What each can do besides `infer` follows from the traits that it implements.
 #[macro_export]
 macro_rules! learners {
-    ($($(#[$attribute:meta])* $learner:ty),* $(,)?) => {{
+    ($($(#[$attribute:meta])* { $($learner:ty),* $(,)? }),* $(,)?) => {{
         #[allow(unused_imports)]
         use $crate::learner::{
             Probe, ProbeFallback as _, ProbeFit as _, ProbeFitIn as _, ProbeStreaming as _,
         };
-        $crate::learner::Registry::new(Vec::from([$(
+        #[allow(unused_mut)]
+        let mut entries = Vec::<$crate::learner::Entry>::new();
+        $(
             $(#[$attribute])*
-            $crate::learner::Entry::of::<$learner>(Probe::<$learner>::abilities(
-                (&Probe::<$learner>::new()).push(),
-                (&Probe::<$learner>::new()).fit(),
-                (&Probe::<$learner>::new()).fit_in(),
-            ))
-        ),*]))
+            entries.extend([$(
+                $crate::learner::Entry::of::<$learner>(Probe::<$learner>::abilities(
+                    (&Probe::<$learner>::new()).push(),
+                    (&Probe::<$learner>::new()).fit(),
+                    (&Probe::<$learner>::new()).fit_in(),
+                ))
+            ),*]);
+        )*
+        $crate::learner::Registry::new(entries)
     }};
+    ($($learner:ty),* $(,)?) => { $crate::learners![{ $($learner),* }] };
 }

@@ -3,6 +3,7 @@
 use opendr_engine::model::Model;
 use opendr_engine::{Result, Value, ValueType};
 
+#[cfg(feature = "actions")]
 use super::skeletons::Skeletons;
 
 /// Makes, answer after answer of a stream, what a port takes.
@@ -18,8 +19,10 @@ pub(super) trait Adapter: Send {
 pub(super) type Make = fn(&Model) -> Result<Box<dyn Adapter>>;
 
 /// Every adapter: from which type of answer to which type of port.
-const ADAPTERS: &[(ValueType, ValueType, Make)] =
-    &[(ValueType::PoseList, ValueType::SkeletonSequence, Skeletons::make)];
+const ADAPTERS: &[(ValueType, ValueType, Make)] = &[
+    #[cfg(feature = "actions")]
+    (ValueType::PoseList, ValueType::SkeletonSequence, Skeletons::make),
+];
 
 /// How answers of the type `from` become what a port of the type `to` takes.
 pub(super) fn adapter(from: ValueType, to: ValueType) -> Option<Make> {

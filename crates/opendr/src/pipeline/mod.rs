@@ -2,6 +2,7 @@
 
 mod adapter;
 mod each_box;
+#[cfg(feature = "actions")]
 mod skeletons;
 mod stage;
 mod wiring;

@@ -1,9 +1,9 @@
 //! Poses of one picture after the other as moving skeletons.
 
+use opendr_actions::skeleton_based_action_recognition::{SkeletonBuffer, SkeletonBufferOptions};
 use opendr_engine::model::Model;
 use opendr_engine::target::Skeleton;
 use opendr_engine::{Error, Result, Value};
-use opendr_perception::skeleton_based_action_recognition::{SkeletonBuffer, SkeletonBufferOptions};
 
 use super::adapter::Adapter;
 

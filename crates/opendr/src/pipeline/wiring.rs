@@ -43,6 +43,7 @@ pub(super) fn wires(ports: &[Port], answered: &[Vec<Output>], inputs: &mut Vec<P
 }
 
 #[cfg(test)]
+#[cfg(feature = "actions")]
 mod tests {
     use opendr_engine::ValueType;
 

@@ -1,0 +1,102 @@
+//! How it trains: clip by clip, as [`SpatioTemporalGcn`](crate::skeleton_based_action_recognition::SpatioTemporalGcn); what is
+//! exported is one step.
+
+use opendr_engine::dataset::DatasetRef;
+use opendr_engine::learner::{Fit, FitJob, Learner};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::{Result, ResultExt, Statistics};
+use opendr_training::{
+    Container, Objective, OptimizerKind, TrainingParams, begin, fit_learner, open_for_training,
+    training_device,
+};
+
+use super::{CoStGcn, CoStGcnParams, joints_of};
+use crate::skeleton_based_action_recognition::network::ActionNetwork;
+use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
+use crate::skeleton_based_action_recognition::{SpatioTemporalGcn, SpatioTemporalGcnParams};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
+
+/// How a user may train it.
+#[derive(Debug, Clone, Params)]
+pub struct CoStGcnFitParams {
+    /// What every training takes.
+    #[param(
+        flatten,
+        epochs = 10,
+        batch_size = 64,
+        lr = 0.001,
+        optimizer = OptimizerKind::Adam,
+        weight_decay = 0.00001,
+        seed = 123
+    )]
+    pub training: TrainingParams,
+    /// Share of values between layers that are left out at random in each training step.
+    #[param(default = 0.0, range = 0.0..=0.99)]
+    pub dropout: f64,
+    /// Share of the other classes, all alike, in what the network is to say of a clip.
+    #[param(default = 0.0, range = 0.0..=0.9)]
+    pub label_smoothing: f32,
+    /// Whether skeletons are mirrored, leant, stretched, cut in time and played slower or faster, at random.
+    #[param(default = true)]
+    pub augment: bool,
+}
+
+impl Fit for CoStGcn {
+    type FitParams = CoStGcnFitParams;
+
+    fn fit(
+        base: Option<&Model>,
+        params: &CoStGcnParams,
+        fit_params: &CoStGcnFitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let training = &fit_params.training;
+        let dataset = open_for_training::<Self>(dataset, job)?;
+        let classes = classes_to_train(&*dataset, params.num_classes, "num_classes")?;
+        joints_of(params.graph_type, params.num_point)?;
+        let (sizes, device) = (params.sizes(), begin(job, training)?);
+        let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
+        let network = network_from_base(network, base)?;
+        let objective = ActionObjective {
+            sizes,
+            form: Form::Step,
+            params: params.to_map(),
+            classes,
+            smoothing: fit_params.label_smoothing,
+            augment: fit_params.augment,
+        };
+        fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
+    }
+}
+
+/// The container of a [`CoStGcn`] with the weights of a [`SpatioTemporalGcn`] that was trained here.
+///
+/// # Errors
+/// `Format` when `model` is another learner's, or holds no weights to go on from.
+pub fn co_st_gcn_from(model: &Model) -> Result<Container> {
+    let named = || format!("making a CoST-GCN of {}", model.path().display());
+    model.check_learner(SpatioTemporalGcn::SPEC.name).context(named)?;
+    let clip_wise = SpatioTemporalGcnParams::from_map(model.params()).context(named)?;
+    let params = CoStGcnParams {
+        num_classes: clip_wise.num_class,
+        num_point: clip_wise.num_point,
+        num_person: clip_wise.num_person,
+        in_channels: clip_wise.in_channels,
+        graph_type: clip_wise.graph_type,
+        backbone: super::Backbone::CoStGcn,
+        sequence_len: clip_wise.num_frames,
+        channels: clip_wise.channels,
+        temporal_kernel: clip_wise.temporal_kernel,
+    };
+    let classes = model.manifest().classes.clone();
+    let (sizes, device) = (params.sizes(), training_device(opendr_engine::Device::Cpu)?);
+    let network = ActionNetwork::new(&sizes, classes.len(), 0.0, &device)?;
+    let network = network_from_base(network, Some(model)).context(named)?;
+    let (params, form) = (params.to_map(), Form::Step);
+    let objective = ActionObjective { sizes, form, params, classes, smoothing: 0.0, augment: false };
+    objective.container(&network)
+}

@@ -1,0 +1,29 @@
+//! What persons do, told by their moving skeletons.
+//!
+//! [`SpatioTemporalGcn`] looks at clips, [`CoStGcn`] at one frame after the other with the same weights and the same
+//! answers; [`SkeletonBuffer`] makes of the poses of a video what both take.
+
+#[cfg(feature = "training")]
+mod augment;
+mod co_st_gcn;
+mod graph;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+mod sizes;
+mod skeleton_buffer;
+mod spatio_temporal_gcn;
+
+pub use co_st_gcn::{CoStGcn, CoStGcnParams, CoStGcnState};
+#[cfg(feature = "training")]
+pub use co_st_gcn::{CoStGcnFitParams, co_st_gcn_from};
+pub use graph::GraphType;
+pub use skeleton_buffer::{SkeletonBuffer, SkeletonBufferOptions};
+#[cfg(feature = "training")]
+pub use spatio_temporal_gcn::SpatioTemporalGcnFitParams;
+pub use spatio_temporal_gcn::{SpatioTemporalGcn, SpatioTemporalGcnParams};
+
+#[cfg(test)]
+#[cfg(feature = "training")]
+mod tests;

@@ -1,0 +1,78 @@
+//! How it trains.
+
+use opendr_engine::dataset::DatasetRef;
+use opendr_engine::learner::{Fit, FitJob};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::{Result, Statistics};
+use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+
+use super::{SpatioTemporalGcn, SpatioTemporalGcnParams, joints_of};
+use crate::skeleton_based_action_recognition::network::ActionNetwork;
+use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
+use crate::skeleton_based_action_recognition::sizes::NetworkSizes;
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
+
+/// How a user may train it.
+#[derive(Debug, Clone, Params)]
+pub struct SpatioTemporalGcnFitParams {
+    /// What every training takes.
+    #[param(
+        flatten,
+        epochs = 50,
+        batch_size = 128,
+        lr = 0.1,
+        lr_schedule = ScheduleKind::Step,
+        lr_steps = vec![30, 40],
+        optimizer = OptimizerKind::Sgd,
+        weight_decay = 0.0001
+    )]
+    pub training: TrainingParams,
+    /// Share of values between layers that are left out at random in each training step.
+    #[param(default = 0.0, range = 0.0..=0.99)]
+    pub dropout: f64,
+    /// Share of the other classes, all alike, in what the network is to say of a clip.
+    #[param(default = 0.0, range = 0.0..=0.9)]
+    pub label_smoothing: f32,
+    /// Whether skeletons are mirrored, leant, stretched, cut in time and played slower or faster, at random.
+    #[param(default = true)]
+    pub augment: bool,
+}
+
+impl Fit for SpatioTemporalGcn {
+    type FitParams = SpatioTemporalGcnFitParams;
+
+    fn fit(
+        base: Option<&Model>,
+        params: &SpatioTemporalGcnParams,
+        fit_params: &SpatioTemporalGcnFitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let training = &fit_params.training;
+        let dataset = open_for_training::<Self>(dataset, job)?;
+        let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
+        joints_of(params.graph_type, params.num_point)?;
+        let sizes = NetworkSizes {
+            graph: params.graph_type,
+            coordinates: params.in_channels,
+            frames: params.num_frames,
+            channels: params.channels.clone(),
+            kernel: params.temporal_kernel,
+        };
+        let device = begin(job, training)?;
+        let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
+        let network = network_from_base(network, base)?;
+        let objective = ActionObjective {
+            sizes,
+            form: Form::Clip,
+            params: params.to_map(),
+            classes,
+            smoothing: fit_params.label_smoothing,
+            augment: fit_params.augment,
+        };
+        fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
+    }
+}

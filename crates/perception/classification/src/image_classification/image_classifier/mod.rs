@@ -1,0 +1,101 @@
+//! Image classifier: a small convolutional network that is trained on the user's own pictures.
+//!
+//! It also shows how a learner that trains is made: inference here, what it is trained on and by, and `fit` in a file each.
+
+#[cfg(feature = "training")]
+mod fit;
+#[cfg(feature = "training")]
+mod objective;
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{Category, Classes};
+use opendr_engine::{Device, Result, Task};
+#[cfg(feature = "training")]
+use opendr_vision::Preprocess;
+
+use opendr_perception_common::category_scores::{category_from_logits, category_from_probabilities};
+use opendr_perception_common::described_input::described_input;
+use opendr_perception_common::picture_network::PictureNetwork;
+
+#[cfg(feature = "training")]
+pub use fit::ImageClassifierFitParams;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct ImageClassifierParams {
+    /// Whether the answer has the score of every class.
+    #[param(default = true, live)]
+    pub probabilities: bool,
+    /// Whether the network's answer is turned into probabilities by a softmax; false for one that ends in its own.
+    #[param(default = true)]
+    pub softmax: bool,
+}
+
+/// A loaded classifier.
+pub struct ImageClassifier {
+    params: ImageClassifierParams,
+    classes: Classes,
+    network: PictureNetwork,
+    scores: usize,
+}
+
+/// The network's output, `[1, classes]`.
+const SCORES: &str = "scores";
+/// Levels 0..=255 become -1..=1 where the model says nothing else.
+const LEVEL: f32 = 127.5;
+
+/// The pictures as networks that were trained here want them: `side` x `side`, RGB, -1..=1.
+#[cfg(feature = "training")]
+fn preprocess(side: usize) -> Preprocess {
+    Preprocess::new(side, side).normalise([LEVEL; 3], [LEVEL; 3])
+}
+
+impl Learner for ImageClassifier {
+    const SPEC: Spec = Spec::new("image_classifier", Task::ImageClassification)
+        .class("ImageClassifierLearner")
+        .about("Tells the class of a picture; learns the classes of a user's own pictures in minutes.");
+    type Params = ImageClassifierParams;
+    type Input<'a> = &'a Image;
+    type Target = Category;
+    type State = ();
+
+    fn load(model: &Model, params: ImageClassifierParams, device: Device) -> Result<Self> {
+        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
+            described_input(model, input, LEVEL)
+        })?;
+        let scores = match network.outputs() {
+            [_] => 0,
+            _ => network.output(SCORES)?,
+        };
+        Ok(Self { params, classes: model.classes().clone(), network, scores })
+    }
+
+    fn params(&self) -> &ImageClassifierParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut ImageClassifierParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
+        self.network.run(image, |outputs, _| {
+            let scores = outputs[self.scores].values()?;
+            match self.params.softmax {
+                true => category_from_logits(category, scores, &self.classes)?,
+                false => category_from_probabilities(category, scores.iter().copied(), &self.classes)?,
+            }
+            if !self.params.probabilities {
+                category.probabilities.clear();
+            }
+            Ok(())
+        })
+    }
+}

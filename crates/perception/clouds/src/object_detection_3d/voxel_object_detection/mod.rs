@@ -1,0 +1,243 @@
+//! PointPillars: cars, and whatever else it was trained for, in the scan of a lidar.
+//!
+//! A. H. Lang, S. Vora, H. Caesar, L. Zhou, J. Yang, O. Beijbom, "PointPillars: Fast encoders for object detection from point
+//! clouds", CVPR 2019; written from the paper, with a network small enough for a processor. Points are sorted into pillars
+//! ([`crate::pillars`]) and each gets features by one layer; a pillar has the largest of its points, all of them, where the
+//! paper keeps a hundred. Reflectance is not used, so that clouds of x, y and z do.
+
+pub mod anchors;
+pub mod coding;
+pub mod decode;
+#[cfg(feature = "training")]
+mod fit;
+mod layout;
+#[cfg(feature = "training")]
+mod loss;
+#[cfg(feature = "training")]
+pub mod matching;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+mod point_features;
+mod scan;
+#[cfg(feature = "training")]
+mod targets;
+#[cfg(test)]
+#[cfg(feature = "training")]
+mod tests;
+
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBox3DList, Classes, Name};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::{Session, TensorView};
+
+use crate::pillars::{Voxeliser, scatter};
+use decode::{FoundBox, PillarMaps};
+#[cfg(feature = "training")]
+pub use fit::VoxelObjectDetection3dFitParams;
+pub use layout::PillarLayout;
+#[cfg(feature = "training")]
+pub use objective::PillarObjective;
+use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
+use point_features::PointFeatures;
+pub use scan::Scan;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct VoxelObjectDetection3dParams {
+    /// Boxes below this score are dropped. OpenDR's default of 0 tells every box that the network thinks of.
+    #[param(default = 0.3, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Boxes of one class whose floors overlap more than this (intersection over union) are one object.
+    #[param(default = 0.1, range = 0.0..=1.0, live)]
+    pub iou_threshold: f32,
+    /// So many of the best boxes are looked at before overlapping ones are thinned out.
+    #[param(default = 400, range = 1..=10_000, live)]
+    pub max_candidates: usize,
+    /// At most this many boxes a scan.
+    #[param(default = 100, range = 1..=1000, live)]
+    pub max_detections: usize,
+}
+
+/// A loaded PointPillars.
+pub struct VoxelObjectDetection3d {
+    params: VoxelObjectDetection3dParams,
+    classes: Classes,
+    layout: PillarLayout,
+    names: Vec<Name>,
+    points: PointFeatures,
+    pillars: Session,
+    channels: usize,
+    outputs: [usize; 3],
+    scratch: Pool<Scratch>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    voxeliser: Voxeliser,
+    /// Of the points that wait.
+    chunk: point_features::Chunk,
+    /// `[pillars, channels]`.
+    features: Vec<f32>,
+    canvas: Vec<f32>,
+    found: Vec<FoundBox>,
+    candidates: Vec<StandingCandidate>,
+    dropped: Vec<bool>,
+}
+
+/// The files of the container: the layer over points, and what takes the picture of pillars.
+const POINT_FILE: &str = "vfe.onnx";
+const PILLAR_FILE: &str = "rpn.onnx";
+/// Points that the first takes at once.
+const CHUNK: usize = 4096;
+/// Channels of a picture: more are a mistake.
+const MOST_CHANNELS: usize = 1024;
+/// The outputs of the second.
+const OUTPUTS: [&str; 3] = ["scores", "offsets", "backs"];
+
+impl Learner for VoxelObjectDetection3d {
+    const SPEC: Spec = Spec::new("voxel_object_detection_3d", Task::ObjectDetection3d)
+        .class("VoxelObjectDetection3DLearner")
+        .about("PointPillars finds boxes in the scan of a lidar; it trains on classes of your own.")
+        .without_effect(&[
+            ("model_config_path", "what it needs to know stands in the model"),
+            ("tanet_config_path", "there is one network, PointPillars"),
+            ("backbone", "there is one network, PointPillars"),
+            ("network_head", "there is one head"),
+            ("scale", "the model knows the range of its clouds"),
+            ("temp_path", "what fit writes lies in its output folder"),
+            ("checkpoint_load_iter", "fit goes on from the last checkpoint of its output folder"),
+        ]);
+    type Params = VoxelObjectDetection3dParams;
+    type Input<'a> = Scan<'a>;
+    type Target = BoundingBox3DList;
+    type State = ();
+
+    fn load(model: &Model, params: VoxelObjectDetection3dParams, device: Device) -> Result<Self> {
+        let layout = PillarLayout::from_manifest(model.manifest())?;
+        let classes = model.manifest().classes.clone();
+        let names = classes.iter().map(Name::from).collect();
+        let pillars = Session::open(&model.file(PILLAR_FILE)?, device)?;
+        let [rows, columns] = [layout.grid.rows(), layout.grid.columns()].map(Some);
+        let channels = match pillars.inputs() {
+            [input] if input.dims.len() == 4 && input.dims[2..] == [rows, columns] => {
+                input.dims[1].unwrap_or(0)
+            }
+            _ => 0,
+        };
+        if !(Voxeliser::STATISTICS + 1..=MOST_CHANNELS).contains(&channels) {
+            return Err(Error::format(format!(
+                "{PILLAR_FILE} does not take one picture of {rows:?} x {columns:?} pillars as the model's grid has; train \
+                 or get it anew"
+            )));
+        }
+        let points = PointFeatures::open(model, device, channels - Voxeliser::STATISTICS)?;
+        let [scores, offsets, backs] = OUTPUTS.map(|name| pillars.output_index(name));
+        let outputs = [scores?, offsets?, backs?];
+        Ok(Self {
+            params,
+            classes,
+            layout,
+            names,
+            points,
+            pillars,
+            channels,
+            outputs,
+            scratch: Pool::default(),
+        })
+    }
+
+    fn params(&self) -> &VoxelObjectDetection3dParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut VoxelObjectDetection3dParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    /// Points that are not finite, or outside of the grid, are left out; without points there are no boxes.
+    fn infer_into(&self, _: &mut (), scan: Scan<'_>, boxes: &mut BoundingBox3DList) -> Result<()> {
+        let scratch = &mut *self.scratch.take();
+        boxes.boxes.clear();
+        boxes.classes.clone_from(&self.classes);
+        boxes.action = None;
+        self.points.run(
+            scan.cloud(),
+            &self.layout.grid,
+            &mut scratch.voxeliser,
+            &mut scratch.chunk,
+            &mut scratch.features,
+        )?;
+        if scratch.voxeliser.cells().is_empty() {
+            return Ok(());
+        }
+        let grid = &self.layout.grid;
+        scratch.canvas.resize(self.channels * grid.cells(), 0.0);
+        scatter(&scratch.features, self.channels, scratch.voxeliser.cells(), &mut scratch.canvas);
+        scratch.found.clear();
+        let shape = [1, self.channels, grid.rows(), grid.columns()];
+        let input = TensorView::new(&shape, &scratch.canvas[..])?;
+        self.pillars.run(&[input], |outputs| {
+            let maps = self.maps(outputs)?;
+            maps.decode(&self.layout, self.params.threshold, &mut scratch.found);
+            Ok(())
+        })?;
+        self.thin_out(scratch);
+        for candidate in &scratch.candidates {
+            let Some(FoundBox { place, score, class }) = scratch.found.get(candidate.index as usize) else {
+                continue;
+            };
+            let mut found = place.to_camera(scan.calibration(), scan.image_shape());
+            // As KITTI has it, what the camera cannot see is no answer.
+            if scan.image_shape().is_some() && found.truncated >= 1.0 {
+                continue;
+            }
+            found.name = self.names.get(*class as usize).cloned().unwrap_or_default();
+            found.confidence = *score;
+            boxes.boxes.push(found);
+        }
+        Ok(())
+    }
+}
+
+impl VoxelObjectDetection3d {
+    fn maps<'a>(&self, outputs: &[TensorView<'a>]) -> Result<PillarMaps<'a>> {
+        let ([columns, rows], kinds) = (self.layout.maps(), self.layout.anchors.len());
+        let values = |output: usize, maps: usize| {
+            let output = &outputs[self.outputs[output]];
+            if *output.shape() != [1, maps, rows, columns] {
+                return Err(Error::format(format!(
+                    "an output of the model is {:?}, but its grid and anchors ask for {:?}; train or get it anew",
+                    output.shape(),
+                    [1, maps, rows, columns]
+                )));
+            }
+            output.values::<f32>()
+        };
+        let offsets = values(1, kinds * coding::NUMBERS)?;
+        Ok(PillarMaps { scores: values(0, kinds)?, offsets, backs: values(2, kinds)? })
+    }
+
+    /// One box an object, best first.
+    fn thin_out(&self, scratch: &mut Scratch) {
+        let Scratch { found, candidates, dropped, .. } = scratch;
+        let VoxelObjectDetection3dParams { iou_threshold, max_candidates, max_detections, .. } = self.params;
+        if found.len() > max_candidates {
+            found.select_nth_unstable_by(max_candidates - 1, |a, b| b.score.total_cmp(&a.score));
+            found.truncate(max_candidates);
+        }
+        candidates.clear();
+        candidates.extend((0..).zip(found.iter()).map(|(index, found)| {
+            let floor = found.place.standing_box().floor;
+            StandingCandidate { floor, score: found.score, class: found.class, index }
+        }));
+        suppress_standing(candidates, dropped, iou_threshold, max_detections);
+    }
+}

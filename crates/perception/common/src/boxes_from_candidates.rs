@@ -1,0 +1,24 @@
+//! From what a suppression leaves to boxes in a picture.
+
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
+use opendr_vision::InputGeometry;
+
+use crate::suppression::Candidate;
+
+/// Replaces the boxes of `list` by `candidates`, brought back to the picture's pixels and cut at its border.
+///
+/// Candidates that lie outside the picture altogether are left out.
+pub fn boxes_from_candidates(
+    list: &mut BoundingBoxList,
+    candidates: &[Candidate],
+    geometry: &InputGeometry,
+    classes: &Classes,
+) {
+    list.boxes.clear();
+    list.classes.clone_from(classes);
+    list.boxes.extend(candidates.iter().filter_map(|candidate| {
+        let corners = geometry.image_box_from_input(candidate.corners);
+        let inside = corners[2] > corners[0] && corners[3] > corners[1];
+        inside.then(|| BoundingBox::from_corners(i64::from(candidate.class), corners, candidate.score))
+    }));
+}

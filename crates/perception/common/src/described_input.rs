@@ -1,0 +1,61 @@
+//! Pre-processing as a model's manifest describes it: `inputs.image` with `mean`, `std` and `colour`.
+
+use opendr_engine::model::Model;
+use opendr_engine::{Error, Result};
+use opendr_inference::TensorInfo;
+use opendr_vision::{ChannelOrder, Preprocess};
+use serde_json::Value;
+
+use crate::picture_network::input_of;
+
+/// The pre-processing for the network's `input`: its size and layout, and what the model says of the levels 0..=255, which
+/// become `(level - mean) / std`; both are `usual` where it says nothing.
+///
+/// # Errors
+/// `Format` when the network takes no picture of a fixed size, or the manifest says what makes no sense.
+pub fn described_input(model: &Model, input: &TensorInfo, usual: f32) -> Result<Preprocess> {
+    let preprocess = input_of(input)?;
+    let described = model.manifest().inputs.get("image");
+    let said = |key: &str| described.and_then(|image| image.get(key));
+    let mean = said("mean").map_or(Ok([usual; 3]), three)?;
+    let std = said("std").map_or(Ok([usual; 3]), three)?;
+    if std.contains(&0.0) {
+        return Err(Error::format("inputs.image of the model divides by std = 0"));
+    }
+    let order = match said("colour").and_then(Value::as_str) {
+        None | Some("rgb") => ChannelOrder::Rgb,
+        Some("bgr") => ChannelOrder::Bgr,
+        Some(other) => {
+            return Err(Error::format(format!(
+                "inputs.image.colour of the model is {other:?}; rgb or bgr is known"
+            )));
+        }
+    };
+    Ok(preprocess.order(order).normalise(mean, std))
+}
+
+fn three(numbers: &Value) -> Result<[f32; 3]> {
+    let given: Option<Vec<f32>> =
+        numbers.as_array().and_then(|all| all.iter().map(|one| one.as_f64().map(|one| one as f32)).collect());
+    let three = given.and_then(|given| <[f32; 3]>::try_from(given).ok());
+    three.filter(|three| three.iter().all(|number| number.is_finite())).ok_or_else(|| {
+        Error::format(format!("inputs.image of the model has {numbers} where three numbers should be"))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn three_numbers_are_three_numbers() {
+        assert_eq!(three(&json!([1, 2.5, -3])).unwrap(), [1.0, 2.5, -3.0]);
+        for wrong in
+            [json!([1, 2]), json!("x"), json!([1, 2, null]), json!([1, 2, 3, 4]), json!([1e300, 0, 0])]
+        {
+            assert!(three(&wrong).unwrap_err().to_string().contains("three numbers"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Joints of one skeleton as those of another.
+
+use opendr_engine::target::{Keypoint, Pose};
+
+const SHOULDERS: [&str; 2] = ["l_sho", "r_sho"];
+const HIPS: [&str; 2] = ["l_hip", "r_hip"];
+
+/// OpenDR's 18 joints of a pose of any skeleton, as [`joint_of`] finds them.
+#[cfg(feature = "training")]
+pub fn opendr_joints(pose: &Pose) -> [Keypoint; 18] {
+    let mut joints = [Keypoint::MISSING; 18];
+    for (joint, name) in joints.iter_mut().zip(opendr_engine::target::Skeleton::Opendr18.joints()) {
+        *joint = joint_of(pose, name).unwrap_or(Keypoint::MISSING);
+    }
+    joints
+}
+
+/// The joint called `name`, if it was found. One that the pose's skeleton does not have is told by others: the neck is the
+/// middle of the shoulders, the pelvis that of the hips, the belly that of both, and the nose stands for face and
+/// head (and they for it). Between joints, the lower score counts.
+pub fn joint_of(pose: &Pose, name: &str) -> Option<Keypoint> {
+    let found = |name: &str| pose.keypoint(name).copied().filter(Keypoint::is_found);
+    if pose.skeleton.joint(name).is_some() {
+        return found(name);
+    }
+    let middle = |[one, other]: [&str; 2]| Some(between(found(one)?, found(other)?));
+    match name {
+        "neck" => middle(SHOULDERS),
+        "pelvis" => middle(HIPS),
+        "belly" => Some(between(middle(SHOULDERS)?, middle(HIPS)?)),
+        "face" | "head" | "nose" => ["nose", "face", "head"].into_iter().find_map(found),
+        _ => None,
+    }
+}
+
+fn between(one: Keypoint, other: Keypoint) -> Keypoint {
+    Keypoint {
+        x: (one.x + other.x) / 2.0,
+        y: (one.y + other.y) / 2.0,
+        confidence: one.confidence.min(other.confidence),
+    }
+}
+
+#[cfg(test)]
+#[cfg(feature = "training")]
+mod tests {
+    use opendr_engine::target::Skeleton;
+
+    use super::*;
+
+    fn pose(skeleton: Skeleton) -> Pose {
+        let joint = |at: usize| Keypoint { x: at as f32, y: 2.0 * at as f32, confidence: 0.5 };
+        let keypoints = (0..skeleton.joints().len()).map(joint).collect();
+        Pose { keypoints, skeleton, ..Pose::default() }
+    }
+
+    #[test]
+    fn joints_keep_their_names() {
+        let own = opendr_joints(&pose(Skeleton::Opendr18));
+        assert!(own.iter().enumerate().all(|(at, joint)| joint.x == at as f32));
+        let mut coco = pose(Skeleton::Coco17);
+        let joints = opendr_joints(&coco);
+        for (name, joint) in Skeleton::Opendr18.joints().iter().zip(joints) {
+            match Skeleton::Coco17.joint(name) {
+                Some(at) => assert_eq!(joint.x, at as f32, "{name}"),
+                None => assert_eq!((joint.x, joint.y), (5.5, 11.0), "{name}"),
+            }
+        }
+        coco.keypoints[5] = Keypoint::MISSING;
+        assert_eq!(opendr_joints(&coco)[1], Keypoint::MISSING);
+        coco.keypoints.clear();
+        assert_eq!(opendr_joints(&coco), [Keypoint::MISSING; 18]);
+    }
+
+    #[test]
+    fn joints_that_a_skeleton_lacks_lie_between_others() {
+        let pose = pose(Skeleton::Coco17);
+        // COCO's shoulders are joints 5 and 6, its hips 11 and 12.
+        let x = |name: &str| joint_of(&pose, name).map(|joint| joint.x);
+        assert_eq!(["neck", "pelvis", "belly", "face"].map(x), [Some(5.5), Some(11.5), Some(8.5), Some(0.0)]);
+        assert_eq!((x("r_thumb"), x("l_wri")), (None, Some(9.0)));
+    }
+}

@@ -1,0 +1,123 @@
+//! CenterNet on MobileNetV3: objects as peaks of a heat map.
+//!
+//! Zhou et al., Objects as Points, 2019. The network ends in its own decoder: 100 boxes, best first. A light
+//! suppression is still wanted, since two peaks may stand on one large object.
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Classes};
+use opendr_engine::{Device, Pool, Result, Task};
+use opendr_vision::Preprocess;
+
+use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
+use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct CenterNetParams {
+    /// Detections below this score are dropped.
+    #[param(default = 0.3, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Boxes of one class that overlap more than this (intersection over union) are one object.
+    #[param(default = 0.5, range = 0.0..=1.0, live)]
+    pub iou_threshold: f32,
+    /// At most this many boxes a picture.
+    #[param(default = 100, range = 1..=100, live)]
+    pub max_detections: usize,
+    /// How overlapping boxes are thinned out.
+    #[param(live)]
+    pub suppression: SuppressionKind,
+}
+
+/// A loaded CenterNet.
+pub struct CenterNet {
+    params: CenterNetParams,
+    classes: Classes,
+    network: PictureNetwork,
+    detections: usize,
+    scratch: Pool<Scratch>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    candidates: Vec<Candidate>,
+    marks: Vec<bool>,
+}
+
+/// Side of the network's input, pixels.
+const SIDE: usize = 512;
+/// Numbers of one detection: x0, y0, x1, y1, score, class.
+const FIELDS: usize = 6;
+
+impl Learner for CenterNet {
+    const SPEC: Spec = Spec::new("centernet", Task::ObjectDetection2d)
+        .class("CenterNetDetectorLearner")
+        .about("CenterNet on MobileNetV3 finds the 80 COCO classes; the best of the light detectors here.")
+        .without_effect(&[
+            ("img_size", "the network's input has one size"),
+            ("keep_size", "the whole picture is looked at, at the network's size"),
+            ("num_workers", Spec::OF_TRAINING),
+            ("epochs", Spec::OF_TRAINING),
+            ("val_after", Spec::OF_TRAINING),
+            ("log_after", Spec::OF_TRAINING),
+            ("weight_decay", Spec::OF_TRAINING),
+            ("momentum", Spec::OF_TRAINING),
+            ("wh_weight", Spec::OF_TRAINING),
+            ("center_reg_weight", Spec::OF_TRAINING),
+            ("lr_decay_epoch", Spec::OF_TRAINING),
+            ("lr_decay", Spec::OF_TRAINING),
+            ("warmup_epochs", Spec::OF_TRAINING),
+            ("flip_validation", Spec::OF_TRAINING),
+        ]);
+    type Params = CenterNetParams;
+    type Input<'a> = &'a Image;
+    type Target = BoundingBoxList;
+    type State = ();
+
+    fn load(model: &Model, params: CenterNetParams, device: Device) -> Result<Self> {
+        let network = PictureNetwork::open(model, device, |_| Preprocess::new(SIDE, SIDE))?;
+        Ok(Self {
+            detections: network.output("tower_0/detections")?,
+            classes: model.manifest().classes.clone(),
+            scratch: Pool::default(),
+            network,
+            params,
+        })
+    }
+
+    fn params(&self) -> &CenterNetParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut CenterNetParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, boxes: &mut BoundingBoxList) -> Result<()> {
+        let Scratch { candidates, marks } = &mut *self.scratch.take();
+        let CenterNetParams { threshold, iou_threshold, max_detections, suppression } = self.params;
+        let suppression =
+            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+        candidates.clear();
+        self.network.run(image, |outputs, geometry| {
+            candidates.extend(outputs[self.detections].values()?.chunks_exact(FIELDS).zip(0..).map(
+                |(row, index)| Candidate {
+                    corners: [row[0], row[1], row[2], row[3]],
+                    score: row[4],
+                    class: row[5] as u32,
+                    index,
+                },
+            ));
+            suppression.run(candidates, marks);
+            boxes_from_candidates(boxes, candidates, geometry, &self.classes);
+            Ok(())
+        })
+    }
+}

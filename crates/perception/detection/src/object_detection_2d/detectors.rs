@@ -1,0 +1,15 @@
+use opendr_engine::learner::Learner;
+use opendr_engine::target::BoundingBoxList;
+use opendr_face_detection::face_detection::{UltraLightFace, Yunet};
+use opendr_tiling::{Open, open_as};
+
+use super::{CenterNet, Nanodet, SingleShotDetector};
+
+/// The learners that find boxes in a picture: one line each.
+pub const DETECTORS: &[(&str, Open<BoundingBoxList>)] = &[
+    (Nanodet::SPEC.name, open_as::<BoundingBoxList, Nanodet>),
+    (CenterNet::SPEC.name, open_as::<BoundingBoxList, CenterNet>),
+    (SingleShotDetector::SPEC.name, open_as::<BoundingBoxList, SingleShotDetector>),
+    (UltraLightFace::SPEC.name, open_as::<BoundingBoxList, UltraLightFace>),
+    (Yunet::SPEC.name, open_as::<BoundingBoxList, Yunet>),
+];

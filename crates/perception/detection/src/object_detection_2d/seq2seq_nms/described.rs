@@ -1,0 +1,130 @@
+//! From a picture and its boxes to what the network is given.
+
+use opendr_engine::Result;
+use opendr_engine::data::Image;
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
+
+use super::edge_map::EdgeMap;
+use super::moments::{Moments, MomentsScratch};
+use super::relations::Relations;
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
+
+opendr_engine::choices! {
+    /// How large the network is, and how closely it looks.
+    pub enum NmsVariant {
+        /// 256 and 128 features, 4 units; boxes as 160 x 160 cells in three levels.
+        Medium = "medium",
+        /// 160 and 80 features, 2 units; boxes as 120 x 120 cells in two levels.
+        Light = "light",
+        /// 320 and 160 features, 4 units, and pictures of up to 800 pixels.
+        Full = "full",
+    }
+}
+
+impl NmsVariant {
+    /// How boxes are described.
+    pub(super) fn moments(self) -> Moments {
+        match self {
+            Self::Light => Moments { side: 120, levels: 2 },
+            Self::Medium | Self::Full => Moments { side: 160, levels: 3 },
+        }
+    }
+
+    /// Pixels of the longer side of the picture in which edges are looked for.
+    fn longest(self) -> usize {
+        match self {
+            Self::Light => 480,
+            Self::Medium => 600,
+            Self::Full => 800,
+        }
+    }
+}
+
+/// Which boxes are looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Choice {
+    /// Of boxes that overlap more the best is taken beforehand.
+    pub overlap: f32,
+    /// At most so many.
+    pub most: usize,
+}
+
+/// Boxes that are less sure or smaller (pixels) are noise, as in OpenDR.
+const LEAST_SCORE: f32 = 0.05;
+const LEAST_SIDE: f32 = 4.0;
+
+impl Choice {
+    /// Replaces `candidates` by the boxes of `classes` that are looked at, the surest first, each with its place in `list`.
+    pub fn choose(
+        &self,
+        list: &BoundingBoxList,
+        classes: &Classes,
+        candidates: &mut Vec<Candidate>,
+        marks: &mut Vec<bool>,
+    ) {
+        candidates.clear();
+        for (index, found) in list.boxes.iter().enumerate() {
+            let [x0, y0, x1, y1] = found.corners();
+            // Written so that NaN is left out.
+            let sound = x1 - x0 > LEAST_SIDE && y1 - y0 > LEAST_SIDE && found.confidence <= 1.0;
+            if let Some(class) = class_of(list, found, classes).filter(|_| sound) {
+                candidates.push(Candidate {
+                    corners: found.corners(),
+                    score: found.confidence,
+                    class,
+                    index: index as u32,
+                });
+            }
+        }
+        let suppression = Suppression {
+            kind: SuppressionKind::Hard,
+            overlap: self.overlap,
+            threshold: LEAST_SCORE,
+            most: self.most,
+        };
+        suppression.run(candidates, marks);
+    }
+}
+
+/// The number in `classes` of a box of `list`, if it is one of them. A list without class names has those of the model.
+pub(super) fn class_of(list: &BoundingBoxList, found: &BoundingBox, classes: &Classes) -> Option<u32> {
+    let index = match (list.label(found), &found.name) {
+        (Some(label), _) => classes.index(label)?,
+        (None, Name::Index(index)) => *index,
+        (None, Name::Label(_)) => return None,
+    };
+    u32::try_from(index).ok().filter(|index| (*index as usize) < classes.len())
+}
+
+/// Boxes as the network is given them.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Described {
+    /// How they lie.
+    pub relations: Relations,
+    /// How they look, `[boxes, Moments::len]`.
+    pub appearance: Vec<f32>,
+    map: EdgeMap,
+    moments: MomentsScratch,
+}
+
+impl Described {
+    /// Forgets all boxes.
+    pub fn clear(&mut self) {
+        self.relations.clear();
+        self.appearance.clear();
+    }
+
+    /// Adds the boxes of a picture, the surest first.
+    ///
+    /// # Errors
+    /// As the pre-processing of pictures.
+    pub fn add(&mut self, image: &Image, boxes: &[Candidate], variant: NmsVariant) -> Result<()> {
+        self.map.look(image.view(), variant.longest())?;
+        self.relations.add(boxes, [image.width(), image.height()].map(|side| side as f32));
+        let moments = variant.moments();
+        for found in boxes {
+            moments.describe(&self.map, found.corners, &mut self.moments, &mut self.appearance);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,234 @@
+//! The network as a whole: trained on drawn pictures, exported, loaded, checked.
+
+use std::path::PathBuf;
+
+use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
+use opendr_engine::learner::{Fit, FitJob, Handle};
+use opendr_engine::target::BoundingBox;
+use opendr_engine::{ErrorKind, Random, Statistics, Value};
+use opendr_training::{ScheduleKind, TrainingParams};
+
+use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
+use super::objective::NmsObjective;
+use super::*;
+use opendr_perception_common::suppression::iou;
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
+
+/// Two striped boards each, found five times over; and two boxes of nothing.
+struct Boards(usize);
+
+const WIDTH: usize = 160;
+const HEIGHT: usize = 120;
+
+impl Dataset for Boards {}
+
+impl DatasetIterator for Boards {
+    fn len(&self) -> usize {
+        self.0
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let (image, found, truth) = boards(index);
+        Ok(Sample { data: vec![image.into(), found.into()], target: Some(truth.into()) })
+    }
+
+    fn classes(&self) -> Classes {
+        ["board"].into_iter().collect()
+    }
+}
+
+fn boards(index: usize) -> (Image, BoundingBoxList, BoundingBoxList) {
+    let mut random = Random::at([5, index as u64]);
+    let mut levels = vec![60u8; WIDTH * HEIGHT * 3];
+    let (mut found, mut truth) = (Vec::new(), Vec::new());
+    for left in [random.below(20), 80 + random.below(20)] {
+        let (top, width, height) = (random.below(30), 40 + random.below(15), 60 + random.below(25));
+        for (row, column) in
+            (top..top + height).flat_map(|row| (left..left + width).map(move |column| (row, column)))
+        {
+            levels[(row * WIDTH + column) * 3..][..3].fill(if row % 8 < 4 { 240 } else { 20 });
+        }
+        let [x, y, w, h] = [left, top, width, height].map(|side| side as f32);
+        truth.push(BoundingBox::new(0, x, y, w, h, 1.0));
+        for _ in 0..5 {
+            let mut near = |side: f32| side * (random.below(21) as f32 / 100.0 - 0.1);
+            let corner = [x + near(w), y + near(h), w + near(w), h + near(h)];
+            let score = 0.4 + random.below(50) as f32 / 100.0;
+            found.push(BoundingBox::new(0, corner[0], corner[1], corner[2], corner[3], score));
+        }
+    }
+    for left in [5.0, 90.0] {
+        found.push(BoundingBox::new(0, left, 90.0, 50.0, 28.0, 0.3 + random.below(30) as f32 / 100.0));
+    }
+    let classes: Classes = ["board"].into_iter().collect();
+    let list = |boxes: Vec<BoundingBox>| BoundingBoxList { classes: classes.clone(), ..boxes.into() };
+    (Image::from_rgb8(levels, WIDTH, HEIGHT).unwrap(), list(found), list(truth))
+}
+
+fn fit_params(epochs: usize, lr: f64) -> Seq2SeqNmsFitParams {
+    let training = TrainingParams {
+        epochs,
+        lr,
+        batch_size: 6,
+        num_workers: 0,
+        lr_schedule: ScheduleKind::Constant,
+        ..Seq2SeqNmsFitParams::default().training
+    };
+    Seq2SeqNmsFitParams { variant: NmsVariant::Light, dropout: 0.0, training, ..Default::default() }
+}
+
+fn trained(
+    base: Option<&Model>,
+    count: usize,
+    fit_params: &Seq2SeqNmsFitParams,
+    job: &FitJob<'_>,
+) -> Result<Statistics> {
+    let boards = Boards(count);
+    let dataset = DatasetRef::from(&boards as &dyn DatasetIterator);
+    Seq2SeqNms::fit(base, &Seq2SeqNmsParams::default(), fit_params, dataset, None, job)
+}
+
+fn scratch(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("opendr-seq2seq-nms-{name}-{}", std::process::id()));
+    std::fs::remove_dir_all(&folder).ok();
+    folder
+}
+
+fn loaded(job: &FitJob<'_>, threshold: f32) -> Handle<Seq2SeqNms> {
+    let params = Seq2SeqNmsParams { threshold, ..Default::default() };
+    let mut learner = Handle::<Seq2SeqNms>::new(params, Device::Cpu).unwrap();
+    learner.load(job.model()).unwrap();
+    learner
+}
+
+#[test]
+fn learns_one_batch_by_heart() {
+    let params = Seq2SeqNmsParams::default();
+    let sizes = NetworkSizes { variant: NmsVariant::Light, dropout: 0.0 };
+    let classes = Boards(1).classes();
+    let objective =
+        NmsObjective { params: &params, classes, sizes, least_overlap: 0.5, positive_weight: 2.0 };
+    let samples = (0..4).map(|index| Boards(4).get(index).unwrap()).collect();
+    let network = |device: &burn::tensor::Device| Seq2SeqNmsNetwork::new(&sizes, device);
+    let [before, after] = losses_on_one_batch(&objective, network, samples, 0.001);
+    // Labels of 0.02 and 0.98 cost 0.098 at best.
+    assert!(after < 0.3 * before && after < 0.15, "{before} {after}");
+}
+
+#[test]
+fn of_doubles_one_stays_and_what_is_nothing_goes() {
+    let folder = scratch("boards");
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
+    let statistics = trained(None, 24, &fit_params(60, 0.002), &job).unwrap();
+    let losses = &statistics.curves["loss"];
+    assert!(losses[losses.len() - 1] < 0.5 * losses[0], "{losses:?}");
+    let mut learner = loaded(&job, 0.5);
+    // Boards that were not trained on.
+    let (mut right, mut told) = (0, 0);
+    for index in 100..110 {
+        let (image, detections, truth) = boards(index);
+        let found = learner.infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap();
+        told += found.boxes.len();
+        right += truth
+            .boxes
+            .iter()
+            .filter(|board| found.boxes.iter().any(|found| iou(&found.corners(), &board.corners()) > 0.5))
+            .count();
+        assert!(found.boxes.windows(2).all(|pair| pair[0].confidence >= pair[1].confidence));
+    }
+    assert!(right >= 16 && told <= 24, "{right} of 20 found, {told} told of 120");
+    let calls = (0..3).map(|index| Boards(3).get(index).unwrap().data).collect();
+    check::<Seq2SeqNms>(&job.model(), &folder.join("promises"), calls);
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn what_learned_nothing_changes_nothing_and_training_goes_on() {
+    let folder = scratch("still");
+    let [first, second] = ["first", "second"]
+        .map(|name| folder.join(name))
+        .map(|output| FitJob { device: Device::Cpu, ..FitJob::new(Box::leak(output.into_boxed_path())) });
+    trained(None, 2, &fit_params(1, 0.0), &first).unwrap();
+    let (image, detections, _) = boards(0);
+    let mut learner = loaded(&first, 0.0);
+    let found = learner.infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap();
+    assert!(found.boxes.len() > 2);
+    for found in &found.boxes {
+        let same = detections.boxes.iter().any(|before| {
+            before.corners() == found.corners() && (before.confidence - found.confidence).abs() < 1e-4
+        });
+        assert!(same, "{found}");
+    }
+    // A further training takes the variant of its base.
+    let base = Model::open(first.model()).unwrap();
+    let other = Seq2SeqNmsFitParams { variant: NmsVariant::Full, ..fit_params(1, 0.0) };
+    trained(Some(&base), 2, &other, &second).unwrap();
+    let again =
+        loaded(&second, 0.0).infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap();
+    assert_eq!(again, found);
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn whatever_a_detector_says_is_answered() {
+    let folder = scratch("hostile");
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
+    trained(None, 2, &fit_params(1, 0.0), &job).unwrap();
+    let mut learner = loaded(&job, 0.0);
+    let (image, ..) = boards(0);
+    let mut told = |boxes: Vec<BoundingBox>, classes: &[&str]| {
+        let classes = classes.iter().copied().collect();
+        let detections = BoundingBoxList { classes, ..boxes.into() };
+        learner.infer(Seq2SeqNmsInputs { image: &image, detections: &detections }).unwrap().boxes.len()
+    };
+    assert_eq!(told(Vec::new(), &[]), 0);
+    let nonsense = [f32::NAN, f32::INFINITY, -10.0, 0.0, 1e30]
+        .map(|side| BoundingBox::new(0, 1.0, 1.0, side, 20.0, 0.9));
+    assert!(told(nonsense.into(), &[]) <= 1);
+    let scores =
+        [f32::NAN, f32::INFINITY, -1.0].map(|score| BoundingBox::new(0, 1.0, 1.0, 20.0, 20.0, score));
+    assert_eq!(told(scores.into(), &[]), 0);
+    let one = |name: i64| vec![BoundingBox::new(name, 1.0, 1.0, 20.0, 20.0, 0.9)];
+    assert_eq!((told(one(0), &[]), told(one(7), &[])), (1, 0));
+    assert_eq!((told(one(0), &["cat", "board"]), told(one(1), &["cat", "board"])), (0, 1));
+    let many = (0..3000)
+        .map(|at| BoundingBox::new(0, (at % 60) as f32 * 300.0, (at / 60) as f32 * 50.0, 20.0, 20.0, 0.9));
+    assert_eq!(told(many.collect(), &[]), 400);
+    let boxes = BoundingBoxList::default();
+    let grey = Image::from_rgb8(vec![9; 3], 1, 1).unwrap();
+    assert!(learner.infer(Seq2SeqNmsInputs { image: &grey, detections: &boxes }).is_ok());
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
+#[test]
+fn samples_without_candidates_are_told_of() {
+    struct Plain;
+    impl Dataset for Plain {}
+    impl DatasetIterator for Plain {
+        fn len(&self) -> usize {
+            2
+        }
+
+        fn get(&self, index: usize) -> Result<Sample> {
+            let (image, _, truth) = boards(index);
+            Ok(Sample { data: vec![Value::from(image)], target: Some(truth.into()) })
+        }
+
+        fn classes(&self) -> Classes {
+            Boards(1).classes()
+        }
+    }
+    let folder = scratch("plain");
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(&folder) };
+    let fit = |fit_params: &Seq2SeqNmsFitParams| {
+        let dataset = DatasetRef::from(&Plain as &dyn DatasetIterator);
+        Seq2SeqNms::fit(None, &Seq2SeqNmsParams::default(), fit_params, dataset, None, &job).unwrap_err()
+    };
+    let error = fit(&fit_params(1, 0.001));
+    assert_eq!(error.kind(), ErrorKind::InvalidInput);
+    assert!(error.to_string().contains("`detector`"), "{error}");
+    let unknown = Seq2SeqNmsFitParams { classes: vec!["cat".to_owned()], ..fit_params(1, 0.001) };
+    assert!(fit(&unknown).to_string().contains("board"));
+    std::fs::remove_dir_all(folder).ok();
+}

@@ -1,0 +1,76 @@
+//! Which of the faces that were found wear a mask over mouth and nose: a small network beside the detector.
+
+use opendr_engine::data::Image;
+use opendr_engine::model::Model;
+use opendr_engine::target::{BoundingBox, Classes};
+use opendr_engine::{Device, Error, Result};
+use opendr_vision::Similarity;
+
+use crate::face_finder::{eye_angle, square_around};
+use opendr_perception_common::described_input::described_input;
+use opendr_perception_common::picture_network::PictureNetwork;
+
+/// The part of the container, an image classifier.
+const PART: &str = "mask";
+const FILE: &str = "model.onnx";
+/// The classes that it tells, and those of the detector that has it: OpenDR's.
+const CLASSES: [&str; 2] = ["face", "masked face"];
+/// Sides of a crop in longer sides of the face's box.
+const MARGIN: f32 = 1.25;
+/// Levels 0..=255 become -1..=1, as image classifiers are trained.
+const LEVEL: f32 = 127.5;
+
+/// What the network sees of a face with its five points: a square, upright by the eyes.
+pub fn mask_crop(face: &BoundingBox, side: usize) -> Similarity {
+    square_around(face, MARGIN, eye_angle(face), side)
+}
+
+/// Tells faces with masks from those without.
+pub(super) struct MaskNetwork {
+    network: PictureNetwork,
+    side: usize,
+}
+
+impl MaskNetwork {
+    /// The container's part, where it has one; `classes` are those of the container.
+    ///
+    /// # Errors
+    /// `Format` where either has other classes than `face` and `masked face`, else as for any network.
+    pub fn open(model: &Model, classes: &Classes, device: Device) -> Result<Option<Self>> {
+        if !model.parts().any(|part| part == PART) {
+            return Ok(None);
+        }
+        let part = model.part(PART)?;
+        for classes in [classes, &part.manifest().classes] {
+            if !classes.iter().eq(CLASSES) {
+                return Err(Error::format(format!(
+                    "a detector with a part {PART:?} and the part itself have the classes {CLASSES:?}"
+                )));
+            }
+        }
+        let network =
+            PictureNetwork::open_file(&part, FILE, device, |input| described_input(&part, input, LEVEL))?;
+        let [side, _] = network.size();
+        Ok(Some(Self { network, side }))
+    }
+
+    /// Names each face by its class.
+    pub fn name(&self, image: &Image, faces: &mut [BoundingBox]) -> Result<()> {
+        for face in faces {
+            let crop = mask_crop(face, self.side);
+            if !crop.is_regular() {
+                continue;
+            }
+            self.network.run_crop(image, &crop, |outputs| {
+                let [bare, masked] = outputs[0].values::<f32>()? else {
+                    return Err(Error::format(format!(
+                        "{FILE} of the part {PART:?} does not tell two classes"
+                    )));
+                };
+                face.name = i64::from(masked > bare).into();
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+}

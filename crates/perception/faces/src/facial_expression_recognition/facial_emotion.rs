@@ -1,0 +1,124 @@
+//! Facial emotion: one of seven, of the largest face in a picture.
+//!
+//! mini-XCEPTION (Arriaga et al., Real-time Convolutional Neural Networks for Emotion and Gender Classification, 2017),
+//! trained on FER2013: angry, disgust, fear, happy, sad, surprise, neutral. The network tells no valence and arousal.
+
+use opendr_engine::data::{Image, Layout};
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Category, Classes};
+use opendr_engine::{Device, Pool, Result, Task};
+use opendr_vision::{Border, ChannelOrder, Preprocess};
+
+use opendr_face_detection::face_finder::{FaceFinder, FaceInput, largest, square_around, whole_picture};
+use opendr_perception_common::category_scores::category_from_scores;
+use opendr_perception_common::picture_network::PictureNetwork;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct FacialEmotionParams {
+    /// What the detector scores below this is no face.
+    #[param(default = 0.6, range = 0.0..=1.0)]
+    pub face_threshold: f32,
+    /// What pictures show.
+    #[param(live)]
+    pub picture: FaceInput,
+}
+
+/// A loaded network with its face detector.
+///
+/// Of several faces the largest counts. Where there is none the answer is class -1, `no face`, with confidence 0 and no
+/// probabilities.
+pub struct FacialEmotion {
+    params: FacialEmotionParams,
+    classes: Classes,
+    finder: FaceFinder,
+    network: PictureNetwork,
+    no_face: Classes,
+    scratch: Pool<BoundingBoxList>,
+}
+
+/// Side of the network's input, pixels.
+const SIDE: usize = 64;
+/// Sides of the crop in longer sides of the face's box.
+const SCALE: f32 = 1.2;
+
+impl Learner for FacialEmotion {
+    const SPEC: Spec = Spec::new("facial_emotion", Task::FacialExpressionRecognition)
+        .class("FacialEmotionLearner")
+        .about("mini-XCEPTION tells which of seven emotions the largest face in a frame shows.")
+        .without_effect(&[
+            ("device_ind", "`device` says where"),
+            ("validation_interval", Spec::OF_TRAINING),
+            ("max_training_epoch", Spec::OF_TRAINING),
+            ("momentum", Spec::OF_TRAINING),
+            ("ensemble_size", "the network is one, not an ensemble"),
+            ("base_path_experiment", Spec::OF_TRAINING),
+            ("name_experiment", Spec::OF_TRAINING),
+            ("dimensional_finetune", Spec::OF_TRAINING),
+            ("categorical_train", Spec::OF_TRAINING),
+            ("base_path_to_dataset", Spec::OF_TRAINING),
+            ("max_tuning_epoch", Spec::OF_TRAINING),
+            ("diversify", Spec::OF_TRAINING),
+        ]);
+    type Params = FacialEmotionParams;
+    type Input<'a> = &'a Image;
+    type Target = Category;
+    type State = ();
+
+    fn load(model: &Model, params: FacialEmotionParams, device: Device) -> Result<Self> {
+        let network = PictureNetwork::open(model, device, |input| {
+            let layout = if input.dims.last() == Some(&Some(1)) { Layout::Hwc } else { Layout::Chw };
+            let grey = Preprocess::new(SIDE, SIDE).order(ChannelOrder::Grey).layout(layout);
+            grey.normalise([127.5; 3], [127.5; 3]).border(Border::Level(0.0))
+        })?;
+        Ok(Self {
+            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            classes: model.classes().clone(),
+            no_face: ["no face"].into_iter().collect(),
+            scratch: Pool::default(),
+            network,
+            params,
+        })
+    }
+
+    fn params(&self) -> &FacialEmotionParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut FacialEmotionParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
+        let faces = &mut *self.scratch.take();
+        let crop = match self.params.picture {
+            FaceInput::Face => Some(whole_picture(image, SIDE)),
+            FaceInput::Frame => {
+                self.finder.find(image, faces)?;
+                largest(faces).map(|face| square_around(face, SCALE, 0.0, SIDE))
+            }
+        };
+        let Some(crop) = crop else {
+            category.class = -1;
+            category.description = self.no_face.name(0).cloned();
+            category.confidence = Some(0.0);
+            category.probabilities.clear();
+            return Ok(());
+        };
+        self.network.run_warped(
+            image,
+            &crop,
+            |_| {},
+            |outputs| {
+                let scores = outputs[0].values::<f32>()?;
+                category_from_scores(category, scores.iter().copied(), &self.classes)
+            },
+        )
+    }
+}

@@ -1,0 +1,91 @@
+use std::f32::consts::TAU;
+
+use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
+use opendr_engine::learner::{FitJob, Handle};
+use opendr_engine::{ErrorKind, Random};
+
+use super::network::{BilinearNetwork, NetworkSizes};
+use super::objective::ExpressionObjective;
+use super::*;
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
+
+const POINTS: usize = 12;
+const FRAMES: usize = 6;
+
+fn params() -> ProgressiveSpatioTemporalBlnParams {
+    ProgressiveSpatioTemporalBlnParams { num_frames: FRAMES, topology: vec![1, 2], ..Default::default() }
+}
+
+/// Points on a circle, of which a third goes outwards: the upper, the lower right or the lower left.
+struct Faces;
+
+impl Dataset for Faces {}
+
+impl DatasetIterator for Faces {
+    fn len(&self) -> usize {
+        12
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let target = Category::new(index as i64 % 3, None);
+        Ok(Sample { data: vec![face(index).into()], target: Some(target.into()) })
+    }
+
+    fn classes(&self) -> Classes {
+        ["anger", "joy", "surprise"].into_iter().collect()
+    }
+}
+
+fn face(index: usize) -> SkeletonSequence {
+    let mut random = Random::new(index as u64);
+    let [left, top, size] =
+        [random.uniform(0.0, 300.0), random.uniform(0.0, 300.0), random.uniform(20.0, 90.0)];
+    let mut numbers = Vec::new();
+    for channel in 0..2 {
+        for frame in 0..FRAMES {
+            for point in 0..POINTS {
+                let moves = if 3 * point / POINTS == index % 3 { 0.1 * frame as f32 } else { 0.0 };
+                let angle = point as f32 / POINTS as f32 * TAU;
+                let place = [angle.cos(), angle.sin()][channel] * (1.0 + moves);
+                numbers.push([left, top][channel] + size * (place + 0.02 * random.normal() as f32));
+            }
+        }
+    }
+    SkeletonSequence::new(numbers, [1, 2, FRAMES, POINTS, 1]).unwrap()
+}
+
+#[test]
+fn learns_one_batch_by_heart() {
+    let params = params();
+    let sizes = NetworkSizes { features: 4, frames: FRAMES, points: POINTS, channels: vec![5, 10] };
+    let objective = ExpressionObjective { params: &params, classes: Faces.classes(), sizes: sizes.clone() };
+    let samples = (0..Faces.len()).map(|index| Faces.get(index).unwrap()).collect();
+    let network = |device: &burn::tensor::Device| BilinearNetwork::new(&sizes, 3, 0.0, device);
+    let [before, after] = losses_on_one_batch(&objective, network, samples, 0.01);
+    assert!(after < 0.05 * before, "{before} {after}");
+}
+
+#[test]
+fn fit_makes_what_infer_loads() {
+    let output = std::env::temp_dir().join(format!("opendr-pst-bln-{}", std::process::id()));
+    std::fs::remove_dir_all(&output).ok();
+    let mut fit_params = ProgressiveSpatioTemporalBlnFitParams { dropout: 0.0, ..Default::default() };
+    (fit_params.training.epochs, fit_params.training.batch_size, fit_params.training.lr) = (60, 12, 0.05);
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
+    let mut handle = Handle::<ProgressiveSpatioTemporalBln>::new(params(), Device::Cpu).unwrap();
+    handle.fit(&fit_params, DatasetRef::from(&Faces as &dyn DatasetIterator), None, &job).unwrap();
+    // Other faces, elsewhere and of other sizes.
+    let right = (100..112).filter(|at| handle.infer(&face(*at)).unwrap().class == *at as i64 % 3).count();
+    assert!(right >= 11, "{right} of 12");
+    let missing = SkeletonSequence::new(vec![0.0; 2 * POINTS], [1, 2, 1, POINTS, 1]).unwrap();
+    assert_eq!(handle.infer(&missing).unwrap_err().kind(), ErrorKind::InvalidInput);
+    let one = SkeletonSequence::new(vec![1.0, 2.0], [1, 2, 1, 1, 1]).unwrap();
+    assert_eq!(handle.infer(&one).unwrap_err().kind(), ErrorKind::InvalidInput);
+    let calls = (0..3).map(|index| Faces.get(index).unwrap().data).collect();
+    check::<ProgressiveSpatioTemporalBln>(&job.model(), &output.join("scratch"), calls);
+    let params = ProgressiveSpatioTemporalBlnParams { num_point: Some(68), ..Default::default() };
+    let mut other = Handle::<ProgressiveSpatioTemporalBln>::new(params, Device::Cpu).unwrap();
+    assert_eq!(other.load(job.model()).unwrap_err().kind(), ErrorKind::InvalidParam);
+    std::fs::remove_dir_all(&output).ok();
+}

@@ -1,0 +1,275 @@
+//! Face mesh: 468 points of a face and five of each iris, from whole frames.
+//!
+//! MediaPipe's networks (Kartynnik et al., Real-time Facial Surface Geometry from Monocular Video on Mobile GPUs, 2019;
+//! Ablavatski et al., Real-time Pupil Tracking from Monocular Video, 2020; Google, Apache-2.0). The detector finds a face
+//! once; from then on its crop follows from the points of the frame before, as in MediaPipe.
+
+mod crop;
+
+use opendr_engine::data::{Image, Layout};
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::{TensorInfo, default_threads, with_threads};
+use opendr_kernels::WorkerPool;
+use opendr_vision::{Preprocess, Similarity};
+
+use crop::EYES;
+use opendr_face_detection::face_finder::FaceFinder;
+use opendr_perception_common::picture_network::PictureNetwork;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct FaceMeshParams {
+    /// Faces of which the mesh is surer than this are answered.
+    #[param(default = 0.5, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// What the detector scores below this is no face.
+    #[param(default = 0.6, range = 0.0..=1.0)]
+    pub face_threshold: f32,
+    /// At most this many faces a picture; the detector runs on frames that show fewer.
+    #[param(default = 1, range = 1..=50, live)]
+    pub max_faces: usize,
+    /// Whether faces are followed from frame to frame; else each frame is looked at anew.
+    #[param(default = true, live)]
+    pub track: bool,
+}
+
+/// Loaded networks of mesh, irises and detector.
+///
+/// It answers a pose of [`Skeleton::Face478`] for every face, those followed longest first, with their tracks; the
+/// confidence of a point is that of its face.
+pub struct FaceMesh {
+    params: FaceMeshParams,
+    finder: FaceFinder,
+    mesh: PictureNetwork,
+    /// One for each eye: they run side by side on a thread each, for the network is too small for threads to share.
+    irises: [PictureNetwork; 2],
+    eyes: WorkerPool,
+    outputs: MeshOutputs,
+    iris_at: IrisAt,
+    scratch: Pool<Scratch>,
+}
+
+/// The faces that one stream follows.
+#[derive(Debug, Default)]
+pub struct FaceTracks {
+    tracks: Vec<Track>,
+    next: i64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Track {
+    id: i64,
+    crop: Similarity,
+}
+
+#[derive(Default)]
+struct Scratch {
+    faces: BoundingBoxList,
+    tracks: Vec<Track>,
+}
+
+/// Where the mesh's network puts the points and how sure it is.
+#[derive(Debug, Clone, Copy)]
+struct MeshOutputs {
+    points: usize,
+    presence: usize,
+}
+
+/// Which output has the points of the iris, and where in it they begin.
+#[derive(Debug, Clone, Copy)]
+struct IrisAt {
+    output: usize,
+    offset: usize,
+}
+
+/// Files of the container.
+const FILES: [&str; 2] = ["model.onnx", "iris.onnx"];
+/// Sides of the networks' inputs, pixels.
+const SIDE: usize = 192;
+const EYE_SIDE: usize = 64;
+/// Points of the mesh and of an iris.
+const MESH: usize = 468;
+const IRIS: usize = 5;
+/// Numbers before those of the iris where one output has both: 71 points of the eye's outline.
+const EYE_OUTLINE: usize = 71 * 3;
+
+/// Levels 0..=1, in the layout of the network.
+fn preprocess(input: &TensorInfo, side: usize) -> Preprocess {
+    let layout = if input.dims.last() == Some(&Some(3)) { Layout::Hwc } else { Layout::Chw };
+    Preprocess::new(side, side).normalise([0.0; 3], [255.0; 3]).layout(layout)
+}
+
+/// The output of `numbers` numbers.
+fn output_of(network: &PictureNetwork, numbers: usize) -> Option<usize> {
+    let size =
+        |output: &TensorInfo| output.dims.iter().skip(1).try_fold(1, |size, side| Some(size * (*side)?));
+    network.outputs().iter().position(|output| size(output) == Some(numbers))
+}
+
+impl Learner for FaceMesh {
+    const SPEC: Spec = Spec::new("face_mesh", Task::FacialLandmarks)
+        .class("FaceMeshLearner")
+        .about("MediaPipe's face mesh: 468 points of a face and its irises, followed from frame to frame.");
+    type Params = FaceMeshParams;
+    type Input<'a> = &'a Image;
+    type Target = PoseList;
+    type State = FaceTracks;
+
+    fn load(model: &Model, params: FaceMeshParams, device: Device) -> Result<Self> {
+        let mesh = PictureNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
+        let open_iris =
+            || PictureNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)));
+        let irises = with_threads(1, || Ok::<_, Error>([open_iris()?, open_iris()?]))?;
+        let [iris, _] = &irises;
+        let (Some(points), Some(presence)) = (output_of(&mesh, 3 * MESH), output_of(&mesh, 1)) else {
+            return Err(Error::format(format!("{} gives no {MESH} points with a score", FILES[0])));
+        };
+        let alone = output_of(iris, 3 * IRIS).map(|output| IrisAt { output, offset: 0 });
+        let both = || {
+            let output = output_of(iris, EYE_OUTLINE + 3 * IRIS)?;
+            Some(IrisAt { output, offset: EYE_OUTLINE })
+        };
+        let Some(iris_at) = alone.or_else(both) else {
+            return Err(Error::format(format!("{} gives no {IRIS} points of an iris", FILES[1])));
+        };
+        Ok(Self {
+            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            outputs: MeshOutputs { points, presence },
+            scratch: Pool::default(),
+            mesh,
+            irises,
+            eyes: WorkerPool::new(default_threads()?.min(2)),
+            iris_at,
+            params,
+        })
+    }
+
+    fn params(&self) -> &FaceMeshParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut FaceMeshParams {
+        &mut self.params
+    }
+
+    fn infer_into(&self, state: &mut FaceTracks, image: &Image, answer: &mut PoseList) -> Result<()> {
+        let Scratch { faces, tracks } = &mut *self.scratch.take();
+        let most = self.params.max_faces;
+        tracks.clear();
+        if self.params.track {
+            tracks.append(&mut state.tracks);
+        }
+        tracks.truncate(most);
+        state.tracks.clear();
+        let mut found = 0;
+        for track in tracks.drain(..) {
+            found += self.answer(track, found, image, state, answer)?;
+        }
+        if found < most {
+            self.finder.find(image, faces)?;
+            for face in &faces.boxes {
+                let crop = crop::of_found(face, SIDE);
+                let is_known = state.tracks.iter().any(|track| crop::is_same(&track.crop, &crop, SIDE));
+                if found < most && !is_known && crop.is_regular() {
+                    let count = self.answer(Track { id: state.next, crop }, found, image, state, answer)?;
+                    state.next += count as i64;
+                    found += count;
+                }
+            }
+        }
+        answer.poses.truncate(found);
+        Ok(())
+    }
+}
+
+impl FaceMesh {
+    /// Fills pose number `at` with the face in the crop of `track`, and follows it; 1, or 0 where no face is there.
+    fn answer(
+        &self,
+        track: Track,
+        at: usize,
+        image: &Image,
+        state: &mut FaceTracks,
+        answer: &mut PoseList,
+    ) -> Result<usize> {
+        if answer.poses.len() <= at {
+            answer.poses.push(Pose::default());
+        }
+        let Some(pose) = answer.poses.get_mut(at) else { return Ok(0) };
+        self.fill_mesh(image, &track.crop, pose)?;
+        let next = crop::of_mesh(&pose.keypoints, SIDE);
+        let (Some(crop), true) = (next, pose.confidence >= self.params.threshold) else { return Ok(0) };
+        self.add_irises(image, pose)?;
+        (pose.id, pose.skeleton, pose.region) = (Some(track.id), Skeleton::Face478, None);
+        state.tracks.push(Track { crop, ..track });
+        Ok(1)
+    }
+
+    fn fill_mesh(&self, image: &Image, crop: &Similarity, pose: &mut Pose) -> Result<()> {
+        self.mesh.run_warped(
+            image,
+            crop,
+            |_| {},
+            |outputs| {
+                let presence = outputs[self.outputs.presence].values::<f32>()?;
+                // A probability in TensorFlow.js's form of the network; MediaPipe's own gives its logit, far beyond 0..=1.
+                let confidence = presence.first().copied().unwrap_or(0.0).clamp(0.0, 1.0);
+                let points = outputs[self.outputs.points].values::<f32>()?;
+                pose.confidence = confidence;
+                pose.keypoints.clear();
+                pose.keypoints.extend(points.chunks_exact(3).take(MESH).map(|point| {
+                    let [x, y] = crop.image_from_crop([point[0], point[1]]);
+                    Keypoint { x, y, confidence }
+                }));
+                Ok(())
+            },
+        )
+    }
+
+    fn add_irises(&self, image: &Image, pose: &mut Pose) -> Result<()> {
+        let (mut first, mut second) = (Ok([Keypoint::MISSING; IRIS]), Ok([Keypoint::MISSING; IRIS]));
+        let ([one, other], [network, mirrored]) = (EYES, &self.irises);
+        self.eyes.join(
+            || first = self.iris(network, image, one, false, pose),
+            || second = self.iris(mirrored, image, other, true, pose),
+        );
+        let (first, second) = (first?, second?);
+        pose.keypoints.extend(first.into_iter().chain(second));
+        Ok(())
+    }
+
+    /// The points of an iris; the network knows one eye, and is shown the other in a mirror. Where there is no eye to look
+    /// at they are missing.
+    fn iris(
+        &self,
+        network: &PictureNetwork,
+        image: &Image,
+        corners: [usize; 2],
+        is_mirrored: bool,
+        pose: &Pose,
+    ) -> Result<[Keypoint; IRIS]> {
+        let mut iris = [Keypoint::MISSING; IRIS];
+        let Some(crop) = crop::of_eye(&pose.keypoints, corners, EYE_SIDE) else { return Ok(iris) };
+        let confidence = pose.confidence;
+        let mirror = |input: &mut [f32]| {
+            if is_mirrored {
+                network.mirror(input);
+            }
+        };
+        network.run_warped(image, &crop, mirror, |outputs| {
+            let numbers = outputs[self.iris_at.output].values::<f32>()?;
+            let points = numbers.get(self.iris_at.offset..).unwrap_or_default().chunks_exact(3);
+            for (keypoint, point) in iris.iter_mut().zip(points) {
+                let x = if is_mirrored { EYE_SIDE as f32 - point[0] } else { point[0] };
+                let [x, y] = crop.image_from_crop([x, point[1]]);
+                *keypoint = Keypoint { x, y, confidence };
+            }
+            Ok(())
+        })?;
+        Ok(iris)
+    }
+}

@@ -1,0 +1,103 @@
+//! From sound and faces to what the network is given.
+
+use opendr_engine::data::{Audio, Video};
+use opendr_engine::{Pool, Result};
+
+use super::AudiovisualEmotionParams;
+use opendr_perception_common::clip_frames::ClipFrames;
+use opendr_sound::mfcc::{Mfcc, MfccOptions};
+use opendr_sound::{Sound, standardise};
+
+/// Sizes of what the network is given.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Sizes {
+    /// Frames of the faces.
+    pub frames: usize,
+    /// Pixels of a side of a frame.
+    pub side: usize,
+    /// Instants of the cepstra.
+    pub instants: usize,
+    /// Samples of the sound a second.
+    pub sample_rate: u32,
+    /// Samples that are looked at.
+    pub samples: usize,
+}
+
+/// Samples of a window of the cepstra, as librosa has it, and from one to the next.
+const WINDOW: usize = 2048;
+const HOP: usize = 512;
+
+impl Sizes {
+    /// Coefficients of an instant.
+    pub const COEFFICIENTS: usize = 10;
+
+    /// With faces of `side` x `side` pixels.
+    pub fn new(params: &AudiovisualEmotionParams, side: usize) -> Self {
+        let samples = (params.seconds * f64::from(params.sample_rate)).round() as usize;
+        let (frames, sample_rate) = (params.seq_length, params.sample_rate);
+        Self { frames, side, instants: 1 + samples / HOP, sample_rate, samples }
+    }
+
+    /// Numbers of a sound.
+    pub fn audio(&self) -> usize {
+        Self::COEFFICIENTS * self.instants
+    }
+
+    /// Numbers of the faces.
+    pub fn video(&self) -> usize {
+        self.frames * 3 * self.side * self.side
+    }
+}
+
+/// Makes the network's inputs.
+pub(super) struct FrontEnd {
+    pub sizes: Sizes,
+    mfcc: Mfcc,
+    frames: ClipFrames,
+    cepstra: Pool<Vec<f32>>,
+}
+
+impl FrontEnd {
+    /// For a network of these sizes.
+    ///
+    /// # Errors
+    /// As [`Mfcc::new`].
+    pub fn new(sizes: &Sizes) -> Result<Self> {
+        let mfcc = Mfcc::new(MfccOptions::librosa(sizes.sample_rate, WINDOW, HOP, Sizes::COEFFICIENTS))?;
+        let frames = ClipFrames::new(sizes.side, sizes.frames);
+        Ok(Self { sizes: *sizes, mfcc, frames, cepstra: Pool::default() })
+    }
+
+    /// Replaces `input` by cepstra `[coefficients, instants]`, each coefficient of mean zero and deviation one through time;
+    /// silence and what fills up short sound are zeros.
+    ///
+    /// # Errors
+    /// `InvalidInput` for sound of another rate, or a sample that is no number.
+    pub fn audio_into(&self, audio: &Audio, input: &mut Vec<f32>) -> Result<()> {
+        let samples = Sound::from(audio).samples(self.sizes.sample_rate)?;
+        let samples = samples.get(..self.sizes.samples).unwrap_or(&samples);
+        let cepstra = &mut *self.cepstra.take();
+        let count = self.mfcc.run_into(samples, cepstra).min(self.sizes.instants);
+        input.clear();
+        input.resize(self.sizes.audio(), 0.0);
+        for (coefficient, row) in input.chunks_exact_mut(self.sizes.instants).enumerate() {
+            let known = row.iter_mut().zip(cepstra.iter().skip(coefficient).step_by(Sizes::COEFFICIENTS));
+            known.for_each(|(place, value)| *place = *value);
+            standardise(&mut row[..count]);
+        }
+        Ok(())
+    }
+
+    /// Replaces `input` by frames `[frames, 3, side, side]`; zeros without a video.
+    ///
+    /// # Errors
+    /// As [`ClipFrames::clip_into`].
+    pub fn video_into(&self, video: Option<&Video>, input: &mut Vec<f32>) -> Result<()> {
+        if let Some(video) = video {
+            return self.frames.clip_into(video, input);
+        }
+        input.clear();
+        input.resize(self.sizes.video(), 0.0);
+        Ok(())
+    }
+}

@@ -1,0 +1,206 @@
+//! Maps of classes, boxes and persons in one: panoptic segmentation behind the interface of OpenDR's EfficientPS.
+//!
+//! It is not EfficientPS's network (R. Mohan, A. Valada, IJCV 2021), of which there are no weights that may be used: it fuses the
+//! answers of four small networks. [`fusion`] says how.
+
+mod fusion;
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec, Targets};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Classes, Heatmap, HeatmapValues, Name};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+
+use fusion::{Fusion, Looks, Rules, Thing};
+use opendr_detection::object_detection_2d::{CenterNet, CenterNetParams};
+use opendr_segmentation::instance_segmentation::{BodyPix, BodyPixParams};
+use opendr_segmentation::semantic_segmentation::{Deeplab, DeeplabParams};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct EfficientPsParams {
+    /// Objects below this score are dropped.
+    #[param(default = 0.3, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Whether objects of classes that no map of classes knows are the whole of their boxes; else they are left out.
+    #[param(default = true, live)]
+    pub box_masks: bool,
+    /// Objects are dropped of whose box the map of classes confirms a smaller share.
+    #[param(default = 0.1, range = 0.0..=1.0, live)]
+    pub min_overlap: f32,
+    /// Regions of a countable class outside of all boxes are objects from this share of the picture on.
+    #[param(default = 0.1, range = 0.0..=1.0, live)]
+    pub min_leftover: f32,
+    /// Regions that are not countable are told from this share of the picture on.
+    #[param(default = 0.02, range = 0.0..=1.0, live)]
+    pub min_stuff: f32,
+}
+
+/// What is told of a picture: OpenDR's pair of maps.
+#[derive(Default, Targets)]
+pub struct EfficientPsTargets {
+    /// 1000 times the class and the number of the object in its class, from 1; 0 where the class is not countable. 255000
+    /// where nothing is known.
+    pub instance: Heatmap,
+    /// The class of each pixel; 255 where nothing is known.
+    pub semantic: Heatmap,
+}
+
+/// A loaded fusion of networks.
+pub struct EfficientPs {
+    params: EfficientPsParams,
+    classes: Classes,
+    detector: CenterNet,
+    things: Deeplab,
+    stuff: Deeplab,
+    persons: BodyPix,
+    /// The class for each class of the three.
+    of_detector: Vec<Option<u32>>,
+    of_things: Vec<Option<u32>>,
+    of_stuff: Vec<Option<u32>>,
+    person: Option<u32>,
+    work: Pool<Work>,
+}
+
+#[derive(Default)]
+struct Work {
+    boxes: BoundingBoxList,
+    found: Vec<Thing>,
+    things: Heatmap,
+    stuff: Heatmap,
+    fusion: Fusion,
+}
+
+/// What other data sets call COCO's things.
+const THINGS: [(&str, &str); 6] = [
+    ("aeroplane", "airplane"),
+    ("diningtable", "dining table"),
+    ("motorbike", "motorcycle"),
+    ("pottedplant", "potted plant"),
+    ("sofa", "couch"),
+    ("tvmonitor", "tv"),
+];
+/// What Cityscapes calls what COCO does not count. Its things are found better by the others.
+const STUFF: [(&str, &str); 8] = [
+    ("road", "road"),
+    ("sidewalk", "pavement-merged"),
+    ("building", "building-other-merged"),
+    ("wall", "wall-other-merged"),
+    ("fence", "fence-merged"),
+    ("vegetation", "tree-merged"),
+    ("terrain", "grass-merged"),
+    ("sky", "sky-other-merged"),
+];
+
+impl Learner for EfficientPs {
+    const SPEC: Spec = Spec::new("efficient_ps", Task::PanopticSegmentation)
+        .class("EfficientPsLearner")
+        .about("Tells class and object of every pixel, by fusing DeepLab, CenterNet and BodyPix.")
+        .without_effect(&[
+            ("config_file", "there is no network of its own to configure"),
+            ("lr", Spec::OF_TRAINING),
+            ("iters", Spec::OF_TRAINING),
+            ("batch_size", Spec::OF_TRAINING),
+            ("optimizer", Spec::OF_TRAINING),
+            ("lr_schedule", Spec::OF_TRAINING),
+            ("momentum", Spec::OF_TRAINING),
+            ("weight_decay", Spec::OF_TRAINING),
+            ("optimizer_config", Spec::OF_TRAINING),
+            ("checkpoint_after_iter", Spec::OF_TRAINING),
+            ("num_workers", Spec::OF_TRAINING),
+            ("seed", Spec::OF_TRAINING),
+        ]);
+    type Params = EfficientPsParams;
+    type Input<'a> = &'a Image;
+    type Target = EfficientPsTargets;
+    type State = ();
+
+    fn load(model: &Model, params: EfficientPsParams, device: Device) -> Result<Self> {
+        let detector_params = CenterNetParams { threshold: 0.0, ..CenterNetParams::default() };
+        let detector = CenterNet::load(&model.part("detector")?, detector_params, device)?;
+        let things = Deeplab::load(&model.part("things")?, DeeplabParams::default(), device)?;
+        let stuff = Deeplab::load(&model.part("stuff")?, DeeplabParams::default(), device)?;
+        let persons = BodyPix::load(&model.part("persons")?, BodyPixParams::default(), device)?;
+        let classes = model.classes().clone();
+        let number = |name: &str| classes.index(name).and_then(|class| u32::try_from(class).ok());
+        let all = |part: &Classes, number: &dyn Fn(&str) -> Option<u32>| -> Vec<_> {
+            (0..part.len()).map(|class| part.name(class as i64).and_then(|name| number(name))).collect()
+        };
+        Ok(Self {
+            of_detector: all(&detector.classes(), &number),
+            of_things: all(&things.classes(), &|name| number(renamed(&THINGS, name).unwrap_or(name))),
+            of_stuff: all(&stuff.classes(), &|name| renamed(&STUFF, name).and_then(number)),
+            person: number("person"),
+            params,
+            classes,
+            detector,
+            things,
+            stuff,
+            persons,
+            work: Pool::default(),
+        })
+    }
+
+    fn params(&self) -> &EfficientPsParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut EfficientPsParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, targets: &mut EfficientPsTargets) -> Result<()> {
+        let Work { boxes, found, things, stuff, fusion } = &mut *self.work.take();
+        self.detector.infer_into(&mut (), image, boxes)?;
+        self.things.infer_into(&mut (), image, things)?;
+        self.stuff.infer_into(&mut (), image, stuff)?;
+        let EfficientPsParams { threshold, box_masks, min_overlap, min_leftover, min_stuff } = self.params;
+        found.clear();
+        found.extend(boxes.boxes.iter().filter(|one| one.confidence >= threshold).filter_map(|one| {
+            let Name::Index(class) = one.name else { return None };
+            let class = self.of_detector.get(usize::try_from(class).ok()?).copied()??;
+            Some(Thing { class, corners: one.corners() })
+        }));
+        let size = [image.width(), image.height()];
+        let shape = [size[1], size[0]];
+        let EfficientPsTargets { instance, semantic } = targets;
+        instance.classes.clone_from(&self.classes);
+        semantic.classes.clone_from(&self.classes);
+        let (things, stuff) = (labels(things)?, labels(stuff)?);
+        self.persons.look(image, |persons, _| {
+            let looks = Looks {
+                size,
+                things,
+                of_things: &self.of_things,
+                stuff,
+                of_stuff: &self.of_stuff,
+                persons,
+                person: self.person,
+            };
+            let rules = Rules { box_masks, min_overlap, min_leftover, min_stuff };
+            fusion.run(&looks, found, &rules, instance.labels_mut(&shape));
+        })?;
+        let HeatmapValues::Labels(instances) = instance.values() else { return Ok(()) };
+        for (class, label) in semantic.labels_mut(&shape).iter_mut().zip(instances.iter()) {
+            *class = label / fusion::LABEL_DIVISOR;
+        }
+        Ok(())
+    }
+}
+
+/// What a name is called here, if a table says so.
+fn renamed(table: &[(&str, &'static str)], name: &str) -> Option<&'static str> {
+    table.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours)
+}
+
+fn labels(map: &Heatmap) -> Result<&[u32]> {
+    match map.values() {
+        HeatmapValues::Labels(labels) => Ok(labels.as_slice()),
+        HeatmapValues::Scores(_) => Err(Error::format("the part answers scores instead of classes")),
+    }
+}

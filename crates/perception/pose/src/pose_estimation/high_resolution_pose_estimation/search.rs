@@ -1,0 +1,176 @@
+//! Which parts of a picture get a closer look.
+
+use opendr_engine::data::ImageView;
+use opendr_engine::{Pool, Result};
+
+use super::{HighResolutionPoseEstimationParams, RegionMethod};
+use opendr_perception_common::regions::{CellGrid, CoarsePicture, Region, join_overlapping};
+
+/// A part of a picture, and how many pixels high the network sees it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Look {
+    pub region: Region,
+    pub height: usize,
+}
+
+/// How the choice is made, with its work memory.
+#[derive(Default)]
+pub(super) struct Search {
+    scratch: Pool<Scratch>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    grid: CellGrid,
+    detail: CellGrid,
+    coarse: CoarsePicture,
+    regions: Vec<Region>,
+    known: Vec<Look>,
+}
+
+/// Parts are magnified at most so many times: beyond, there is nothing more to see.
+const MOST_MAGNIFIED: usize = 3;
+/// A second pass that magnifies less than this, compared with the first, shows nothing new.
+const LEAST_GAIN: f32 = 1.2;
+/// Sides of the coarse picture's cells.
+const CELL: usize = 4;
+/// More groups of cells than this are noise.
+const MOST_GROUPS: usize = 256;
+
+impl Search {
+    /// Runs the `first` pass, which marks the cells of its grid where heat maps are high, and lists what is worth a
+    /// closer look: parts with heat before parts with nothing but detail.
+    pub fn begin(
+        &self,
+        params: &HighResolutionPoseEstimationParams,
+        view: ImageView<'_>,
+        looks: &mut Vec<Look>,
+        first: impl FnOnce(&mut CellGrid) -> Result<()>,
+    ) -> Result<()> {
+        let Scratch { grid, detail, coarse, regions, .. } = &mut *self.scratch.take();
+        let size = [view.width(), view.height()];
+        looks.clear();
+        grid.reset(0, 0);
+        first(grid)?;
+        regions.clear();
+        grid.take_regions(size, MOST_GROUPS, regions);
+        let all = regions.iter().copied().reduce(|a, b| a.joined(&b));
+        if params.method == RegionMethod::Primary {
+            regions.clear();
+            regions.extend(all);
+        }
+        grow(regions, params.percentage_around_crop, size);
+        let look = |region: &Region| Look { region: *region, height: height_of(region, params) };
+        looks.extend(regions.iter().map(look));
+        mark_detail(view, params, coarse, detail)?;
+        regions.iter().for_each(|region| detail.unmark(region, size));
+        regions.clear();
+        detail.take_regions(size, MOST_GROUPS, regions);
+        grow(regions, params.percentage_around_crop, size);
+        // Where there is much of it, tiles of it follow, magnified as far as small persons need.
+        let tile = (params.second_pass_height / MOST_MAGNIFIED).max(CELL);
+        let tiles = |region: &Region| {
+            let is_large = region.width.max(region.height) > 2 * tile;
+            region.tiles(tile, tile / 3).filter(move |_| is_large)
+        };
+        looks.extend(regions.iter().map(look));
+        looks.extend(regions.iter().flat_map(tiles).map(|region| look(&region)));
+        let before = params.first_pass_height as f32 / size[1].max(1) as f32;
+        looks.retain(|look| look.height as f32 > LEAST_GAIN * before * look.region.height as f32);
+        Ok(())
+    }
+
+    /// Leaves as many looks as there may be: half of them around the persons of the frame before, and the others; both in turn.
+    /// Says whether that is all of them.
+    pub fn choose(
+        &self,
+        params: &HighResolutionPoseEstimationParams,
+        size: [usize; 2],
+        persons: &[Region],
+        turns: &mut [usize; 2],
+        looks: &mut Vec<Look>,
+    ) -> bool {
+        let Scratch { regions, known, .. } = &mut *self.scratch.take();
+        let all = Share { looks: params.max_regions, pixels: params.max_pixels };
+        if all.taken(looks) == looks.len() {
+            *turns = [0; 2];
+            return true;
+        }
+        regions.clear();
+        regions.extend(persons.iter().copied());
+        grow(regions, params.percentage_around_crop, size);
+        looks.retain(|look| !regions.iter().any(|region| region.joined(&look.region) == *region));
+        known.clear();
+        known
+            .extend(regions.iter().map(|region| Look { region: *region, height: height_of(region, params) }));
+        let half = Share { looks: all.looks / 2, pixels: all.pixels / 2 };
+        take(known, if looks.is_empty() { &all } else { &half }, &mut turns[0]);
+        let left = Share {
+            looks: all.looks.saturating_sub(known.len()),
+            pixels: all.pixels.saturating_sub(known.iter().map(Look::pixels).sum()),
+        };
+        take(looks, &left, &mut turns[1]);
+        looks.append(known);
+        false
+    }
+}
+
+impl Look {
+    /// How many pixels the network sees.
+    fn pixels(&self) -> usize {
+        self.height * (self.height * self.region.width).div_ceil(self.region.height.max(1))
+    }
+}
+
+/// What there is time for.
+struct Share {
+    looks: usize,
+    pixels: usize,
+}
+
+impl Share {
+    /// How many of `looks`, from the first on, there is time for; one at least, if any.
+    fn taken(&self, looks: &[Look]) -> usize {
+        let mut pixels = 0;
+        let fitting = looks.iter().take(self.looks).take_while(|look| {
+            pixels += look.pixels();
+            pixels <= self.pixels
+        });
+        fitting.count().max(1).min(looks.len()).min(self.looks)
+    }
+}
+
+/// Leaves those whose turn it is.
+fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
+    if looks.is_empty() {
+        return;
+    }
+    let begin = *turn % looks.len();
+    looks.rotate_left(begin);
+    looks.truncate(share.taken(looks));
+    *turn = begin + looks.len();
+}
+
+/// Marks the cells of the coarse picture in which brightness differs.
+fn mark_detail(
+    view: ImageView<'_>,
+    params: &HighResolutionPoseEstimationParams,
+    coarse: &mut CoarsePicture,
+    detail: &mut CellGrid,
+) -> Result<()> {
+    let rows = params.first_pass_height.div_ceil(CELL).max(1);
+    let columns = (rows * view.width()).div_ceil(view.height().max(1)).clamp(1, 8 * rows);
+    coarse.look(view, columns, rows, CELL)?;
+    detail.reset(columns, rows);
+    detail.mark(|column, row| f32::from(coarse.range(column, row)) > params.detail_threshold);
+    Ok(())
+}
+
+fn grow(regions: &mut Vec<Region>, share: f32, size: [usize; 2]) {
+    regions.iter_mut().for_each(|region| *region = region.grown(share, size));
+    join_overlapping(regions);
+}
+
+fn height_of(region: &Region, params: &HighResolutionPoseEstimationParams) -> usize {
+    (MOST_MAGNIFIED * region.height).min(params.second_pass_height).max(CELL)
+}

@@ -1,0 +1,211 @@
+//! Lightweight OpenPose: any number of persons by part affinity fields, with identities and smoothed joints in a stream.
+//!
+//! Osokin, "Real-time 2D Multi-Person Pose Estimation on CPU: Lightweight OpenPose", 2018; OpenDR's default pose
+//! estimator, and one that trains. How maps become persons: [`part_affinity`](super::part_affinity).
+
+#[cfg(feature = "training")]
+mod fit;
+mod input;
+#[cfg(feature = "training")]
+mod network;
+#[cfg(feature = "training")]
+mod objective;
+#[cfg(feature = "training")]
+mod person_crop;
+#[cfg(test)]
+#[cfg(feature = "training")]
+mod tests;
+
+#[cfg(feature = "training")]
+pub use fit::LightweightOpenPoseFitParams;
+use input::InputSize;
+use opendr_engine::data::{Image, ImageView};
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::TensorView;
+use opendr_vision::{Anchor, InputGeometry, Preprocess};
+
+use crate::pose_estimation::part_affinity::{Grid, Memory, PartAffinity, PartMaps, Person};
+use crate::pose_estimation::pose_tracks::PoseTracks;
+use opendr_perception_common::picture_network::PictureNetwork;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct LightweightOpenPoseParams {
+    /// Persons below this score are dropped. The score is the mean of those of the 18 joints; missing ones count as 0.
+    #[param(default = 0.1, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Joints below this score are missing.
+    #[param(default = 0.1, range = 0.01..=1.0, live)]
+    pub keypoint_threshold: f32,
+    /// Height of the network's input; the width follows from the picture. Larger finds smaller persons.
+    #[param(default = 256, range = 64..=2048, unit = "px", live)]
+    pub base_height: usize,
+    /// Steps between the cells of the heat maps in which joints are looked for.
+    #[param(default = 4, range = 1..=8, live)]
+    pub upsample_ratio: usize,
+    /// Whether persons keep their identity from frame to frame.
+    #[param(default = true, live)]
+    pub track: bool,
+    /// Whether joints are smoothed over frames; needs `track`.
+    #[param(default = true, live)]
+    pub smooth: bool,
+}
+
+/// A loaded Lightweight OpenPose.
+pub struct LightweightOpenPose {
+    params: LightweightOpenPoseParams,
+    network: PictureNetwork,
+    size: InputSize,
+    heat: usize,
+    fields: usize,
+    scratch: Pool<Scratch>,
+}
+
+#[derive(Default)]
+struct Scratch {
+    memory: Memory,
+    persons: Vec<Person>,
+}
+
+/// The network's outputs: heat maps `[1, 19, rows, columns]` and fields `[1, 38, rows, columns]`.
+const OUTPUTS: [&str; 2] = ["heat", "fields"];
+/// Pixels from cell to cell.
+const STRIDE: usize = 8;
+/// Inputs are (level - this) / this, in -1..=1.
+const LEVEL: f32 = 127.5;
+
+/// What a stream remembers.
+#[derive(Default)]
+pub struct LightweightOpenPoseState {
+    tracks: PoseTracks,
+}
+
+impl Learner for LightweightOpenPose {
+    const SPEC: Spec = Spec::new("lightweight_open_pose", Task::PoseEstimation)
+        .class("LightweightOpenPoseLearner")
+        .about("Lightweight OpenPose finds 18 joints of any number of persons and follows them; it trains.")
+        .without_effect(&[
+            ("mobilenet_use_stride", "the maps lie at every 8th pixel"),
+            ("shufflenet_groups", "the backbone is MobileNet"),
+            ("experiment_name", "the folder of a training says it"),
+            ("weights_only", "`resume` of `fit` says it"),
+            ("output_name", "`eval` says where answers are written"),
+            ("multiscale", "a larger `base_height` finds smaller persons"),
+            ("scales", "a larger `base_height` finds smaller persons"),
+            ("visualize", "`draw` shows poses"),
+            ("img_mean", "the network says what it takes"),
+            ("img_scale", "the network says what it takes"),
+            ("pad_value", "the network says what it takes"),
+            ("half_precision", "the runtime chooses the precision"),
+        ]);
+    type Params = LightweightOpenPoseParams;
+    type Input<'a> = &'a Image;
+    type Target = PoseList;
+    type State = LightweightOpenPoseState;
+
+    fn load(model: &Model, params: LightweightOpenPoseParams, device: Device) -> Result<Self> {
+        let mut size = InputSize::Free;
+        let network = PictureNetwork::open(model, device, |input| {
+            size = InputSize::of_network(&input.dims);
+            let [width, height] = size.of_picture([4, 3], params.base_height);
+            // Grey around pictures, as where augmentation shows what lies outside of one.
+            Preprocess::new(width, height).letterbox(Anchor::Centre, LEVEL).normalise([LEVEL; 3], [LEVEL; 3])
+        })?;
+        let [heat, fields] = OUTPUTS;
+        let (heat, fields) = (network.output(heat)?, network.output(fields)?);
+        Ok(Self { params, network, size, heat, fields, scratch: Pool::default() })
+    }
+
+    fn params(&self) -> &LightweightOpenPoseParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut LightweightOpenPoseParams {
+        &mut self.params
+    }
+
+    fn infer_into(
+        &self,
+        state: &mut LightweightOpenPoseState,
+        image: &Image,
+        poses: &mut PoseList,
+    ) -> Result<()> {
+        self.follow_with(&self.params, state, image, poses)
+    }
+}
+
+impl LightweightOpenPose {
+    /// As [`Learner::infer_into`], by parameters that are not this learner's own.
+    pub(crate) fn follow_with(
+        &self,
+        params: &LightweightOpenPoseParams,
+        state: &mut LightweightOpenPoseState,
+        image: &Image,
+        poses: &mut PoseList,
+    ) -> Result<()> {
+        let LightweightOpenPoseParams { base_height, track, smooth, .. } = *params;
+        poses.poses.clear();
+        self.find_with(params, image.view(), base_height, &mut poses.poses, |_| {})?;
+        match track {
+            true => state.tracks.update(&image.header, &mut poses.poses, smooth),
+            false => state.tracks = PoseTracks::default(),
+        }
+        Ok(())
+    }
+
+    /// Adds the persons in a view to `poses`, in its pixels, by the thresholds of `params`; the network sees it
+    /// `base_height` pixels high. `see` sees the maps that they were found in.
+    pub(super) fn find_with(
+        &self,
+        params: &LightweightOpenPoseParams,
+        view: ImageView<'_>,
+        base_height: usize,
+        poses: &mut Vec<Pose>,
+        mut see: impl FnMut(&PartMaps<'_>),
+    ) -> Result<()> {
+        let Scratch { memory, persons } = &mut *self.scratch.take();
+        let LightweightOpenPoseParams { keypoint_threshold, upsample_ratio, threshold, .. } = *params;
+        let how =
+            PartAffinity { peak_threshold: keypoint_threshold, upsample_ratio, ..PartAffinity::default() };
+        let size = self.size.of_picture([view.width(), view.height()], base_height);
+        self.network.run_sized(view, size, |outputs, geometry| {
+            let maps = self.maps(outputs)?;
+            see(&maps);
+            how.decode(&maps, memory, persons);
+            let sure = persons.iter().filter(|person| person.score >= threshold);
+            poses.extend(sure.map(|person| pose_in_picture(person, geometry)));
+            Ok(())
+        })
+    }
+
+    fn maps<'a>(&self, outputs: &[TensorView<'a>]) -> Result<PartMaps<'a>> {
+        let [1, _, rows, columns] = *outputs[self.heat].shape() else {
+            let shape = outputs[self.heat].shape();
+            return Err(Error::format(format!("heat maps are [1, 19, rows, columns], not {shape:?}")));
+        };
+        let grid = Grid { rows, columns, stride: STRIDE as f32 };
+        PartMaps::new(grid, outputs[self.heat].values()?, outputs[self.fields].values()?)
+    }
+}
+
+/// The person in pixels of the picture; joints in the padding are at the picture's border.
+fn pose_in_picture(person: &Person, geometry: &InputGeometry) -> Pose {
+    let keypoint = |joint: &Keypoint| {
+        if !joint.is_found() {
+            return Keypoint::MISSING;
+        }
+        let [x, y] = geometry.image_from_input([joint.x, joint.y]);
+        let [width, height] = geometry.image_size;
+        Keypoint { x: x.clamp(0.0, width), y: y.clamp(0.0, height), ..*joint }
+    };
+    Pose {
+        keypoints: person.joints.iter().map(keypoint).collect(),
+        confidence: person.score,
+        skeleton: Skeleton::Opendr18,
+        ..Pose::default()
+    }
+}

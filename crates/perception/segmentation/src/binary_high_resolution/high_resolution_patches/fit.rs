@@ -1,0 +1,68 @@
+//! How it trains.
+
+use opendr_datasets::{OpenOptions, Problems, format_of};
+use opendr_engine::dataset::{DatasetIterator, DatasetRef};
+use opendr_engine::learner::{Fit, FitJob};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::{Result, Statistics, ValueType};
+use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner};
+
+use super::network::PatchNetwork;
+use super::objective::Patches;
+use super::{HighResolutionPatches, HighResolutionPatchesParams};
+use opendr_perception_common::trainable_weights::network_from_base;
+
+/// How a user may train it: on patches of two classes, of which class 0 is the background, or on pictures with boxes around what
+/// is looked for.
+#[derive(Debug, Clone, Params)]
+pub struct HighResolutionPatchesFitParams {
+    /// What every training has.
+    #[param(
+        flatten,
+        epochs = 100,
+        batch_size = 512,
+        lr = 0.001,
+        weight_decay = 0.00001,
+        momentum = 0.9,
+        num_workers = 4,
+        optimizer = OptimizerKind::Adam
+    )]
+    pub training: TrainingParams,
+    /// At most so many patches with something and as many without are taken of a picture with boxes.
+    #[param(default = 8, range = 1..=1000)]
+    pub patches: usize,
+}
+
+impl Fit for HighResolutionPatches {
+    type FitParams = HighResolutionPatchesFitParams;
+
+    fn fit(
+        base: Option<&Model>,
+        params: &HighResolutionPatchesParams,
+        fit_params: &HighResolutionPatchesFitParams,
+        dataset: DatasetRef<'_>,
+        val_dataset: Option<DatasetRef<'_>>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        let HighResolutionPatchesFitParams { training, patches } = fit_params;
+        let dataset = open(dataset, job)?;
+        let network = PatchNetwork::new(params.architecture, &begin(job, training)?);
+        let network = network_from_base(network, base)?;
+        let objective = Patches { params, most: *patches };
+        fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
+    }
+}
+
+/// The data set with classes of pictures where it has them, else with boxes.
+fn open<'a>(dataset: DatasetRef<'a>, job: &FitJob<'_>) -> Result<Box<dyn DatasetIterator + 'a>> {
+    let external = match dataset {
+        DatasetRef::Iterator(dataset) => return Ok(Box::new(dataset)),
+        DatasetRef::External(external) => external,
+    };
+    let has = format_of(external)?.targets;
+    let wanted = [ValueType::Category, ValueType::BoundingBoxList];
+    let target = wanted.into_iter().find(|wanted| has.contains(wanted));
+    let problems = if job.skip_broken { Problems::skipping() } else { Problems::strict() };
+    opendr_datasets::open(external, &OpenOptions { split: None, target }, &problems)
+}

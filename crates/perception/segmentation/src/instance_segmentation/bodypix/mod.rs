@@ -1,0 +1,346 @@
+//! BodyPix: the pixels of each person.
+//!
+//! Papandreou et al., PersonLab, ECCV 2018; MobileNetV1 with half the channels, Google, Apache-2.0. One map tells persons from
+//! all else; poses, decoded as PoseNet's, tell the persons apart, and each pixel goes to the one whose joints it points at.
+
+mod long_offsets;
+
+use opendr_engine::data::{Image, Layout};
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Classes, Name};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::TensorView;
+use opendr_vision::{InputGeometry, Preprocess};
+
+use super::OwnerMap;
+use long_offsets::LongOffsets;
+use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
+use opendr_perception_common::picture_network::PictureNetwork;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct BodyPixParams {
+    /// Persons below this score are dropped.
+    #[param(default = 0.2, range = 0.0..=1.0, live)]
+    pub threshold: f32,
+    /// Pixels from this score on belong to a person.
+    #[param(default = 0.5, range = 0.01..=0.99, live)]
+    pub mask_threshold: f32,
+    /// Joints below this score start no person.
+    #[param(default = 0.4, range = 0.01..=0.99, live)]
+    pub peak_threshold: f32,
+    /// Joints of one kind nearer than this belong to one person, in pixels of the network's input.
+    #[param(default = 30.0, range = 0.0..=200.0, unit = "px", live)]
+    pub nms_radius: f32,
+    /// At most this many persons a picture.
+    #[param(default = 20, range = 1..=100, live)]
+    pub max_detections: usize,
+    /// Longer side of the network's input. Larger finds smaller persons.
+    #[param(default = 513, range = 65..=1537, unit = "px", live)]
+    pub resolution: usize,
+}
+
+/// A loaded BodyPix.
+pub struct BodyPix {
+    params: BodyPixParams,
+    classes: Classes,
+    network: PictureNetwork,
+    /// Segments, heat maps, short offsets, both displacements, long offsets.
+    outputs: [usize; 6],
+    work: Pool<Work>,
+}
+
+#[derive(Default)]
+struct Work {
+    /// Maps of which each lies in one piece, as the decoder of poses wants them.
+    planes: [Vec<f32>; 4],
+    peaks: Vec<Peak>,
+    persons: Vec<Person>,
+    /// The owner of each square of [`GRAIN`] pixels of the input; 0 for none.
+    squares: Vec<u8>,
+    across: Vec<Across>,
+    owners: OwnerMap,
+}
+
+/// Where a column of the picture is in the network's cells.
+#[derive(Debug, Clone, Copy)]
+struct Across {
+    cell: usize,
+    next: usize,
+    /// How far it is to the next.
+    share: f32,
+    square: usize,
+}
+
+/// Distance of the network's cells, pixels of its input.
+const STRIDE: usize = 16;
+/// Pixels of the input that are given to one person together, along each side.
+const GRAIN: usize = 4;
+/// The network's outputs, and how many numbers they have for a cell.
+const OUTPUTS: [(&str, usize); 6] = [
+    ("segments", 1),
+    ("heatmaps", 17),
+    ("short_offsets", 34),
+    ("displacement_fwd", 32),
+    ("displacement_bwd", 32),
+    ("long_offsets", 34),
+];
+
+impl Learner for BodyPix {
+    const SPEC: Spec = Spec::new("bodypix", Task::InstanceSegmentation)
+        .class("BodyPixLearner")
+        .about("BodyPix finds persons with the pixels of each.");
+    type Params = BodyPixParams;
+    type Input<'a> = &'a Image;
+    type Target = BoundingBoxList;
+    type State = ();
+
+    fn load(model: &Model, params: BodyPixParams, device: Device) -> Result<Self> {
+        let network = PictureNetwork::open(model, device, |_| {
+            Preprocess::new(STRIDE + 1, STRIDE + 1).layout(Layout::Hwc).normalise([127.5; 3], [127.5; 3])
+        })?;
+        let mut outputs = [0; 6];
+        for (output, (name, _)) in outputs.iter_mut().zip(OUTPUTS) {
+            *output = network.output(name)?;
+        }
+        Ok(Self { params, classes: model.classes().clone(), network, outputs, work: Pool::default() })
+    }
+
+    fn params(&self) -> &BodyPixParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut BodyPixParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, found: &mut BoundingBoxList) -> Result<()> {
+        found.classes.clone_from(&self.classes);
+        found.boxes.clear();
+        self.look(image, |owners, persons| {
+            for (number, person) in (1..).zip(persons) {
+                let score = person.score.min(1.0);
+                found.boxes.extend(owners.bounding_box(number, Name::Index(0), score)?);
+            }
+            found.boxes.sort_by(|one, other| other.confidence.total_cmp(&one.confidence));
+            Ok(())
+        })?
+    }
+}
+
+impl BodyPix {
+    /// Shows `each` the persons in a picture, and the map of whose pixels are whose: the first person's have the number 1.
+    pub(crate) fn look<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
+        let Work { planes, peaks, persons, squares, across, owners } = &mut *self.work.take();
+        let params = &self.params;
+        let size = [image.width(), image.height()];
+        let tree = PartTree {
+            peak_threshold: params.peak_threshold,
+            radius: params.nms_radius,
+            most: params.max_detections,
+        };
+        self.network.run_sized(image.view(), input_size(size, params.resolution), |outputs, geometry| {
+            let ([rows, columns], maps) = self.maps(outputs)?;
+            let [segments, heatmaps, short_offsets, forward, backward, long_offsets] = maps;
+            let by_cell = [(heatmaps, 17), (short_offsets, 34), (forward, 32), (backward, 32)];
+            for (plane, (values, channels)) in planes.iter_mut().zip(by_cell) {
+                split_channels(values, channels, plane);
+            }
+            let [heatmap, offsets, forward, backward] = &*planes;
+            let stride = STRIDE as f32;
+            tree.decode(
+                &PartMaps { rows, columns, stride, heatmap, offsets, forward, backward },
+                peaks,
+                persons,
+            );
+            persons.retain(|person| person.score >= params.threshold);
+            let grid = [rows, columns];
+            let segments = Segments { grid, values: segments, bound: logit(params.mask_threshold) };
+            let long_offsets = LongOffsets { grid, stride, values: long_offsets };
+            segments.fill_squares(&long_offsets, persons, squares);
+            segments.fill_owners(squares, size, geometry, across, owners);
+            Ok(())
+        })?;
+        Ok(each(owners, persons))
+    }
+
+    /// Rows and columns of the network's cells, and its outputs.
+    fn maps<'a>(&self, outputs: &[TensorView<'a>]) -> Result<([usize; 2], [&'a [f32]; 6])> {
+        let [1, rows, columns, 1] = *outputs[self.outputs[0]].shape() else {
+            let shape = outputs[self.outputs[0]].shape();
+            return Err(Error::format(format!(
+                "BodyPix's segments are [1, rows, columns, 1], not {shape:?}"
+            )));
+        };
+        let mut maps = [&[][..]; 6];
+        for ((map, output), (name, channels)) in maps.iter_mut().zip(self.outputs).zip(OUTPUTS) {
+            *map = outputs[output].values::<f32>()?;
+            if rows * columns == 0 || map.len() != rows * columns * channels {
+                return Err(Error::format(format!(
+                    "{name} has {} numbers instead of {channels} for each of {rows}x{columns} cells",
+                    map.len()
+                )));
+            }
+        }
+        Ok(([rows, columns], maps))
+    }
+}
+
+/// The picture's size with its longer side as given, in whole cells and a pixel.
+fn input_size(size: [usize; 2], resolution: usize) -> [usize; 2] {
+    let scale = resolution as f64 / size[0].max(size[1]) as f64;
+    size.map(|side| {
+        let cells = ((side as f64 * scale - 1.0) / STRIDE as f64).round().max(1.0);
+        cells as usize * STRIDE + 1
+    })
+}
+
+fn logit(score: f32) -> f32 {
+    (score / (1.0 - score)).ln()
+}
+
+/// Writes `[cells, channels]` as `[channels, cells]`.
+fn split_channels(values: &[f32], channels: usize, out: &mut Vec<f32>) {
+    out.clear();
+    for channel in 0..channels {
+        out.extend(values.iter().skip(channel).step_by(channels));
+    }
+}
+
+/// Which pixels belong to persons at all.
+struct Segments<'a> {
+    /// Cells down and across.
+    grid: [usize; 2],
+    /// Logits, row by row.
+    values: &'a [f32],
+    bound: f32,
+}
+
+impl Segments<'_> {
+    /// Squares a row of cells has.
+    fn squares(cells: usize) -> usize {
+        (cells - 1) * STRIDE / GRAIN + 1
+    }
+
+    /// Gives each square near a person's pixels an owner.
+    fn fill_squares(&self, offsets: &LongOffsets<'_>, persons: &[Person], squares: &mut Vec<u8>) {
+        let [rows, columns] = self.grid.map(Self::squares);
+        squares.clear();
+        for row in 0..rows {
+            for column in 0..columns {
+                let place = [column * GRAIN, row * GRAIN];
+                let owner = match self.is_near_person(place) {
+                    true => offsets.owner(place.map(|at| at as f32), persons),
+                    false => None,
+                };
+                squares.push(owner.map_or(0, |owner| owner as u8 + 1));
+            }
+        }
+    }
+
+    /// Whether a cell around the place has a person: pixels between cells can have one only then.
+    fn is_near_person(&self, [x, y]: [usize; 2]) -> bool {
+        let near = |at: usize, count: usize| {
+            (at.saturating_sub(GRAIN) / STRIDE).min(count - 1)
+                ..=((at + GRAIN).div_ceil(STRIDE)).min(count - 1)
+        };
+        near(y, self.grid[0])
+            .any(|row| near(x, self.grid[1]).any(|column| self.at([row, column]) >= self.bound))
+    }
+
+    fn fill_owners(
+        &self,
+        squares: &[u8],
+        size: [usize; 2],
+        geometry: &InputGeometry,
+        columns_of: &mut Vec<Across>,
+        owners: &mut OwnerMap,
+    ) {
+        let [rows, columns] = self.grid;
+        let across = Self::squares(columns);
+        // Cells and squares are where pixels of the input have their middles.
+        let middle = |x: usize, y: usize| {
+            geometry.input_from_image([x as f32 + 0.5, y as f32 + 0.5]).map(|at| (at - 0.5).max(0.0))
+        };
+        let square =
+            |at: f32, cells: usize| ((at / GRAIN as f32).round() as usize).min(Self::squares(cells) - 1);
+        columns_of.clear();
+        columns_of.extend((0..size[0]).map(|x| {
+            let [input_x, _] = middle(x, 0);
+            let (cell, share) = cell_of(input_x, columns);
+            Across { cell, next: (cell + 1).min(columns - 1), share, square: square(input_x, columns) }
+        }));
+        owners.fill(size, |y, row| {
+            let [_, input_y] = middle(0, y);
+            let (upper, down) = cell_of(input_y, rows);
+            let [upper, lower] =
+                [upper, (upper + 1).min(rows - 1)].map(|row| &self.values[row * columns..][..columns]);
+            if upper.iter().chain(lower).all(|value| *value < self.bound) {
+                return;
+            }
+            let squares = &squares[square(input_y, rows) * across..][..across];
+            for (owner, at) in row.iter_mut().zip(&*columns_of) {
+                let along = |values: &[f32]| {
+                    let (from, to) = (values[at.cell], values[at.next]);
+                    from + at.share * (to - from)
+                };
+                let (upper, lower) = (along(upper), along(lower));
+                if upper + down * (lower - upper) >= self.bound {
+                    *owner = squares[at.square];
+                }
+            }
+        });
+    }
+
+    fn at(&self, [row, column]: [usize; 2]) -> f32 {
+        self.values[row * self.grid[1] + column]
+    }
+}
+
+/// The cell before a place, and how far it is to the next.
+fn cell_of(at: f32, count: usize) -> (usize, f32) {
+    let at = at / STRIDE as f32;
+    let cell = (at as usize).min(count - 1);
+    (cell, (at - cell as f32).min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inputs_are_whole_cells() {
+        assert_eq!(input_size([810, 1080], 513), [385, 513]);
+        assert_eq!(input_size([1, 5000], 513), [17, 513]);
+        assert_eq!(input_size([1, 1], 65), [65, 65]);
+    }
+
+    #[test]
+    fn channels_are_taken_apart() {
+        let mut out = vec![9.0];
+        split_channels(&[1.0, 10.0, 2.0, 20.0, 3.0, 30.0], 2, &mut out);
+        assert_eq!(out, [1.0, 2.0, 3.0, 10.0, 20.0, 30.0]);
+    }
+
+    #[test]
+    fn a_mask_ends_between_cells() {
+        let values = [4.0, -4.0, -4.0, 4.0, -4.0, -4.0];
+        let segments = Segments { grid: [2, 3], values: &values, bound: 0.0 };
+        let geometry = InputGeometry { image_size: [33.0, 17.0], scale: [1.0; 2], offset: [0.0; 2] };
+        let squares = vec![1; 5 * 9];
+        let mut owners = OwnerMap::default();
+        segments.fill_owners(&squares, [33, 17], &geometry, &mut Vec::new(), &mut owners);
+        let row: Vec<_> = owners.owners()[..33].to_vec();
+        assert!(
+            row[..9].iter().all(|owner| *owner == 1) && row[9..].iter().all(|owner| *owner == 0),
+            "{row:?}"
+        );
+        assert!(segments.is_near_person([12, 0]) && !segments.is_near_person([24, 8]));
+    }
+}

@@ -1,0 +1,89 @@
+use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
+use opendr_engine::learner::{Fit, FitJob, Handle};
+use opendr_engine::target::HeatmapValues;
+use opendr_engine::{ErrorKind, Random};
+
+use super::network::BisenetNetwork;
+use super::objective::SegmentPixels;
+use super::*;
+use opendr_perception_testing::overfit::losses_on_one_batch;
+
+/// A road under a sky, where it bends as the number says; a corner that does not count.
+struct Roads;
+
+impl Dataset for Roads {}
+
+impl DatasetIterator for Roads {
+    fn len(&self) -> usize {
+        6
+    }
+
+    fn get(&self, index: usize) -> Result<Sample> {
+        let mut random = Random::new(index as u64);
+        let class = |x: usize, y: usize| u32::from(y > 20 + (x * index) / 16);
+        let (mut levels, mut labels) = (Vec::new(), Vec::new());
+        for y in 0..48 {
+            for x in 0..64 {
+                let noise = 30.0 * random.normal();
+                let colour: [f64; 3] = [[90.0, 150.0, 220.0], [80.0, 80.0, 80.0]][class(x, y) as usize];
+                levels.extend(colour.map(|level| (level + noise) as u8));
+                labels.push(if x < 4 && y < 4 { 255 } else { class(x, y) });
+            }
+        }
+        let map = Heatmap::from_labels(labels, &[48, 64])?;
+        Ok(Sample { data: vec![Image::from_rgb8(levels, 64, 48)?.into()], target: Some(map.into()) })
+    }
+
+    fn classes(&self) -> Classes {
+        ["sky", "road"].into_iter().collect()
+    }
+}
+
+fn objective() -> SegmentPixels {
+    SegmentPixels { classes: Roads.classes(), size: [32, 64], crop: 1.0, flip: 0.0 }
+}
+
+fn picture(index: usize) -> Image {
+    match Roads.get(index).unwrap().data.into_iter().next() {
+        Some(opendr_engine::Value::Image(image)) => image,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn learns_one_batch_by_heart() {
+    let samples = (0..4).map(|index| Roads.get(index).unwrap()).collect();
+    let network = |device: &_| BisenetNetwork::new(2, 4, device);
+    let [before, after] = losses_on_one_batch(&objective(), network, samples, 0.01);
+    assert!(after < 0.1 * before, "{before} {after}");
+}
+
+#[test]
+fn fit_makes_what_infer_loads() {
+    let output = std::env::temp_dir().join(format!("opendr-bisenet-{}", std::process::id()));
+    std::fs::remove_dir_all(&output).ok();
+    let mut fit_params = BisenetFitParams {
+        crop_height: 32,
+        crop_width: 64,
+        width: 4,
+        crop: 1.0,
+        flip: 0.0,
+        ..BisenetFitParams::default()
+    };
+    (fit_params.training.epochs, fit_params.training.batch_size) = (40, 6);
+    fit_params.training.lr = 0.01;
+    let job = FitJob { device: Device::Cpu, ..FitJob::new(&output) };
+    let dataset = || DatasetRef::from(&Roads as &dyn DatasetIterator);
+    let params = BisenetParams::default();
+    let mut handle = Handle::<Bisenet>::new(params.clone(), Device::Cpu).unwrap();
+    handle.fit(&fit_params, dataset(), None, &job).unwrap();
+    let map = handle.infer(&picture(0)).unwrap();
+    assert_eq!(map.shape(), [48, 64]);
+    let HeatmapValues::Labels(labels) = map.values() else { panic!() };
+    let right = (0..48 * 64).filter(|at| labels[*at] == u32::from(at / 64 > 20)).count();
+    assert!(right > 48 * 64 * 85 / 100, "{right}");
+    fit_params.crop_width = 60;
+    let refused = Bisenet::fit(None, &params, &fit_params, dataset(), None, &job).unwrap_err();
+    assert_eq!(refused.kind(), ErrorKind::InvalidParam);
+    std::fs::remove_dir_all(&output).ok();
+}

@@ -1,0 +1,101 @@
+//! DeepLab v3 on MobileNets: the class of every pixel.
+//!
+//! Chen, Papandreou, Schroff and Adam, Rethinking Atrous Convolution for Semantic Image Segmentation, 2017
+//! (arXiv 1706.05587). The network looks at the picture stretched to its own square and answers the number of a class
+//! for each of its pixels; pixels of the picture take that of the nearest.
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{Classes, Heatmap};
+use opendr_engine::{Device, Error, Result, Task};
+use opendr_inference::TensorView;
+
+use super::nearest;
+use opendr_perception_common::described_input::described_input;
+use opendr_perception_common::picture_network::PictureNetwork;
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct DeeplabParams {
+    /// Whether the map has the size of the picture; else it has the network's.
+    #[param(default = true, live)]
+    pub full_size: bool,
+}
+
+/// A loaded DeepLab.
+pub struct Deeplab {
+    params: DeeplabParams,
+    classes: Classes,
+    network: PictureNetwork,
+    /// Of the network's map.
+    width: usize,
+    height: usize,
+}
+
+/// Levels 0..=255 become -1..1 where a model says nothing else.
+const USUAL: f32 = 127.5;
+
+impl Learner for Deeplab {
+    const SPEC: Spec = Spec::new("deeplab", Task::SemanticSegmentation)
+        .class("DeeplabLearner")
+        .about("DeepLab v3 tells the class of every pixel, in 8 bits.");
+    type Params = DeeplabParams;
+    type Input<'a> = &'a Image;
+    type Target = Heatmap;
+    type State = ();
+
+    fn load(model: &Model, params: DeeplabParams, device: Device) -> Result<Self> {
+        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
+            described_input(model, input, USUAL)
+        })?;
+        let [map] = network.outputs() else {
+            let count = network.outputs().len();
+            return Err(Error::format(format!(
+                "the network has {count} outputs instead of one map of classes"
+            )));
+        };
+        let &[Some(1), Some(height), Some(width)] = &map.dims[..] else {
+            return Err(Error::format(format!("{map} is no map of classes [1, height, width]")));
+        };
+        Ok(Self { params, classes: model.classes().clone(), network, width, height })
+    }
+
+    fn params(&self) -> &DeeplabParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut DeeplabParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut (), image: &Image, map: &mut Heatmap) -> Result<()> {
+        let (width, height) = match self.params.full_size {
+            true => (image.width(), image.height()),
+            false => (self.width, self.height),
+        };
+        map.classes.clone_from(&self.classes);
+        let labels = map.labels_mut(&[height, width]);
+        self.network.run(image, |outputs, _| {
+            let classes = outputs.first().map_or(Ok(&[][..]), TensorView::values::<i64>)?;
+            if classes.len() != self.width * self.height || width == 0 || height == 0 {
+                let (count, wanted) = (classes.len(), self.width * self.height);
+                return Err(Error::format(format!("a map of {count} classes instead of {wanted}")));
+            }
+            for (y, row) in labels.chunks_exact_mut(width).enumerate() {
+                let from = nearest(y, height, self.height) * self.width;
+                for (x, label) in row.iter_mut().enumerate() {
+                    let class = classes[from + nearest(x, width, self.width)];
+                    *label = u32::try_from(class)
+                        .map_err(|_| Error::format(format!("the network answers class {class}")))?;
+                }
+            }
+            Ok(())
+        })
+    }
+}

@@ -1,0 +1,8 @@
+use opendr_engine::learner::Learner;
+use opendr_engine::target::Heatmap;
+use opendr_tiling::{Open, open_as};
+
+use super::Deeplab;
+
+/// The learners that tell the class of every pixel of a picture: one line each.
+pub const SEGMENTERS: &[(&str, Open<Heatmap>)] = &[(Deeplab::SPEC.name, open_as::<Heatmap, Deeplab>)];

@@ -1,0 +1,35 @@
+//! Writes the cepstra of a WAVE file as `[frames, coefficients]` in a `.npy` file: what the Python tests compare.
+//!
+//! ```console
+//! $ cargo run -p opendr-sound --example mfcc -- keywords yes.wav cepstra.npy
+//! $ cargo run -p opendr-sound --example mfcc -- librosa 640 480 64 yes.wav cepstra.npy
+//! ```
+
+use opendr_datasets::{npy_from_f32, open_wav};
+use opendr_engine::{Error, Result};
+use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let number = |text: &str| {
+        text.parse::<usize>().map_err(|_| Error::invalid_param(format!("{text:?} is no number of samples")))
+    };
+    let (recipe, from, to) = match words[..] {
+        ["keywords", from, to] => (None, from, to),
+        ["librosa", window, hop, count, from, to] => {
+            (Some([number(window)?, number(hop)?, number(count)?]), from, to)
+        }
+        _ => return Err(Error::invalid_param("give keywords IN OUT, or librosa WINDOW HOP COUNT IN OUT")),
+    };
+    let audio = open_wav(from)?;
+    let samples = audio.mono();
+    let (options, factor) = match recipe {
+        None => (MfccOptions::keywords(), peak_factor(&samples)),
+        Some([window, hop, count]) => (MfccOptions::librosa(audio.sample_rate(), window, hop, count), 1.0),
+    };
+    let mfcc = Mfcc::new(options)?;
+    let mut cepstra = Vec::new();
+    let frames = mfcc.run_scaled_into(&samples, factor, &mut cepstra);
+    Ok(std::fs::write(to, npy_from_f32(&cepstra, &[frames, mfcc.options().coefficients])?)?)
+}

@@ -1,0 +1,115 @@
+//! From sound to what the network is given.
+
+use opendr_engine::{Error, Pool, Result};
+
+use opendr_sound::Sound;
+use opendr_sound::mfcc::{Mfcc, MfccOptions};
+
+/// Frames that the network is given: 1.2 s of sound; what is longer is cut, what is shorter filled up.
+pub const FRAMES: usize = 40;
+
+/// Cepstra as OpenDR's learners make them: coefficients of 40 ms every 30 ms, with librosa's recipe, brought to mean
+/// zero and deviation one over the sound. Different from OpenDR, what fills up short sound is that mean, not a value
+/// that stands for loud noise.
+pub struct FrontEnd {
+    /// `None`: series are cepstra already.
+    mfcc: Option<Mfcc>,
+    sample_rate: u32,
+    coefficients: usize,
+    cepstra: Pool<Vec<f32>>,
+}
+
+impl FrontEnd {
+    /// The front end for sound at `sample_rate`; with `mfcc` unset, for cepstra `[frames, coefficients]` instead.
+    ///
+    /// # Errors
+    /// `InvalidParam` for a rate that is too low.
+    pub fn new(mfcc: bool, sample_rate: u32, coefficients: usize) -> Result<Self> {
+        let (window, hop) = (sample_rate as usize / 25, sample_rate as usize * 3 / 100);
+        let make = || Mfcc::new(MfccOptions::librosa(sample_rate, window, hop, coefficients));
+        Ok(Self { mfcc: mfcc.then(make).transpose()?, sample_rate, coefficients, cepstra: Pool::default() })
+    }
+
+    /// Replaces `input` by what the network is given, `[coefficients, FRAMES]`.
+    ///
+    /// # Errors
+    /// `InvalidInput` when it is no sound of that rate, or (without MFCC) no cepstra.
+    pub fn input_into(&self, sound: Sound<'_>, input: &mut Vec<f32>) -> Result<()> {
+        let cepstra = &mut *self.cepstra.take();
+        self.cepstra_into(sound, cepstra)?;
+        input.clear();
+        input.resize(self.coefficients * FRAMES, 0.0);
+        for (frame, cepstrum) in cepstra.chunks_exact(self.coefficients).enumerate() {
+            let places = input.iter_mut().skip(frame).step_by(FRAMES);
+            places.zip(cepstrum).for_each(|(place, coefficient)| *place = *coefficient);
+        }
+        Ok(())
+    }
+
+    /// Replaces `cepstra` by the frames, at most [`FRAMES`], with as many coefficients as [`FrontEnd::new`] was told.
+    ///
+    /// # Errors
+    /// As [`FrontEnd::input_into`].
+    pub fn cepstra_into(&self, sound: Sound<'_>, cepstra: &mut Vec<f32>) -> Result<()> {
+        match (&self.mfcc, sound) {
+            (Some(mfcc), sound) => {
+                mfcc.run_into(&sound.samples(self.sample_rate)?, cepstra);
+                cepstra.truncate(FRAMES * self.coefficients);
+                standardise(cepstra);
+                Ok(())
+            }
+            (None, Sound::Series(series)) if series.shape()[1] == self.coefficients => {
+                cepstra.clear();
+                cepstra.extend(series.as_slice().iter().take(FRAMES * self.coefficients));
+                Ok(())
+            }
+            (None, _) => {
+                let coefficients = self.coefficients;
+                Err(Error::invalid_input(format!(
+                    "with preprocess_to_mfcc = false the learner takes a Timeseries of {coefficients} coefficients a \
+                     frame; give that, or sound with preprocess_to_mfcc = true"
+                )))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use opendr_engine::data::{Audio, Timeseries};
+
+    use super::*;
+
+    const COEFFICIENTS: usize = 64;
+
+    #[test]
+    fn short_sound_is_filled_and_long_sound_cut() {
+        let front_end = FrontEnd::new(true, 16_000, COEFFICIENTS).unwrap();
+        let noise = |samples: usize| {
+            let samples: Vec<f32> = (0..samples).map(|at| ((at * at) as f32 * 0.01).sin()).collect();
+            Audio::new(samples, 1, 16_000).unwrap()
+        };
+        let mut input = Vec::new();
+        for (samples, frames) in [(16_000, 34), (40_000, FRAMES), (10, 1)] {
+            front_end.input_into((&noise(samples)).into(), &mut input).unwrap();
+            let filled = |frame: usize| (0..COEFFICIENTS).any(|row| input[row * FRAMES + frame] != 0.0);
+            assert_eq!((0..FRAMES).filter(|frame| filled(*frame)).count(), frames);
+            let values = input.iter().filter(|value| **value != 0.0);
+            let power: f32 = values.map(|value| value * value).sum();
+            assert!((power / (frames * COEFFICIENTS) as f32 - 1.0).abs() < 0.02, "{power}");
+        }
+        assert!(front_end.input_into((&Audio::new(vec![0.0], 1, 8000).unwrap()).into(), &mut input).is_err());
+    }
+
+    #[test]
+    fn cepstra_are_taken_as_they_are() {
+        let front_end = FrontEnd::new(false, 16_000, COEFFICIENTS).unwrap();
+        let numbers: Vec<f32> = (0..2 * COEFFICIENTS).map(|at| at as f32).collect();
+        let series = Timeseries::new(numbers, [2, COEFFICIENTS]).unwrap();
+        let mut input = Vec::new();
+        front_end.input_into((&series).into(), &mut input).unwrap();
+        assert_eq!((input[0], input[1], input[2], input[FRAMES]), (0.0, 64.0, 0.0, 1.0));
+        let sound = Audio::new(vec![0.0; 16_000], 1, 16_000).unwrap();
+        assert!(front_end.input_into((&sound).into(), &mut input).is_err());
+    }
+}

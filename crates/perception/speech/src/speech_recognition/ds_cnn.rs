@@ -1,0 +1,142 @@
+//! DS-CNN: convolutions that are separable in depth, over ten cepstra a frame; 12 words in 52 kB.
+//!
+//! Zhang, Suda, Lai and Chandra, Hello Edge: Keyword Spotting on Microcontrollers, 2017; the network that MLPerf Tiny ships,
+//! in eight bits. A sound is brought to its peak first; what is longer than a second is cut, what is shorter filled up
+//! with silence. A stream is answered twice a second, each time for the second before.
+
+use opendr_engine::learner::{Learner, Spec, Streaming};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{Category, Classes};
+use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_inference::{ElementType, Session, TensorView};
+
+use crate::speech_recognition::word_stream::{Listening, WordStream, WordStreamParams};
+use opendr_perception_common::category_scores::category_from_probabilities;
+use opendr_sound::Sound;
+use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct DsCnnParams {
+    /// How a stream is listened to.
+    #[param(flatten)]
+    pub stream: WordStreamParams,
+}
+
+/// A loaded DS-CNN.
+pub struct DsCnn {
+    params: DsCnnParams,
+    classes: Classes,
+    mfcc: Mfcc,
+    listening: Listening,
+    session: Session,
+    work: Pool<Work>,
+}
+
+#[derive(Default)]
+struct Work {
+    /// What is shorter than a second, filled up.
+    second: Vec<f32>,
+    cepstra: Vec<f32>,
+}
+
+/// The network in every container: cepstra `[1, 1, 49, 10]` to the probability of each class, in 8 bits between.
+const FILE: &str = "model.onnx";
+/// Samples a second that the network knows, and all that it hears.
+const SAMPLE_RATE: u32 = 16_000;
+/// Frames of a second, coefficients of a frame.
+const FRAMES: usize = 49;
+const COEFFICIENTS: usize = 10;
+
+impl DsCnn {
+    fn category(&self, samples: &[f32], category: &mut Category) -> Result<()> {
+        let Work { second, cepstra } = &mut *self.work.take();
+        let samples = match samples.get(..SAMPLE_RATE as usize) {
+            Some(whole) => whole,
+            None => {
+                second.clear();
+                second.extend(samples);
+                second.resize(SAMPLE_RATE as usize, 0.0);
+                &second[..]
+            }
+        };
+        self.mfcc.run_scaled_into(samples, peak_factor(samples), cepstra);
+        let input = TensorView::new(&[1, 1, FRAMES, COEFFICIENTS], &cepstra[..])?;
+        self.session.run(&[input], |outputs| {
+            let probabilities = outputs.first().map_or(Ok(&[][..]), TensorView::values::<f32>)?;
+            category_from_probabilities(category, probabilities.iter().copied(), &self.classes)
+        })
+    }
+}
+
+impl Learner for DsCnn {
+    const SPEC: Spec = Spec::new("ds_cnn", Task::SpeechRecognition)
+        .class("DsCnnLearner")
+        .about("DS-CNN tells twelve words apart, in 52 kB and 8 bits.");
+    type Params = DsCnnParams;
+    type Input<'a> = Sound<'a>;
+    type Target = Category;
+    type State = WordStream;
+
+    fn load(model: &Model, params: DsCnnParams, device: Device) -> Result<Self> {
+        let session = Session::open(&model.file(FILE)?, device)?;
+        let ([input], [output]) = (session.inputs(), session.outputs()) else {
+            return Err(Error::format(format!("{FILE} has not one input and one output")));
+        };
+        let floats = [input, output].iter().all(|tensor| tensor.element_type == ElementType::F32);
+        if !floats || !matches!(input.dims[..], [_, Some(1), Some(FRAMES), Some(COEFFICIENTS)]) {
+            return Err(Error::format(format!(
+                "{FILE} turns {input} into {output}; this learner wants 49 frames of 10 cepstra, and gives probabilities"
+            )));
+        }
+        Ok(Self {
+            mfcc: Mfcc::new(MfccOptions::keywords())?,
+            listening: Listening::new(&params.stream, SAMPLE_RATE, device)?,
+            classes: model.manifest().classes.clone(),
+            work: Pool::default(),
+            params,
+            session,
+        })
+    }
+
+    fn params(&self) -> &DsCnnParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut DsCnnParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.classes.clone()
+    }
+
+    fn infer_into(&self, _: &mut WordStream, sound: Sound<'_>, category: &mut Category) -> Result<()> {
+        self.category(&sound.samples(SAMPLE_RATE)?, category)
+    }
+}
+
+/// An answer for every second of sound, each half a second after the one before.
+impl Streaming for DsCnn {
+    fn push(&self, state: &mut WordStream, piece: Sound<'_>, emit: &mut dyn FnMut(Category)) -> Result<()> {
+        self.listening.push(state, &piece.samples(SAMPLE_RATE)?, |second| {
+            let mut category = Category::default();
+            self.category(second.as_slice(), &mut category)?;
+            emit(category);
+            Ok(())
+        })
+    }
+
+    fn flush(&self, state: &mut WordStream, emit: &mut dyn FnMut(Category)) -> Result<()> {
+        if let Some(rest) = self.listening.flush(state)? {
+            let mut category = Category::default();
+            self.category(rest.as_slice(), &mut category)?;
+            emit(category);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,22 @@
+//! Whether somebody speaks: a probability for every 32 ms of sound, and where speech begins and ends.
+//!
+//! [`VoiceNetwork`] is Silero's network (Silero Team, Silero VAD, 2024), [`VoiceRule`] turns its probabilities into speech
+//! with a beginning and an end, with the hysteresis of that project's iterator. Both take a stream in pieces of any length
+//! and keep what they remember outside of themselves, in [`VoiceStream`] and [`Speech`]; time is counted in samples.
+//!
+//! ```
+//! use opendr_speech::voice_activity::{CHUNK, Speech, SpeechChange, VoiceRule};
+//!
+//! let rule = VoiceRule::default();
+//! let mut speech = Speech::default();
+//! let probabilities = [0.1, 0.9, 0.9, 0.4, 0.1, 0.1, 0.1, 0.1, 0.1];
+//! let changes: Vec<_> = probabilities.iter().filter_map(|probability| rule.next(&mut speech, *probability)).collect();
+//! let chunk = CHUNK as u64;
+//! assert_eq!(changes, [SpeechChange::Begin(chunk - 480), SpeechChange::End(4 * chunk + 480)]);
+//! ```
+
+mod network;
+mod rule;
+
+pub use network::{CHUNK, SAMPLE_RATE, VoiceNetwork, VoiceStream};
+pub use rule::{Speech, SpeechChange, VoiceRule};

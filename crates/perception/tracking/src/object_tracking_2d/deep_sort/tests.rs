@@ -1,0 +1,127 @@
+use opendr_engine::Random;
+use opendr_engine::model::Model;
+use opendr_engine::target::BoundingBox;
+
+use super::*;
+use opendr_perception_testing::test_models::{container, test_data};
+
+fn tracker() -> Option<DeepSort> {
+    let model = container("deep_sort", "person_reid/osnet_x0_25_msmt17.onnx", "")?;
+    Some(DeepSort::load(&Model::open(model).unwrap(), DeepSortParams::default(), Device::Cpu).unwrap())
+}
+
+fn boxes(places: &[[f32; 4]]) -> BoundingBoxList {
+    let found = places.iter().map(|[x0, y0, x1, y1]| BoundingBox::from_corners(0, [*x0, *y0, *x1, *y1], 0.9));
+    found.collect::<Vec<_>>().into()
+}
+
+/// The three persons of bus.jpg who are seen whole.
+const PERSONS: [[f32; 4]; 3] =
+    [[50.0, 398.0, 245.0, 903.0], [222.0, 405.0, 345.0, 860.0], [669.0, 392.0, 810.0, 877.0]];
+
+fn ids(answer: &TrackingAnnotationList) -> Vec<(i64, f32)> {
+    answer.annotations.iter().map(|track| (track.id, track.bounding_box.left)).collect()
+}
+
+/// Persons change places while nobody looks: looks tell who is who, places would not. They are moved by less than the
+/// gate of the filter, which has grown while they were out of sight.
+#[test]
+fn persons_are_known_again_by_their_looks() {
+    let (Some(tracker), Some(photo)) = (tracker(), test_data("data/photos/bus.jpg")) else { return };
+    let photo = opendr_vision::open(photo).unwrap();
+    let mut looks = Vec::new();
+    let mut state = DeepSortState::default();
+    let input = DeepSortInputs { image: &photo, detections: &boxes(&PERSONS) };
+    state.see(tracker.params(), &tracker.appearance, &input).unwrap();
+    looks.clone_from(&state.looks);
+    let looks: Vec<_> = looks.chunks_exact(tracker.appearance.length()).collect();
+    let cosine = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f32>();
+    for (one, other) in [(0, 1), (0, 2), (1, 2)] {
+        let between = cosine(looks[one], looks[other]);
+        assert!(between < 0.85, "{one} and {other}: {between}");
+    }
+    let moved = PERSONS.map(|[x0, y0, x1, y1]| [x0 + 6.0, y0 + 8.0, x1 - 4.0, y1 - 6.0]);
+    state
+        .see(
+            tracker.params(),
+            &tracker.appearance,
+            &DeepSortInputs { image: &photo, detections: &boxes(&moved) },
+        )
+        .unwrap();
+    for (person, look) in state.looks.chunks_exact(512).enumerate() {
+        assert!(cosine(look, looks[person]) > 0.85, "{person}");
+    }
+}
+
+#[test]
+fn numbers_stay_with_persons() {
+    let (Some(tracker), Some(photo)) = (tracker(), test_data("data/photos/bus.jpg")) else { return };
+    let photo = opendr_vision::open(photo).unwrap();
+    let (mut state, mut answer) = (DeepSortState::default(), TrackingAnnotationList::default());
+    for frame in 0..6 {
+        let shift = frame as f32;
+        let mut places = PERSONS.map(|[x0, y0, x1, y1]| [x0 + shift, y0, x1 + shift, y1]).to_vec();
+        if frame % 2 == 1 {
+            places.reverse();
+        }
+        if frame == 3 {
+            places.clear();
+        }
+        let detections = boxes(&places);
+        let input = DeepSortInputs { image: &photo, detections: &detections };
+        tracker.infer_into(&mut state, input, &mut answer).unwrap();
+        let wanted: Vec<_> = PERSONS.iter().zip(1..).map(|([x0, ..], id)| (id, x0 + shift)).collect();
+        assert_eq!(ids(&answer), if frame == 3 { vec![] } else { wanted }, "frame {frame}");
+    }
+}
+
+#[test]
+fn hostile_frames_never_panic_and_memory_is_bounded() {
+    let Some(tracker) = tracker() else { return };
+    let photo = Image::from_rgb8(vec![99; 3 * 50 * 40], 50, 40).unwrap();
+    let (mut state, mut answer) = (DeepSortState::default(), TrackingAnnotationList::default());
+    let mut random = Random::new(9);
+    for frame in 0..10_000_i64 {
+        // The network looks at what can be looked at: few, so that the test ends.
+        let count = if frame % 5000 == 0 { 5000 } else { random.below(2) };
+        let found = (0..count).map(|_| {
+            let strange = [f32::NAN, f32::INFINITY, -1e38, -20.0, 0.0, 1e38];
+            let place = [0; 4].map(|_| match random.chance(0.3) {
+                true => strange[random.below(strange.len())],
+                false => random.uniform(0.0, 50.0),
+            });
+            BoundingBox::new(
+                random.below(2) as i64,
+                place[0],
+                place[1],
+                place[2],
+                place[3],
+                random.uniform(0.0, 1.2),
+            )
+        });
+        let mut detections = BoundingBoxList::from(found.collect::<Vec<_>>());
+        detections.header.stamp_ns = Some(-frame);
+        let input = DeepSortInputs { image: &photo, detections: &detections };
+        tracker.infer_into(&mut state, input, &mut answer).unwrap();
+        assert!(state.track_count() <= MOST && answer.annotations.len() <= MOST);
+    }
+}
+
+#[test]
+fn boxes_beside_the_picture_and_no_boxes_are_no_error() {
+    let Some(tracker) = tracker() else { return };
+    let photo = Image::from_rgb8(vec![99; 3 * 50 * 40], 50, 40).unwrap();
+    let (mut state, mut answer) = (DeepSortState::default(), TrackingAnnotationList::default());
+    for places in [
+        vec![[-90.0, -90.0, -10.0, -5.0], [60.0, 2.0, 80.0, 9.0], [0.0, 0.0, 0.3, 40.0]],
+        vec![],
+        vec![[f32::NAN; 4]],
+    ] {
+        for _ in 0..3 {
+            let detections = boxes(&places);
+            let input = DeepSortInputs { image: &photo, detections: &detections };
+            tracker.infer_into(&mut state, input, &mut answer).unwrap();
+        }
+    }
+    assert!(answer.annotations.is_empty());
+}

@@ -1,0 +1,143 @@
+//! Detector and tracker in one call, behind the interface of OpenDR's FairMOT.
+//!
+//! It is not FairMOT's network (Y. Zhang et al., IJCV 2021), of which there are no weights that may be used: NanoDet finds the
+//! persons, [`ByteTrack`] follows them, and the frame tells how the camera moved.
+
+use opendr_engine::data::Image;
+use opendr_engine::learner::{Learner, Spec};
+use opendr_engine::model::Model;
+use opendr_engine::params::Params;
+use opendr_engine::target::{BoundingBoxList, Classes, Name, TrackingAnnotationList};
+use opendr_engine::{Device, Result, Task};
+
+use super::{ByteTrack, ByteTrackParams, ByteTrackState, TrackerInputs};
+use opendr_detection::object_detection_2d::{Nanodet, NanodetParams};
+
+/// What a user may set.
+#[derive(Debug, Clone, Params)]
+pub struct FairMotParams {
+    /// Detections from this score on are paired first; 0.1 more begins a track.
+    #[param(default = 0.3, range = 0.1..=1.0, live)]
+    pub threshold: f32,
+    /// Frames for which an object may be out of sight.
+    #[param(default = 30, range = 0..=1000, live)]
+    pub track_buffer: u32,
+    /// Smaller boxes are left out.
+    #[param(default = 100.0, range = 0.0..=1e6, unit = "px^2", live)]
+    pub min_box_area: f32,
+    /// Whether all classes of the detector are followed, or persons alone.
+    #[param(default = false, live)]
+    pub every_class: bool,
+    /// Whether frames tell how the camera moved; a camera that stands still needs it not.
+    #[param(default = true, live)]
+    pub camera_motion: bool,
+}
+
+/// A loaded detector with its tracker.
+pub struct FairMot {
+    params: FairMotParams,
+    detector: Nanodet,
+    /// The detector's number of persons.
+    person: Option<i64>,
+}
+
+/// The objects of one stream.
+#[derive(Default)]
+pub struct FairMotState {
+    tracks: ByteTrackState,
+    found: BoundingBoxList,
+}
+
+/// The part of the container.
+const DETECTOR: &str = "detector";
+/// What is found with a lower score is noise.
+const LOWEST: f32 = 0.1;
+
+impl Learner for FairMot {
+    const SPEC: Spec = Spec::new("fair_mot", Task::ObjectTracking2d)
+        .class("ObjectTracking2DFairMotLearner")
+        .about("NanoDet and ByteTrack in one call follow the persons in a video.")
+        .without_effect(&[
+            ("backbone", "the detector is NanoDet"),
+            ("network_head", "the detector is NanoDet"),
+            ("scale", "the detector scales frames itself"),
+            ("num_classes", "`every_class` says whether more than persons are followed"),
+            ("max_objs", "the detector finds at most a hundred"),
+            ("frame_rate", "`track_buffer` counts frames"),
+            ("image_mean", "the detector knows it"),
+            ("image_std", "the detector knows it"),
+            ("lr", Spec::OF_TRAINING),
+            ("iters", Spec::OF_TRAINING),
+            ("batch_size", Spec::OF_TRAINING),
+            ("optimizer", Spec::OF_TRAINING),
+            ("lr_schedule", Spec::OF_TRAINING),
+            ("lr_step", Spec::OF_TRAINING),
+            ("num_epochs", Spec::OF_TRAINING),
+            ("checkpoint_after_iter", Spec::OF_TRAINING),
+            ("checkpoint_load_iter", Spec::OF_TRAINING),
+            ("num_workers", Spec::OF_TRAINING),
+            ("gpus", Spec::OF_TRAINING),
+            ("mse_loss", Spec::OF_TRAINING),
+            ("reg_loss", Spec::OF_TRAINING),
+            ("hm_weight", Spec::OF_TRAINING),
+            ("wh_weight", Spec::OF_TRAINING),
+            ("off_weight", Spec::OF_TRAINING),
+            ("id_weight", Spec::OF_TRAINING),
+            ("head_conv", "the detector is NanoDet"),
+            ("ltrb", "the detector is NanoDet"),
+            ("reg_offset", "the detector is NanoDet"),
+            ("dense_wh", "the detector is NanoDet"),
+            ("cat_spec_wh", "the detector is NanoDet"),
+            ("norm_wh", "the detector is NanoDet"),
+            ("reid_dim", "the detector is NanoDet"),
+            ("down_ratio", "the detector is NanoDet"),
+            ("use_pretrained_backbone", Spec::OF_TRAINING),
+        ]);
+    type Params = FairMotParams;
+    type Input<'a> = &'a Image;
+    type Target = TrackingAnnotationList;
+    type State = FairMotState;
+
+    fn load(model: &Model, params: FairMotParams, device: Device) -> Result<Self> {
+        let detector_params = NanodetParams { threshold: LOWEST, ..NanodetParams::default() };
+        let detector = Nanodet::load(&model.part(DETECTOR)?, detector_params, device)?;
+        let person = detector.classes().index("person");
+        Ok(Self { params, detector, person })
+    }
+
+    fn params(&self) -> &FairMotParams {
+        &self.params
+    }
+
+    fn params_mut(&mut self) -> &mut FairMotParams {
+        &mut self.params
+    }
+
+    fn classes(&self) -> Classes {
+        self.detector.classes()
+    }
+
+    fn infer_into(
+        &self,
+        state: &mut FairMotState,
+        image: &Image,
+        answer: &mut TrackingAnnotationList,
+    ) -> Result<()> {
+        let FairMotParams { threshold, track_buffer, min_box_area, every_class, camera_motion } = self.params;
+        let FairMotState { tracks, found } = state;
+        self.detector.infer_into(&mut (), image, found)?;
+        let person = self.person.map(Name::Index).filter(|_| !every_class);
+        found.boxes.retain(|found| {
+            found.area() >= min_box_area && person.as_ref().is_none_or(|person| found.name == *person)
+        });
+        let tracker = ByteTrack::with_params(ByteTrackParams {
+            threshold,
+            low_threshold: LOWEST,
+            new_threshold: (threshold + LOWEST).min(1.0),
+            track_buffer,
+            ..ByteTrackParams::default()
+        });
+        let input = TrackerInputs { detections: found, image: camera_motion.then_some(image) };
+        tracker.infer_into(tracks, input, answer)
+    }
+}
