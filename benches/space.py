@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Our voxelisation and turned suppression beside NumPy and Shapely, in one run, on one core.
 
-    cargo build --release -p opendr-perception --example space_speed
+    cargo build --release -p opendr-clouds --example space_speed
     python3 -m venv /tmp/space && /tmp/space/bin/pip install numpy shapely
     /tmp/space/bin/python benches/space.py --speed target/release/examples/space_speed
 
@@ -102,7 +102,7 @@ def timed(run, rounds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--speed", required=True, help="crates/perception/examples/space_speed.rs, built with --release")
+    parser.add_argument("--speed", required=True, help="crates/perception/clouds/examples/space_speed.rs, built with --release")
     parser.add_argument("--points", help="a KITTI file of points instead of a made one")
     parser.add_argument("--rounds", type=int, default=5)
     arguments = parser.parse_args()

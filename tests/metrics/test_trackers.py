@@ -41,7 +41,7 @@ def frames_of(video):
 
 
 def ours(tracker, frames):
-    command = example("perception", "follow")
+    command = example("tracking", "follow")
     lines = "".join(json.dumps([[*row[1:], 1.0] for row in found]) + "\n" for _, found in frames)
     done = subprocess.run([*command, tracker, "{}"], cwd=ROOT, input=lines, stdout=subprocess.PIPE, text=True, check=True)
     return [json.loads(line) for line in done.stdout.splitlines()[:-1]]

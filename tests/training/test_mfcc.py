@@ -1,4 +1,4 @@
-"""Cepstra that crates/perception makes are librosa's and TensorFlow's."""
+"""Cepstra that crates/perception/sound makes are librosa's and TensorFlow's."""
 
 import os
 import subprocess
@@ -19,8 +19,8 @@ WORDS = ["down", "go", "left", "no", "off", "on", "right", "stop", "up", "yes", 
 
 @pytest.fixture(scope="session")
 def program():
-    """crates/perception/examples/mfcc.rs."""
-    return example("perception", "mfcc")
+    """crates/perception/sound/examples/mfcc.rs."""
+    return example("sound", "mfcc")
 
 
 @pytest.fixture

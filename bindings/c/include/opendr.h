@@ -1947,6 +1947,48 @@ static inline opendr_status opendr_infer_blazepose(const opendr_learner *learner
 }
 
 /*
+ * FallDetectorLearner: Tells which persons have fallen, by a rule on their poses over time.
+ *
+ * Parameters:
+ *   hold (a float 0..=60 s, may change while it runs, default 0.5): A posture takes the place of another when it was seen for so long.
+ *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
+ *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
+ *   base_height (an int 64..=2048 px, may change while it runs, default 368): Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size of its own.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   falls (BoundingBoxList): A box around each person: class 0 where nothing can be told, 1 for a fall, 2 for none.
+ *   poses (PoseList): The persons, in the order of the boxes.
+ */
+static inline opendr_status opendr_load_fall_detector(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("fall_detector", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_fall_detector(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **falls,
+    opendr_pose_list **poses) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "falls";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "poses";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
+    if (falls != NULL) *falls = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
  * HandPoseEstimationLearner: Finds 21 joints of each hand and follows hands through a video.
  *
  * Parameters:
@@ -2054,48 +2096,6 @@ static inline opendr_status opendr_infer_hand_gesture(const opendr_learner *lear
 }
 
 /*
- * FallDetectorLearner: Tells which persons have fallen, by a rule on their poses over time.
- *
- * Parameters:
- *   hold (a float 0..=60 s, may change while it runs, default 0.5): A posture takes the place of another when it was seen for so long.
- *   threshold (a float 0..=1, may change while it runs, default 0.1): Persons below this score are dropped.
- *   keypoint_threshold (a float 0.01..=1, may change while it runs, default 0.1): Joints below this score are missing.
- *   base_height (an int 64..=2048 px, may change while it runs, default 368): Height of the input of LightweightOpenPose. Larger finds smaller persons; MoveNet has a size of its own.
- *
- * Inputs:
- *   image (Image)
- *
- * Outputs:
- *   falls (BoundingBoxList): A box around each person: class 0 where nothing can be told, 1 for a fall, 2 for none.
- *   poses (PoseList): The persons, in the order of the boxes.
- */
-static inline opendr_status opendr_load_fall_detector(const char *path, const char *device, const char *params_json,
-    opendr_learner **learner) {
-    return opendr_load("fall_detector", path, device, params_json, learner);
-}
-
-static inline opendr_status opendr_infer_fall_detector(const opendr_learner *learner,
-    const opendr_image *image,
-    opendr_bounding_box_list **falls,
-    opendr_pose_list **poses) {
-    opendr_input inputs_[1];
-    opendr_output outputs_[2];
-    opendr_status status_;
-    inputs_[0].name = "image";
-    inputs_[0].value = (const opendr_value *)image;
-    outputs_[0].name = "falls";
-    outputs_[0].value = NULL;
-    outputs_[1].name = "poses";
-    outputs_[1].value = NULL;
-    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
-    if (falls != NULL) *falls = (opendr_bounding_box_list *)outputs_[0].value;
-    else opendr_value_free(&outputs_[0].value);
-    if (poses != NULL) *poses = (opendr_pose_list *)outputs_[1].value;
-    else opendr_value_free(&outputs_[1].value);
-    return status_;
-}
-
-/*
  * ImageClassifierLearner: Tells the class of a picture; learns the classes of a user's own pictures in minutes.
  *
  * Parameters:
@@ -2114,6 +2114,42 @@ static inline opendr_status opendr_load_image_classifier(const char *path, const
 }
 
 static inline opendr_status opendr_infer_image_classifier(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "category";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * MultilinearCompressiveLearner: Tells the class of a picture by few numbers that were measured of it.
+ *
+ * Parameters:
+ *   input_shape (a list 1..=4096, default 32,32,3): Height, width and channels (3) of the pictures that are measured; others are stretched to it.
+ *   compressed_shape (a list 1..=4096, default 16,16,1): Height, width and channels of the measurement.
+ *   backbone (a str, one of small, default small): What tells the class.
+ *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   category (Category)
+ */
+static inline opendr_status opendr_load_multilinear_compressive(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("multilinear_compressive", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_multilinear_compressive(const opendr_learner *learner,
     const opendr_image *image,
     opendr_category **category) {
     opendr_input inputs_[1];
@@ -2231,6 +2267,125 @@ static inline opendr_status opendr_infer_selfie_segmentation(const opendr_learne
 }
 
 /*
+ * TiledSegmentationLearner: Tells the class of every pixel of large pictures in tiles, within a time budget.
+ *
+ * Parameters:
+ *   tile (an int 32..=4096 px, may change while it runs, default 512): Side of a tile in the picture. What is looked for should fill a tenth of it or more.
+ *   tile_overlap (an int 0..=2048 px, may change while it runs, default 64): What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
+ *   whole (a bool, may change while it runs, default true): Whether the whole picture is looked at, too: for what is larger than a tile.
+ *   time_budget (a float 0..=60000 ms, may change while it runs, default 0): Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that depend on nothing but the pictures.
+ *   max_tiles (an int 0..=100000, may change while it runs, default 0): At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
+ *   detail_threshold (a float 0..=255, may change while it runs, default 16): A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
+ *   change_threshold (a float 0..=255, may change while it runs, default 6): A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then its last answer holds. 0: always.
+ *   memory (an int 0..=1000, may change while it runs, default 5): For so many pictures the answer of a tile that changed holds, if there was no time to look again.
+ *   rotation (an int 0..=1000, may change while it runs, default 4): In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
+ *   parallel_tiles (an int 0..=64, default 0): Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores, at most four.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   heatmap (Heatmap)
+ */
+static inline opendr_status opendr_load_tiled_segmentation(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("tiled_segmentation", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_tiled_segmentation(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **heatmap) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "heatmap";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * BodyPixLearner: BodyPix finds persons with the pixels of each.
+ *
+ * Parameters:
+ *   threshold (a float 0..=1, may change while it runs, default 0.2): Persons below this score are dropped.
+ *   mask_threshold (a float 0.01..=0.99, may change while it runs, default 0.5): Pixels from this score on belong to a person.
+ *   peak_threshold (a float 0.01..=0.99, may change while it runs, default 0.4): Joints below this score start no person.
+ *   nms_radius (a float 0..=200 px, may change while it runs, default 30): Joints of one kind nearer than this belong to one person, in pixels of the network's input.
+ *   max_detections (an int 1..=100, may change while it runs, default 20): At most this many persons a picture.
+ *   resolution (an int 65..=1537 px, may change while it runs, default 513): Longer side of the network's input. Larger finds smaller persons.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   boxes (BoundingBoxList)
+ */
+static inline opendr_status opendr_load_bodypix(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("bodypix", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_bodypix(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_bounding_box_list **boxes) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[1];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "boxes";
+    outputs_[0].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
+    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    return status_;
+}
+
+/*
+ * BinaryHighResolutionLearner: Tells where a picture of full high definition shows what it has learned to look for; it trains.
+ *
+ * Parameters:
+ *   architecture (a str, one of VGG_720p, VGG_1080p, default VGG_720p): The network that is trained; a loaded model is of the one it was trained as.
+ *
+ * Inputs:
+ *   image (Image)
+ *
+ * Outputs:
+ *   map (Heatmap): Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is (8x, 8y).
+ *   category (Category): Class 1 where one of the patches is rather that than class 0, by the probability of the best; of a picture of a patch's size its class.
+ */
+static inline opendr_status opendr_load_binary_high_resolution(const char *path, const char *device, const char *params_json,
+    opendr_learner **learner) {
+    return opendr_load("binary_high_resolution", path, device, params_json, learner);
+}
+
+static inline opendr_status opendr_infer_binary_high_resolution(const opendr_learner *learner,
+    const opendr_image *image,
+    opendr_heatmap **map,
+    opendr_category **category) {
+    opendr_input inputs_[1];
+    opendr_output outputs_[2];
+    opendr_status status_;
+    inputs_[0].name = "image";
+    inputs_[0].value = (const opendr_value *)image;
+    outputs_[0].name = "map";
+    outputs_[0].value = NULL;
+    outputs_[1].name = "category";
+    outputs_[1].value = NULL;
+    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
+    if (map != NULL) *map = (opendr_heatmap *)outputs_[0].value;
+    else opendr_value_free(&outputs_[0].value);
+    if (category != NULL) *category = (opendr_category *)outputs_[1].value;
+    else opendr_value_free(&outputs_[1].value);
+    return status_;
+}
+
+/*
  * EfficientPsLearner: Tells class and object of every pixel, by fusing DeepLab, CenterNet and BodyPix.
  *
  * Parameters:
@@ -2318,44 +2473,6 @@ static inline opendr_status opendr_infer_efficient_lps(const opendr_learner *lea
     else opendr_value_free(&outputs_[1].value);
     if (depth != NULL) *depth = (opendr_heatmap *)outputs_[2].value;
     else opendr_value_free(&outputs_[2].value);
-    return status_;
-}
-
-/*
- * BodyPixLearner: BodyPix finds persons with the pixels of each.
- *
- * Parameters:
- *   threshold (a float 0..=1, may change while it runs, default 0.2): Persons below this score are dropped.
- *   mask_threshold (a float 0.01..=0.99, may change while it runs, default 0.5): Pixels from this score on belong to a person.
- *   peak_threshold (a float 0.01..=0.99, may change while it runs, default 0.4): Joints below this score start no person.
- *   nms_radius (a float 0..=200 px, may change while it runs, default 30): Joints of one kind nearer than this belong to one person, in pixels of the network's input.
- *   max_detections (an int 1..=100, may change while it runs, default 20): At most this many persons a picture.
- *   resolution (an int 65..=1537 px, may change while it runs, default 513): Longer side of the network's input. Larger finds smaller persons.
- *
- * Inputs:
- *   image (Image)
- *
- * Outputs:
- *   boxes (BoundingBoxList)
- */
-static inline opendr_status opendr_load_bodypix(const char *path, const char *device, const char *params_json,
-    opendr_learner **learner) {
-    return opendr_load("bodypix", path, device, params_json, learner);
-}
-
-static inline opendr_status opendr_infer_bodypix(const opendr_learner *learner,
-    const opendr_image *image,
-    opendr_bounding_box_list **boxes) {
-    opendr_input inputs_[1];
-    opendr_output outputs_[1];
-    opendr_status status_;
-    inputs_[0].name = "image";
-    inputs_[0].value = (const opendr_value *)image;
-    outputs_[0].name = "boxes";
-    outputs_[0].value = NULL;
-    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
-    if (boxes != NULL) *boxes = (opendr_bounding_box_list *)outputs_[0].value;
-    else opendr_value_free(&outputs_[0].value);
     return status_;
 }
 
@@ -2466,87 +2583,6 @@ static inline opendr_status opendr_infer_ambiguity_measure(const opendr_learner 
 }
 
 /*
- * TiledSegmentationLearner: Tells the class of every pixel of large pictures in tiles, within a time budget.
- *
- * Parameters:
- *   tile (an int 32..=4096 px, may change while it runs, default 512): Side of a tile in the picture. What is looked for should fill a tenth of it or more.
- *   tile_overlap (an int 0..=2048 px, may change while it runs, default 64): What neighbouring tiles share: what is smaller lies whole in one of them. At most half of a tile counts.
- *   whole (a bool, may change while it runs, default true): Whether the whole picture is looked at, too: for what is larger than a tile.
- *   time_budget (a float 0..=60000 ms, may change while it runs, default 0): Time for one picture; a tile that has begun is finished, and one is always looked at. 0: no limit, and answers that depend on nothing but the pictures.
- *   max_tiles (an int 0..=100000, may change while it runs, default 0): At most so many tiles of one picture are looked at, the others in the next ones; 0: no limit.
- *   detail_threshold (a float 0..=255, may change while it runs, default 16): A tile in which brightness differs by no more than this within 16 pixels, 0..=255, is empty; 0: no tile is.
- *   change_threshold (a float 0..=255, may change while it runs, default 6): A tile is looked at again once the brightness of 16 x 16 pixels in it changed by more than this, 0..=255; until then its last answer holds. 0: always.
- *   memory (an int 0..=1000, may change while it runs, default 5): For so many pictures the answer of a tile that changed holds, if there was no time to look again.
- *   rotation (an int 0..=1000, may change while it runs, default 4): In every so-manyth picture the tile that was not looked at for longest is, be there anything or not; 0: never.
- *   parallel_tiles (an int 0..=64, default 0): Tiles that are looked at side by side, each on a thread with a copy of the network; 0: as many as there are cores, at most four.
- *
- * Inputs:
- *   image (Image)
- *
- * Outputs:
- *   heatmap (Heatmap)
- */
-static inline opendr_status opendr_load_tiled_segmentation(const char *path, const char *device, const char *params_json,
-    opendr_learner **learner) {
-    return opendr_load("tiled_segmentation", path, device, params_json, learner);
-}
-
-static inline opendr_status opendr_infer_tiled_segmentation(const opendr_learner *learner,
-    const opendr_image *image,
-    opendr_heatmap **heatmap) {
-    opendr_input inputs_[1];
-    opendr_output outputs_[1];
-    opendr_status status_;
-    inputs_[0].name = "image";
-    inputs_[0].value = (const opendr_value *)image;
-    outputs_[0].name = "heatmap";
-    outputs_[0].value = NULL;
-    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
-    if (heatmap != NULL) *heatmap = (opendr_heatmap *)outputs_[0].value;
-    else opendr_value_free(&outputs_[0].value);
-    return status_;
-}
-
-/*
- * BinaryHighResolutionLearner: Tells where a picture of full high definition shows what it has learned to look for; it trains.
- *
- * Parameters:
- *   architecture (a str, one of VGG_720p, VGG_1080p, default VGG_720p): The network that is trained; a loaded model is of the one it was trained as.
- *
- * Inputs:
- *   image (Image)
- *
- * Outputs:
- *   map (Heatmap): Probabilities `[rows, columns]`: that of row `y` and column `x` is of the square patch whose left-top corner is (8x, 8y).
- *   category (Category): Class 1 where one of the patches is rather that than class 0, by the probability of the best; of a picture of a patch's size its class.
- */
-static inline opendr_status opendr_load_binary_high_resolution(const char *path, const char *device, const char *params_json,
-    opendr_learner **learner) {
-    return opendr_load("binary_high_resolution", path, device, params_json, learner);
-}
-
-static inline opendr_status opendr_infer_binary_high_resolution(const opendr_learner *learner,
-    const opendr_image *image,
-    opendr_heatmap **map,
-    opendr_category **category) {
-    opendr_input inputs_[1];
-    opendr_output outputs_[2];
-    opendr_status status_;
-    inputs_[0].name = "image";
-    inputs_[0].value = (const opendr_value *)image;
-    outputs_[0].name = "map";
-    outputs_[0].value = NULL;
-    outputs_[1].name = "category";
-    outputs_[1].value = NULL;
-    status_ = opendr_infer(learner, inputs_, 1, outputs_, 2);
-    if (map != NULL) *map = (opendr_heatmap *)outputs_[0].value;
-    else opendr_value_free(&outputs_[0].value);
-    if (category != NULL) *category = (opendr_category *)outputs_[1].value;
-    else opendr_value_free(&outputs_[1].value);
-    return status_;
-}
-
-/*
  * GrConvNetLearner: GR-ConvNet finds where a gripper can take hold, in colour and depth.
  *
  * Parameters:
@@ -2581,42 +2617,6 @@ static inline opendr_status opendr_infer_gr_conv_net(const opendr_learner *learn
     outputs_[0].value = NULL;
     status_ = opendr_infer(learner, inputs_, 2, outputs_, 1);
     if (poses != NULL) *poses = (opendr_pose_list *)outputs_[0].value;
-    else opendr_value_free(&outputs_[0].value);
-    return status_;
-}
-
-/*
- * MultilinearCompressiveLearner: Tells the class of a picture by few numbers that were measured of it.
- *
- * Parameters:
- *   input_shape (a list 1..=4096, default 32,32,3): Height, width and channels (3) of the pictures that are measured; others are stretched to it.
- *   compressed_shape (a list 1..=4096, default 16,16,1): Height, width and channels of the measurement.
- *   backbone (a str, one of small, default small): What tells the class.
- *   n_class (an int 2..=10000, default none): Classes. None: as many as the data name.
- *
- * Inputs:
- *   image (Image)
- *
- * Outputs:
- *   category (Category)
- */
-static inline opendr_status opendr_load_multilinear_compressive(const char *path, const char *device, const char *params_json,
-    opendr_learner **learner) {
-    return opendr_load("multilinear_compressive", path, device, params_json, learner);
-}
-
-static inline opendr_status opendr_infer_multilinear_compressive(const opendr_learner *learner,
-    const opendr_image *image,
-    opendr_category **category) {
-    opendr_input inputs_[1];
-    opendr_output outputs_[1];
-    opendr_status status_;
-    inputs_[0].name = "image";
-    inputs_[0].value = (const opendr_value *)image;
-    outputs_[0].name = "category";
-    outputs_[0].value = NULL;
-    status_ = opendr_infer(learner, inputs_, 1, outputs_, 1);
-    if (category != NULL) *category = (opendr_category *)outputs_[0].value;
     else opendr_value_free(&outputs_[0].value);
     return status_;
 }

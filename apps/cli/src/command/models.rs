@@ -49,7 +49,10 @@ struct Row<'a> {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let task = matches.get_one::<String>("task").map(|name| name.parse::<Task>()).transpose()?;
     let zoo = Zoo::new(ZooOptions::from_env()?)?;
+    // Cards of learners that this build does not have are left out.
+    let learners: Vec<_> = opendr::registry().entries().iter().map(|entry| entry.spec.name).collect();
     let models = zoo.items().filter(|item| item.card.kind == ItemKind::Model);
+    let models = models.filter(|item| learners.contains(&item.card.learner.as_str()));
     let rows: Vec<Row<'_>> = models
         .map(|item| row(&zoo, item))
         .filter(|row| task.is_none() || row.task == task)
