@@ -98,6 +98,16 @@ fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
         "without training",
         &mut cargo(&["check", "--workspace", "--exclude=opendr-python", "--exclude=opendr-c"]),
     )?;
+    // One family of learners by itself.
+    live(
+        "a single family",
+        &mut cargo(&[
+            "check",
+            "--package=opendr-cli",
+            "--no-default-features",
+            "--features=detection,training",
+        ]),
+    )?;
     live(
         "free-threaded Python",
         cargo(&["check", "--workspace", "--exclude=opendr-c", "--no-default-features"])
