@@ -5,9 +5,8 @@ use burn::tensor::{Device, Int, Tensor, TensorData};
 use opendr_datasets::loader::{Collate, ImageBatch, ImageBatches};
 use opendr_engine::Result;
 use opendr_engine::dataset::Sample;
-use opendr_vision::Preprocess;
-
 use opendr_perception_common::labelled::class_of;
+use opendr_vision::Preprocess;
 
 /// Makes [`LabelledPictures`].
 pub struct PictureCollator {

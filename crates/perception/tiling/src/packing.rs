@@ -1,7 +1,7 @@
 use opendr_engine::target::BoundingBox;
+use opendr_perception_common::regions::Region;
 
 use super::Tiles;
-use opendr_perception_common::regions::Region;
 
 /// A part of a tile, and where it lies in the picture that the network is given.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

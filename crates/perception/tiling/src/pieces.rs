@@ -1,5 +1,4 @@
 use opendr_engine::target::BoundingBox;
-
 use opendr_perception_common::regions::Region;
 use opendr_perception_common::suppression::iou;
 

@@ -1,8 +1,8 @@
 use opendr_engine::Result;
 use opendr_engine::data::ImageView;
+use opendr_perception_common::regions::{CoarsePicture, Region};
 
 use super::TilingParams;
-use opendr_perception_common::regions::{CoarsePicture, Region};
 
 /// A tile of a picture and when it was looked at.
 #[derive(Debug, Clone)]

@@ -1,8 +1,8 @@
 use opendr_engine::data::{Image, ImageView, Layout, PixelFormat, Samples};
 use opendr_engine::{Error, Result};
+use opendr_perception_common::regions::Region;
 
 use crate::Slot;
-use opendr_perception_common::regions::Region;
 
 /// The level of what lies between parts.
 const BETWEEN: u8 = 114;

@@ -8,13 +8,13 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, ErrorKind, Random, Result, Value};
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
 use opendr_training::Objective;
 
 use super::network::ActivityNetwork;
 use super::objective::{ActivityObjective, Form};
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 const SIDE: usize = 32;
 const FRAMES: usize = 4;

@@ -5,7 +5,6 @@ use opendr_engine::data::SkeletonSequence;
 use opendr_engine::dataset::Sample;
 use opendr_engine::target::Skeleton;
 use opendr_engine::{Error, Random, Result, Value};
-
 use opendr_perception_common::frame_features::FrameFeatures;
 
 /// Mirrors a person, leans and stretches it, cuts the recording and plays it slower or faster.

@@ -8,15 +8,15 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Task, Value};
+use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
 use super::augment::SkeletonChanges;
 use super::network::ActionNetwork;
 use super::sizes::NetworkSizes;
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy.
 pub(super) struct ActionObjective {

@@ -1,9 +1,9 @@
 //! How large the network is.
 
 use opendr_engine::{Error, Result};
+use opendr_perception_common::frame_features::KINDS;
 
 use super::GraphType;
-use opendr_perception_common::frame_features::KINDS;
 
 /// Sizes of the network.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 use opendr_engine::data::SkeletonSequence;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Error, Result};
-
 use opendr_perception_common::joints::joint_of;
 
 /// How a [`SkeletonBuffer`] keeps poses.

@@ -9,13 +9,13 @@ use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, ErrorKind, Header, Random, Result, Value};
+use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_training::Objective;
 
 use super::network::ActionNetwork;
 use super::objective::{ActionObjective, Form};
 use super::sizes::NetworkSizes;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 
 const JOINTS: usize = 15;
 

@@ -10,12 +10,12 @@ use opendr_engine::model::Model;
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-
-use super::DETECTORS;
 use opendr_tiling::{
     Allowance, Looks, PictureLearner, Piece, Slot, TilePicture, Tiles, TilingParams, look_side_by_side,
     merge_pieces, open_copies,
 };
+
+use super::DETECTORS;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -4,11 +4,11 @@ use opendr_engine::data::Image;
 use opendr_engine::model::Model;
 use opendr_engine::target::{BoundingBox, Classes};
 use opendr_engine::{Device, Error, Result};
+use opendr_perception_common::described_input::described_input;
+use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::Similarity;
 
 use crate::face_finder::{eye_angle, square_around};
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
 
 /// The part of the container, an image classifier.
 const PART: &str = "mask";

@@ -9,11 +9,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_vision::Preprocess;
-
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
 use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
+use opendr_vision::Preprocess;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

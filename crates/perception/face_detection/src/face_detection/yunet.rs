@@ -12,11 +12,11 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
+use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::{Anchor, ChannelOrder, InputGeometry, Preprocess};
 
 use super::masked_face::MaskNetwork;
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

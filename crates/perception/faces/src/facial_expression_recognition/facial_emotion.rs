@@ -9,11 +9,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Category, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_vision::{Border, ChannelOrder, Preprocess};
-
 use opendr_face_detection::face_finder::{FaceFinder, FaceInput, largest, square_around, whole_picture};
 use opendr_perception_common::category_scores::category_from_scores;
 use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_vision::{Border, ChannelOrder, Preprocess};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -11,10 +11,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_perception_common::category_scores::category_of_two;
 
 use persistence::{Peak, Persistence};
-
-use opendr_perception_common::category_scores::category_of_two;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

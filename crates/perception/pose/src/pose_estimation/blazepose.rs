@@ -11,10 +11,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_vision::Border;
-
 use opendr_perception_common::picture_network::{PictureNetwork, input_of};
 use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
+use opendr_vision::Border;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -10,10 +10,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Result, Task};
+use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{Anchor, InputGeometry, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
-use opendr_perception_common::picture_network::PictureNetwork;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -11,10 +11,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::TensorView;
-
-use super::nearest;
 use opendr_perception_common::described_input::described_input;
 use opendr_perception_common::picture_network::PictureNetwork;
+
+use super::nearest;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -10,7 +10,6 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-
 use opendr_perception_common::described_input::described_input;
 use opendr_perception_common::picture_network::PictureNetwork;
 

@@ -9,12 +9,12 @@ use opendr_engine::model::Model;
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-
-use super::SEGMENTERS;
 use opendr_perception_common::regions::Region;
 use opendr_tiling::{
     Allowance, PictureLearner, TilePicture, Tiles, TilingParams, look_side_by_side, open_copies,
 };
+
+use super::SEGMENTERS;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

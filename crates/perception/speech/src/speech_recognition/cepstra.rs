@@ -1,7 +1,6 @@
 //! From sound to what the network is given.
 
 use opendr_engine::{Error, Pool, Result};
-
 use opendr_sound::Sound;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
 

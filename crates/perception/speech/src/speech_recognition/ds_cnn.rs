@@ -10,11 +10,11 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{ElementType, Session, TensorView};
-
-use crate::speech_recognition::word_stream::{Listening, WordStream, WordStreamParams};
 use opendr_perception_common::category_scores::category_from_probabilities;
 use opendr_sound::Sound;
 use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
+
+use crate::speech_recognition::word_stream::{Listening, WordStream, WordStreamParams};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -12,10 +12,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
-
-use crate::voice_activity::{SAMPLE_RATE, Speech, VoiceNetwork, VoiceRule, VoiceStream};
 use opendr_perception_common::category_scores::category_of_two;
 use opendr_sound::Sound;
+
+use crate::voice_activity::{SAMPLE_RATE, Speech, VoiceNetwork, VoiceRule, VoiceStream};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

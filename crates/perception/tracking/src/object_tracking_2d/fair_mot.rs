@@ -3,6 +3,7 @@
 //! It is not FairMOT's network (Y. Zhang et al., IJCV 2021), of which there are no weights that may be used: NanoDet finds the
 //! persons, [`ByteTrack`] follows them, and the frame tells how the camera moved.
 
+use opendr_detection::object_detection_2d::{Nanodet, NanodetParams};
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
@@ -11,7 +12,6 @@ use opendr_engine::target::{BoundingBoxList, Classes, Name, TrackingAnnotationLi
 use opendr_engine::{Device, Result, Task};
 
 use super::{ByteTrack, ByteTrackParams, ByteTrackState, TrackerInputs};
-use opendr_detection::object_detection_2d::{Nanodet, NanodetParams};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -5,6 +5,8 @@ use opendr_engine::learner::{Fit, FitJob, Learner};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, ResultExt, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{
     Container, Objective, OptimizerKind, TrainingParams, begin, fit_learner, open_for_training,
     training_device,
@@ -14,8 +16,6 @@ use super::{CoX3d, CoX3dParams};
 use crate::activity_recognition::network::ActivityNetwork;
 use crate::activity_recognition::objective::{ActivityObjective, Form};
 use crate::activity_recognition::{X3d, X3dParams};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it.
 #[derive(Debug, Clone, Params)]

@@ -23,11 +23,11 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::category_scores::category_from_logits;
+use opendr_perception_common::clip_frames::ClipFrames;
 
 use super::x3d::check_classes;
 use super::{Backbone, Sizes};
-use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::clip_frames::ClipFrames;
 
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]

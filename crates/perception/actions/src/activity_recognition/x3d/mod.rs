@@ -17,10 +17,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-
-use super::{Backbone, Sizes};
 use opendr_perception_common::category_scores::category_from_logits;
 use opendr_perception_common::clip_frames::ClipFrames;
+
+use super::{Backbone, Sizes};
 
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]

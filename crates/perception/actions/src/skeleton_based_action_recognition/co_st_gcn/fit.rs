@@ -6,6 +6,8 @@ use opendr_engine::learner::{Fit, FitJob, Learner};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, ResultExt, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{
     Container, Objective, OptimizerKind, TrainingParams, begin, fit_learner, open_for_training,
     training_device,
@@ -15,8 +17,6 @@ use super::{CoStGcn, CoStGcnParams, joints_of};
 use crate::skeleton_based_action_recognition::network::ActionNetwork;
 use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
 use crate::skeleton_based_action_recognition::{SpatioTemporalGcn, SpatioTemporalGcnParams};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it.
 #[derive(Debug, Clone, Params)]

@@ -25,11 +25,11 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::frame_features::{FrameFeatures, KINDS, LastFrame};
 
 use super::GraphType;
 use super::sizes::NetworkSizes;
 use super::spatio_temporal_gcn::{add_to, check_classes, joints_of, mean_category};
-use opendr_perception_common::frame_features::{FrameFeatures, KINDS, LastFrame};
 
 opendr_engine::choices! {
     /// Which network looks at the skeletons.

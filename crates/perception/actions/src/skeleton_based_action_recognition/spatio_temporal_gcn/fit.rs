@@ -5,14 +5,14 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::{SpatioTemporalGcn, SpatioTemporalGcnParams, joints_of};
 use crate::skeleton_based_action_recognition::network::ActionNetwork;
 use crate::skeleton_based_action_recognition::objective::{ActionObjective, Form};
 use crate::skeleton_based_action_recognition::sizes::NetworkSizes;
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it.
 #[derive(Debug, Clone, Params)]

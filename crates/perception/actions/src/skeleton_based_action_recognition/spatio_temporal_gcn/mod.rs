@@ -18,10 +18,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-
-use super::GraphType;
 use opendr_perception_common::category_scores::category_from_logits;
 use opendr_perception_common::frame_features::{ClipWork, FrameFeatures, KINDS};
+
+use super::GraphType;
 
 opendr_engine::choices! {
     /// Which network looks at the skeletons.

@@ -5,13 +5,13 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::network::MultilinearCompressiveNetwork;
 use super::objective::CompressiveObjective;
 use super::{MultilinearCompressive, MultilinearCompressiveParams};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How it is trained.
 #[derive(Debug, Clone, Params)]

@@ -20,10 +20,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_vision::Preprocess;
-
 use opendr_perception_common::category_scores::category_from_logits;
 use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
 pub use fit::MultilinearCompressiveFitParams;

@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 
 use burn::module::{Module, Param};
 use burn::tensor::{Device, Tensor, TensorData};
-
 use opendr_perception_common::small_classifier::SmallClassifier;
 
 /// Pictures `[batch, 3, height, width]` to scores `[batch, classes]`, by way of a measurement.

@@ -7,13 +7,13 @@ use opendr_engine::learner::Learner as _;
 use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::MultilinearCompressiveNetwork;
 use super::{CLASSIFIER, MultilinearCompressive, MultilinearCompressiveParams, preprocess};
 use crate::labelled_pictures::{LabelledPictures, PictureCollator};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Pictures with classes, cross entropy.
 pub(super) struct CompressiveObjective<'a> {

@@ -4,12 +4,12 @@ use burn::tensor::{Device as Trainer, Tensor, TensorData};
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_training::Objective as _;
 
 use super::network::MultilinearCompressiveNetwork;
 use super::objective::CompressiveObjective;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 
 const PICTURES: [usize; 3] = [3, 16, 20];
 const MEASURED: [usize; 3] = [2, 9, 10];

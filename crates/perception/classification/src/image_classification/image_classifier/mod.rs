@@ -13,12 +13,11 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
-#[cfg(feature = "training")]
-use opendr_vision::Preprocess;
-
 use opendr_perception_common::category_scores::{category_from_logits, category_from_probabilities};
 use opendr_perception_common::described_input::described_input;
 use opendr_perception_common::picture_network::PictureNetwork;
+#[cfg(feature = "training")]
+use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
 pub use fit::ImageClassifierFitParams;

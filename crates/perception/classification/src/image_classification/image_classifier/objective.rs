@@ -5,13 +5,13 @@ use opendr_datasets::augment::{Flip, Pipeline, RandomResizedCrop};
 use opendr_engine::Result;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::Classes;
+use opendr_perception_common::small_classifier::SmallClassifier;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::{SCORES, preprocess};
 use crate::labelled_pictures::{LabelledPictures, PictureCollator};
-use opendr_perception_common::small_classifier::SmallClassifier;
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Pictures with classes, cross entropy.
 pub struct Classify {

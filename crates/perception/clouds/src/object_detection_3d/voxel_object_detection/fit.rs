@@ -6,6 +6,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Statistics};
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::anchors::AnchorKind;
@@ -14,7 +15,6 @@ use super::network::PillarNetwork;
 use super::objective::PillarObjective;
 use super::{VoxelObjectDetection3d, VoxelObjectDetection3dParams};
 use crate::pillars::PillarGrid;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it.
 #[derive(Debug, Clone, Params)]

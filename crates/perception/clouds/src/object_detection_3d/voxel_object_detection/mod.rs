@@ -33,6 +33,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox3DList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
 
 use crate::pillars::{Voxeliser, scatter};
 use decode::{FoundBox, PillarMaps};
@@ -41,7 +42,6 @@ pub use fit::VoxelObjectDetection3dFitParams;
 pub use layout::PillarLayout;
 #[cfg(feature = "training")]
 pub use objective::PillarObjective;
-use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
 use point_features::PointFeatures;
 pub use scan::Scan;
 

@@ -6,6 +6,7 @@ use opendr_engine::Result;
 use opendr_engine::learner::Learner;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::Classes;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
@@ -15,7 +16,6 @@ use super::network::{CHANNELS, PillarNetwork};
 use super::targets::{PillarBatch, PillarBatches};
 use super::{CHUNK, OUTPUTS, PILLAR_FILE, POINT_FILE, VoxelObjectDetection3d};
 use crate::pillars::{PillarPoint, Voxeliser};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// The training of one detector.
 #[derive(Debug)]

@@ -5,6 +5,7 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::network::GemNetwork;
@@ -13,7 +14,6 @@ use super::{Gem, GemParams};
 use crate::object_detection_2d::single_shot_detector::network::NetworkConfig;
 use crate::object_detection_2d::single_shot_detector::{Backbone, Fitting, LayoutWish};
 use crate::object_detection_2d::wanted_classes;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it, on samples of two pictures of one view with boxes in pixels of the first.
 #[derive(Debug, Clone, Params)]

@@ -27,12 +27,12 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_vision::Preprocess;
-
-use super::single_shot_detector::{Layout, Levels};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
 use opendr_perception_common::category_scores::category_from_probabilities;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
+use opendr_vision::Preprocess;
+
+use super::single_shot_detector::{Layout, Levels};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

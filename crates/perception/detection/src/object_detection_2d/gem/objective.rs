@@ -8,6 +8,7 @@ use opendr_engine::learner::Learner as _;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 use opendr_vision::Preprocess;
@@ -19,7 +20,6 @@ use crate::object_detection_2d::single_shot_detector::loss::DetectionLoss;
 use crate::object_detection_2d::single_shot_detector::matching::Matching;
 use crate::object_detection_2d::single_shot_detector::targets::{DetectionBatch, DetectionBatches};
 use crate::object_detection_2d::single_shot_detector::{Layout, output_names};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// The training of one detector.
 #[derive(Debug)]

@@ -6,13 +6,13 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics};
+use opendr_perception_common::suppression::iou;
+use opendr_perception_testing::promises::check;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::drop_sensor::blank;
 use super::*;
 use crate::object_detection_2d::single_shot_detector::Backbone;
-use opendr_perception_common::suppression::iou;
-use opendr_perception_testing::promises::check;
 
 /// One thing each, on noise: red to the one sensor, bright to the other.
 struct Pairs(usize);

@@ -9,7 +9,6 @@ use opendr_engine::model::Model;
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Random, Result, Value};
-
 use opendr_tiling::{PictureLearner, open_picture_learner};
 
 use crate::object_detection_2d::DETECTORS;

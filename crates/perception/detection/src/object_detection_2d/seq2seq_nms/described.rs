@@ -3,11 +3,11 @@
 use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 use super::edge_map::EdgeMap;
 use super::moments::{Moments, MomentsScratch};
 use super::relations::Relations;
-use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 opendr_engine::choices! {
     /// How large the network is, and how closely it looks.

@@ -6,6 +6,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Device, Result, Statistics};
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::candidates::Candidates;
@@ -13,7 +14,6 @@ use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
 use super::objective::NmsObjective;
 use super::{NmsVariant, Seq2SeqNms, Seq2SeqNmsParams, variant_of};
 use crate::object_detection_2d::wanted_classes;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it: on samples of a picture and what a detector found in it, or on pictures and a `detector`.
 #[derive(Debug, Clone, Params)]

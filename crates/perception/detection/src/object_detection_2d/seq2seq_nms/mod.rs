@@ -35,9 +35,9 @@ use opendr_engine::params::{Param as _, ParamValue, Params};
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::suppression::Candidate;
 
 use described::{Choice, Described};
-use opendr_perception_common::suppression::Candidate;
 use relations::{GEOMETRY, NEIGHBOURS};
 
 /// What a user may set.

@@ -9,6 +9,8 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::suppression::{Candidate, iou};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
@@ -16,8 +18,6 @@ use super::described::{Choice, Described, class_of};
 use super::network::{BoxTensors, NetworkSizes, Seq2SeqNmsNetwork};
 use super::relations::{GEOMETRY, NEIGHBOURS};
 use super::{FILE, Seq2SeqNms, Seq2SeqNmsParams, VARIANT, logit};
-use opendr_perception_common::suppression::{Candidate, iou};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the weighted cross-entropy of "this is the box of its object".
 pub(super) struct NmsObjective<'a> {

@@ -6,14 +6,14 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics, Value};
+use opendr_perception_common::suppression::iou;
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
 use super::objective::NmsObjective;
 use super::*;
-use opendr_perception_common::suppression::iou;
-use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 /// Two striped boards each, found five times over; and two boxes of nothing.
 struct Boards(usize);

@@ -7,6 +7,7 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, ResultExt, Statistics};
+use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
 use opendr_training::weights::WeightTable;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
@@ -17,7 +18,6 @@ use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
 use super::objective::DetectionObjective;
 use super::{SingleShotDetector, SingleShotDetectorParams};
 use crate::object_detection_2d::wanted_classes;
-use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
 
 opendr_engine::choices! {
     /// MobileNetV1 and how many times the paper's channels it has.

@@ -2,10 +2,10 @@
 
 use opendr_engine::{Error, Result};
 use opendr_inference::TensorView;
+use opendr_perception_common::suppression::Candidate;
 
 use super::anchors::{AnchorLevel, Anchors};
 use super::decode::LevelMaps;
-use opendr_perception_common::suppression::Candidate;
 
 /// The names of the outputs of a level: logits of the scores, `[1, kinds * classes, rows, columns]`, and offsets,
 /// `[1, kinds * 4, rows, columns]`.

@@ -32,6 +32,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
+use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
 
 #[cfg(feature = "training")]
 pub use fit::{Backbone, SingleShotDetectorFitParams};
@@ -43,9 +46,6 @@ pub(crate) use levels::Levels;
 pub(crate) use levels::output_names;
 #[cfg(feature = "training")]
 pub use objective::DetectionObjective;
-use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

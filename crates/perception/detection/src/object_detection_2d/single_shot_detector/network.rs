@@ -308,7 +308,6 @@ mod tests {
     use burn::tensor::TensorData;
     use opendr_engine::Device as Place;
     use opendr_inference::{Session, TensorView};
-
     use opendr_perception_common::frozen_layers::FrozenLayers;
 
     use super::*;

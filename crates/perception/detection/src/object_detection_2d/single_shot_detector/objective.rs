@@ -6,6 +6,7 @@ use opendr_engine::Result;
 use opendr_engine::learner::Learner;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::Classes;
+use opendr_perception_common::frozen_layers::FrozenLayers;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
@@ -15,7 +16,6 @@ use super::matching::Matching;
 use super::network::Network;
 use super::targets::{DetectionBatch, DetectionBatches};
 use super::{SingleShotDetector, output_names};
-use opendr_perception_common::frozen_layers::FrozenLayers;
 
 /// The training of one detector.
 #[derive(Debug)]

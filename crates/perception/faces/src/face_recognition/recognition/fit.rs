@@ -8,15 +8,15 @@ use opendr_engine::model::{Model, ModelWriter};
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Error, Result, Statistics, Unit, Value};
+use opendr_face_detection::face_finder::{FaceInput, largest};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::{TRAINABLE, network_from_base};
 use opendr_training::{TrainingParams, begin, fit_network, open_for_training};
 
 use super::gallery::Gallery;
 use super::network::Network;
 use super::objective::ArcFace;
 use super::{FaceRecognition, FaceRecognitionParams};
-use opendr_face_detection::face_finder::{FaceInput, largest};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::{TRAINABLE, network_from_base};
 
 opendr_engine::choices! {
     /// What a training makes of pictures of persons.

@@ -20,11 +20,11 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_face_detection::face_finder::{FaceFinder, FaceInput, whole_picture};
+use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{Preprocess, Similarity};
 
 use gallery::{Gallery, normalise};
-use opendr_face_detection::face_finder::{FaceFinder, FaceInput, whole_picture};
-use opendr_perception_common::picture_network::PictureNetwork;
 
 #[cfg(feature = "training")]
 pub use fit::{FaceRecognitionFitParams, FaceRecognitionMode};

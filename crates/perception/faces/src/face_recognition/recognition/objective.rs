@@ -10,15 +10,15 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::BoundingBoxList;
 use opendr_engine::{Error, Result, Value};
+use opendr_face_detection::face_finder::{largest, whole_picture};
+use opendr_perception_common::labelled::class_of;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 use opendr_vision::Preprocess;
 
 use super::network::Network;
 use super::{FaceRecognition, SIDE};
-use opendr_face_detection::face_finder::{largest, whole_picture};
-use opendr_perception_common::labelled::class_of;
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Faces with the class of their person, ArcFace's loss (Deng et al., CVPR 2019).
 pub(super) struct ArcFace {
@@ -129,9 +129,9 @@ mod tests {
     use opendr_engine::Random;
     use opendr_engine::data::Image;
     use opendr_engine::target::Category;
+    use opendr_perception_testing::overfit::losses_on_one_batch;
 
     use super::*;
-    use opendr_perception_testing::overfit::losses_on_one_batch;
 
     #[test]
     fn it_learns_a_batch_by_heart_and_is_written() {

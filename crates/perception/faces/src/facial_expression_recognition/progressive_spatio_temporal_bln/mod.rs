@@ -24,7 +24,6 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-
 use opendr_perception_common::category_scores::category_from_logits;
 use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
 

@@ -3,12 +3,12 @@ use std::f32::consts::TAU;
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
 
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::ExpressionObjective;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 const POINTS: usize = 12;
 const FRAMES: usize = 6;

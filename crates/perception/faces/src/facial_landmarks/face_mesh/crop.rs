@@ -1,9 +1,8 @@
 //! Which part of a picture the networks look at (MediaPipe's face and iris graphs).
 
 use opendr_engine::target::{BoundingBox, Keypoint};
-use opendr_vision::Similarity;
-
 use opendr_face_detection::face_finder::{eye_angle, square_around};
+use opendr_vision::Similarity;
 
 /// Outer and inner corner of the eye on the picture's left, inner and outer one of the other.
 pub(super) const EYES: [[usize; 2]; 2] = [[33, 133], [362, 263]];

@@ -12,13 +12,13 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_face_detection::face_finder::FaceFinder;
 use opendr_inference::{TensorInfo, default_threads, with_threads};
 use opendr_kernels::WorkerPool;
+use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{Preprocess, Similarity};
 
 use crop::EYES;
-use opendr_face_detection::face_finder::FaceFinder;
-use opendr_perception_common::picture_network::PictureNetwork;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

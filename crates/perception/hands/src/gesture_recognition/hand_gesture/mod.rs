@@ -14,12 +14,12 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, Classes, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_perception_common::category_scores::category_from_logits;
 
 use self::paths::{POINTS, Paths};
 use super::hand_features::{features_of_hand, features_of_path};
 use super::point_classifier::PointClassifier;
 use crate::hand_pose_estimation::{HandPose, HandPoseParams, HandPoseState};
-use opendr_perception_common::category_scores::category_from_logits;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use opendr_engine::model::{Manifest, ModelWriter};
 use opendr_engine::target::{Keypoint, Skeleton};
+use opendr_perception_testing::test_models::test_data;
 
 use super::*;
-use opendr_perception_testing::test_models::test_data;
 
 /// A container of the file names and their contents.
 fn part(folder: &Path, learner: &str, files: &[(&str, Vec<u8>)], classes: &[&str]) -> Model {

@@ -22,9 +22,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
+use opendr_perception_common::category_scores::category_from_logits;
 
 use super::point_classifier::{PointClassifier, check_numbers};
-use opendr_perception_common::category_scores::category_from_logits;
 
 /// What a user may set. Sizes are those of the network that is trained; a loaded model has its own.
 #[derive(Debug, Clone, Params)]

@@ -8,13 +8,13 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::{KeypointGestureNetwork, NetworkSizes};
 use super::{FILE, KeypointGesture, KeypointGestureParams, check_numbers};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy.
 pub(super) struct GestureObjective<'a> {

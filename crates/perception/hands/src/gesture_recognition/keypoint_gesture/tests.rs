@@ -5,11 +5,11 @@ use opendr_engine::ErrorKind;
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample, Subset};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::model::{Manifest, ModelWriter};
+use opendr_perception_testing::overfit::losses_on_one_batch;
 
 use super::network::{KeypointGestureNetwork, NetworkSizes};
 use super::objective::GestureObjective;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 
 /// Rows of numbers with their class.
 struct Rows {

@@ -4,9 +4,8 @@ use std::array;
 
 use opendr_engine::target::Skeleton;
 use opendr_engine::{Error, Result};
-use opendr_vision::Similarity;
-
 use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
+use opendr_vision::Similarity;
 
 /// Joints of a hand.
 pub(super) const JOINTS: usize = 21;

@@ -18,13 +18,13 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
+use opendr_perception_common::picture_network::{PictureNetwork, input_of};
+use opendr_perception_common::suppression::iou;
+use opendr_perception_common::turned_square::TurnedSquare;
 use opendr_vision::{Anchor, Border};
 
 use self::landmarks::{Hand, JOINTS};
 use self::palm::{Anchors, PalmScratch};
-use opendr_perception_common::picture_network::{PictureNetwork, input_of};
-use opendr_perception_common::suppression::iou;
-use opendr_perception_common::turned_square::TurnedSquare;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -1,10 +1,9 @@
 //! From the palm detector's outputs to squares around hands.
 
 use opendr_engine::{Error, Result};
-use opendr_vision::InputGeometry;
-
 use opendr_perception_common::suppression::{Candidate, keep_best, merge_overlapping};
 use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
+use opendr_vision::InputGeometry;
 
 /// Numbers of a palm: centre, size and seven key points, `x, y` each, in input pixels from the anchor.
 pub(super) const ROW: usize = 18;

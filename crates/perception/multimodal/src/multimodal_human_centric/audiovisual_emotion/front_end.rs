@@ -2,11 +2,11 @@
 
 use opendr_engine::data::{Audio, Video};
 use opendr_engine::{Pool, Result};
-
-use super::AudiovisualEmotionParams;
 use opendr_perception_common::clip_frames::ClipFrames;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
 use opendr_sound::{Sound, standardise};
+
+use super::AudiovisualEmotionParams;
 
 /// Sizes of what the network is given.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -28,9 +28,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::category_scores::category_from_logits;
 
 use self::front_end::{FrontEnd, Sizes};
-use opendr_perception_common::category_scores::category_from_logits;
 
 opendr_engine::choices! {
     /// How the two branches learn of each other.

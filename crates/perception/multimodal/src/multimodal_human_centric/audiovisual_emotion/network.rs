@@ -5,11 +5,11 @@ use burn::nn::conv::{Conv1d, Conv1dConfig};
 use burn::nn::{BatchNorm, BatchNormConfig, Dropout, DropoutConfig, Linear, LinearConfig, PaddingConfig1d};
 use burn::tensor::activation::relu;
 use burn::tensor::{Device, Tensor};
+use opendr_perception_common::small_backbone::SmallBackbone;
 
 use super::AudiovisualFusion;
 use super::cross_attention::CrossAttention;
 use super::front_end::Sizes;
-use opendr_perception_common::small_backbone::SmallBackbone;
 
 /// Cepstra and faces to logits.
 #[derive(Module, Debug)]

@@ -8,14 +8,14 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::front_end::{FrontEnd, Sizes};
 use super::network::AudiovisualNetwork;
 use super::{AudiovisualEmotion, AudiovisualEmotionParams, FILE, ModalityDrop, Scratch};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy, of both senses and, with [`ModalityDrop::Zero`], of each alone.
 pub(super) struct AudiovisualObjective<'a> {

@@ -1,13 +1,13 @@
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
 use opendr_training::OptimizerKind;
 
 use super::network::AudiovisualNetwork;
 use super::objective::AudiovisualObjective;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 const RATE: u32 = 8000;
 

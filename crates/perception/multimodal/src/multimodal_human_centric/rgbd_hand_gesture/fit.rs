@@ -5,13 +5,13 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::small_classifier::SmallClassifier;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::objective::RgbdObjective;
 use super::{CHANNELS, RgbdHandGesture, RgbdHandGestureParams};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::small_classifier::SmallClassifier;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it, on samples of two data: the picture and its depth.
 #[derive(Debug, Clone, Params)]

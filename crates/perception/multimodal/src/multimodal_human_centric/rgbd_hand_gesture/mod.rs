@@ -22,10 +22,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::category_scores::category_from_logits;
 use opendr_vision::Preprocess;
 
 use self::depth::DepthNormaliser;
-use opendr_perception_common::category_scores::category_from_logits;
 
 opendr_engine::choices! {
     /// Which network looks at the pictures.

@@ -8,13 +8,13 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::small_classifier::SmallClassifier;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::{CHANNELS, FILE, FrontEnd, RgbdHandGesture, RgbdHandGestureParams, RgbdInputs, Scratch};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::small_classifier::SmallClassifier;
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy.
 pub(super) struct RgbdObjective<'a> {

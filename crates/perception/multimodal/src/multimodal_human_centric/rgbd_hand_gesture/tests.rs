@@ -2,12 +2,12 @@ use opendr_engine::data::{Layout, PixelFormat};
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
-
-use super::objective::RgbdObjective;
-use super::*;
 use opendr_perception_common::small_classifier::SmallClassifier;
 use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::promises::check;
+
+use super::objective::RgbdObjective;
+use super::*;
 
 /// Colours that hardly differ; the depth says the class: what is near is above, below, or nowhere.
 struct Hands;

@@ -1,18 +1,18 @@
 //! Training.
 
+use opendr_clouds::range_image::RangeView;
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::network::{RangeNetwork, STAGES};
 use super::objective::LabelledScans;
 use super::{EfficientLps, EfficientLpsParams, view_of};
-use opendr_clouds::range_image::RangeView;
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How it is trained.
 #[derive(Debug, Clone, Params)]

@@ -16,6 +16,8 @@ mod objects;
 #[cfg(feature = "training")]
 mod tests;
 
+use opendr_clouds::object_detection_3d::Scan;
+use opendr_clouds::range_image::{RangeImage, RangeView};
 use opendr_engine::data::PointCloud;
 use opendr_engine::learner::{Learner, Spec, Targets};
 use opendr_engine::model::{Manifest, Model};
@@ -28,8 +30,6 @@ use serde::{Deserialize, Serialize};
 #[cfg(feature = "training")]
 pub use fit::EfficientLpsFitParams;
 use objects::{ObjectRule, Objects};
-use opendr_clouds::object_detection_3d::Scan;
-use opendr_clouds::range_image::{RangeImage, RangeView};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -2,6 +2,8 @@
 
 use burn::tensor::activation::log_softmax;
 use burn::tensor::{Device, Int, Tensor, TensorData};
+use opendr_clouds::object_detection_3d::Scan;
+use opendr_clouds::range_image::{NOWHERE, RangeImage, RangeView};
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
 use opendr_engine::learner::Learner as _;
@@ -9,6 +11,7 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::{Classes, HeatmapValues};
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
@@ -16,9 +19,6 @@ use super::network::RangeNetwork;
 use super::{
     CHANNELS, Described, EfficientLps, EfficientLpsParams, FILE, LABEL_DIVISOR, UNKNOWN, paint, project,
 };
-use opendr_clouds::object_detection_3d::Scan;
-use opendr_clouds::range_image::{NOWHERE, RangeImage, RangeView};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Scans with labels.
 pub(super) struct LabelledScans {

@@ -1,10 +1,10 @@
 //! Which points of a class are one object.
 
+use opendr_clouds::range_image::{NOWHERE, RangeImage};
 use opendr_engine::data::PointCloud;
 use opendr_vision::components::{Components, Touching};
 
 use super::{LABEL_DIVISOR, UNKNOWN};
-use opendr_clouds::range_image::{NOWHERE, RangeImage};
 
 /// What makes an object.
 pub(super) struct ObjectRule<'a> {

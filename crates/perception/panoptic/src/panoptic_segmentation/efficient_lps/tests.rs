@@ -3,13 +3,13 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::HeatmapValues;
 use opendr_engine::{ErrorKind, Random, Value};
+use opendr_perception_testing::overfit::losses_on_one_batch;
+use opendr_perception_testing::promises::check;
 use opendr_simulation::street::StreetSegments;
 
 use super::network::RangeNetwork;
 use super::objective::LabelledScans;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 const ROWS: usize = 16;
 const COLUMNS: usize = 32;

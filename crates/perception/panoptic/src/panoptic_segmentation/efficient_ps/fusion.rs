@@ -5,9 +5,8 @@
 //! of all boxes are objects where they are large, joined by touching ([`Components`]). Boxes of classes that no map knows are
 //! taken whole, smaller ones before larger ones. What is left is what cannot be counted.
 
-use opendr_vision::components::{Components, Touching};
-
 use opendr_segmentation::instance_segmentation::OwnerMap;
+use opendr_vision::components::{Components, Touching};
 
 /// A label is this times its class, plus the number of the object in its class.
 pub(super) const LABEL_DIVISOR: u32 = 1000;

@@ -5,17 +5,17 @@
 
 mod fusion;
 
+use opendr_detection::object_detection_2d::{CenterNet, CenterNetParams};
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec, Targets};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes, Heatmap, HeatmapValues, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-
-use fusion::{Fusion, Looks, Rules, Thing};
-use opendr_detection::object_detection_2d::{CenterNet, CenterNetParams};
 use opendr_segmentation::instance_segmentation::{BodyPix, BodyPixParams};
 use opendr_segmentation::semantic_segmentation::{Deeplab, DeeplabParams};
+
+use fusion::{Fusion, Looks, Rules, Thing};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

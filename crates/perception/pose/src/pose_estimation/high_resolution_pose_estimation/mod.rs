@@ -16,11 +16,11 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Pose, PoseList};
 use opendr_engine::{Device, Pool, Result, Task};
+use opendr_perception_common::regions::Region;
 
 use self::search::{Look, Search};
 use crate::pose_estimation::lightweight_open_pose::{LightweightOpenPose, LightweightOpenPoseParams};
 use crate::pose_estimation::pose_tracks::PoseTracks;
-use opendr_perception_common::regions::Region;
 
 opendr_engine::choices! {
     /// How parts of the picture are chosen.

@@ -2,9 +2,9 @@
 
 use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
+use opendr_perception_common::regions::{CellGrid, CoarsePicture, Region, join_overlapping};
 
 use super::{HighResolutionPoseEstimationParams, RegionMethod};
-use opendr_perception_common::regions::{CellGrid, CoarsePicture, Region, join_overlapping};
 
 /// A part of a picture, and how many pixels high the network sees it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -8,10 +8,9 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
+use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
 use opendr_training::weights::{Rules, WeightTable};
 use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner, open_for_training};
-
-use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
 
 use super::network::{Network, NetworkConfig};
 use super::objective::{CONFIG, PoseObjective};

@@ -26,11 +26,11 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{Anchor, InputGeometry, Preprocess};
 
 use crate::pose_estimation::part_affinity::{Grid, Memory, PartAffinity, PartMaps, Person};
 use crate::pose_estimation::pose_tracks::PoseTracks;
-use opendr_perception_common::picture_network::PictureNetwork;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -9,6 +9,9 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamValue;
 use opendr_engine::target::{BoundingBox, Keypoint, Pose, PoseList};
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::frozen_layers::FrozenLayers;
+use opendr_perception_common::joints::opendr_joints;
+use opendr_perception_common::open_sides::open_sides;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 use opendr_vision::{Anchor, InputGeometry, Preprocess};
@@ -17,9 +20,6 @@ use super::network::{Maps, Network, NetworkConfig};
 use super::person_crop::PersonCrop;
 use super::{LEVEL, LightweightOpenPose, OUTPUTS, STRIDE};
 use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, Painter};
-use opendr_perception_common::frozen_layers::FrozenLayers;
-use opendr_perception_common::joints::opendr_joints;
-use opendr_perception_common::open_sides::open_sides;
 
 /// Trains Lightweight OpenPose on pictures with [`PoseList`]s of OpenDR's or COCO's joints.
 pub(super) struct PoseObjective {

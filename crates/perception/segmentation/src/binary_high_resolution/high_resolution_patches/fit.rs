@@ -6,12 +6,12 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics, ValueType};
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner};
 
 use super::network::PatchNetwork;
 use super::objective::Patches;
 use super::{HighResolutionPatches, HighResolutionPatchesParams};
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it: on patches of two classes, of which class 0 is the background, or on pictures with boxes around what
 /// is looked for.

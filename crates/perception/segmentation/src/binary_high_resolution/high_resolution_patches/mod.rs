@@ -20,10 +20,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes, Heatmap};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_vision::Preprocess;
-
 use opendr_perception_common::category_scores::category_of_two;
 use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
 pub use fit::HighResolutionPatchesFitParams;

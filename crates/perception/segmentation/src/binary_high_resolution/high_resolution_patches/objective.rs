@@ -10,16 +10,16 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::BoundingBoxList;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::open_sides::open_sides;
+use opendr_perception_common::regions::Region;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 use opendr_vision::Preprocess;
 
 use super::network::PatchNetwork;
 use super::{HighResolutionPatches, HighResolutionPatchesParams, LOGITS, preprocess};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::open_sides::open_sides;
-use opendr_perception_common::regions::Region;
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy over patches.
 pub(super) struct Patches<'a> {

@@ -2,12 +2,12 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, HeatmapValues};
 use opendr_engine::{Random, Value};
-
-use super::objective::{PatchBatches, Patches};
-use super::*;
 use opendr_perception_common::regions::Region;
 use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::promises::check;
+
+use super::objective::{PatchBatches, Patches};
+use super::*;
 
 /// Noise; with a bright ring about each of `places`, 40 pixels across.
 fn picture(seed: u64, [width, height]: [usize; 2], places: &[[usize; 2]]) -> Image {

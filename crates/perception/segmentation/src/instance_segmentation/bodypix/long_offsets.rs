@@ -3,7 +3,6 @@
 //! Papandreou et al., PersonLab, ECCV 2018, section 3.3.
 
 use opendr_engine::target::Keypoint;
-
 use opendr_perception_common::part_tree::Person;
 
 const JOINTS: usize = 17;

@@ -12,12 +12,12 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
+use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{InputGeometry, Preprocess};
 
 use super::OwnerMap;
 use long_offsets::LongOffsets;
-use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
-use opendr_perception_common::picture_network::PictureNetwork;
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -18,12 +18,12 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::described_input::described_input;
+use opendr_perception_common::picture_network::PictureNetwork;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 
 use super::nearest;
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
 
 #[cfg(feature = "training")]
 pub use fit::BisenetFitParams;

@@ -9,13 +9,13 @@ use opendr_engine::learner::Learner as _;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::{Classes, HeatmapValues};
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::BisenetNetwork;
 use super::{Bisenet, preprocess};
 use crate::semantic_segmentation::nearest;
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// Pixels of this class do not count.
 const IGNORED: u32 = 255;

@@ -2,11 +2,11 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::HeatmapValues;
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::overfit::losses_on_one_batch;
 
 use super::network::BisenetNetwork;
 use super::objective::SegmentPixels;
 use super::*;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 
 /// A road under a sky, where it bends as the number says; a corner that does not count.
 struct Roads;

@@ -1,8 +1,8 @@
 use opendr_datasets::open_wfdb_record;
 use opendr_engine::Random;
+use opendr_perception_testing::test_models::test_data;
 
 use super::*;
-use opendr_perception_testing::test_models::test_data;
 
 /// Peaks of a heart that beats every 0.8 s, with T waves, baseline wander and noise.
 fn heart(seconds: usize, noise: f64) -> (Vec<f32>, Vec<u64>) {

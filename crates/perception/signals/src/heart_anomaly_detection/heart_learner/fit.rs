@@ -7,12 +7,12 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics, Value};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
 
 use super::objective::HeartObjective;
 use super::{HeartKind, HeartLearner, must_be};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// Sizes that all networks of heart signals have.
 #[derive(Debug, Clone, Copy, PartialEq)]

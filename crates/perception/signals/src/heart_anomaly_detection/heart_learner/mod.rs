@@ -14,9 +14,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::category_scores::category_from_logits;
 
 use crate::heart_anomaly_detection::beat_stream::{BeatStream, Beats};
-use opendr_perception_common::category_scores::category_from_logits;
 
 #[cfg(feature = "training")]
 pub use fit::{HeartSizes, TrainableHeart};

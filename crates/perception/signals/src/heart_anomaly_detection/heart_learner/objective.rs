@@ -7,13 +7,13 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
 use super::fit::{HeartSizes, TrainableHeart};
 use super::{FILE, check_series};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// What the training minimises: the cross-entropy, classes weighted.
 pub(super) struct HeartObjective<'a, K: TrainableHeart> {

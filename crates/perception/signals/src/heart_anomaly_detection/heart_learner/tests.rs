@@ -4,6 +4,7 @@ use burn::tensor::{Device as Trainer, Tensor, TensorData};
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random, Value};
+use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_training::Objective;
 
 use super::objective::HeartObjective;
@@ -13,7 +14,6 @@ use crate::heart_anomaly_detection::{
     AttentionType, GatedRecurrentUnit, GatedRecurrentUnitFitParams, GatedRecurrentUnitKind,
     GatedRecurrentUnitParams, QuantizationType,
 };
-use opendr_perception_testing::overfit::losses_on_one_batch;
 
 const SIZES: HeartSizes = HeartSizes { shape: [100, 2], classes: 3, dropout: 0.0 };
 

@@ -5,9 +5,9 @@ use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::dataset::{DatasetIterator as _, ExternalDataset};
 use opendr_engine::learner::{Handle, Stream};
 use opendr_import::{ImportOptions, onnx_from_tflite};
+use opendr_perception_testing::test_models::{container_of, test_data};
 
 use super::*;
-use opendr_perception_testing::test_models::{container_of, test_data};
 
 fn learner() -> Option<Handle<DsCnn>> {
     let network = std::fs::read(test_data("models/speech_commands/kws_ref_model.tflite")?).unwrap();

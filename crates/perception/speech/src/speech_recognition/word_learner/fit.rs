@@ -7,12 +7,12 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
+use opendr_perception_common::labelled::classes_to_train;
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
 
 use super::objective::WordObjective;
 use super::{WordKind, WordLearner};
-use opendr_perception_common::labelled::classes_to_train;
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// What a user may set of the training of every learner of words.
 #[derive(Debug, Clone, Params)]

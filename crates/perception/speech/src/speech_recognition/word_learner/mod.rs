@@ -13,11 +13,11 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result};
 use opendr_inference::{Session, TensorView};
+use opendr_perception_common::category_scores::category_from_logits;
+use opendr_sound::Sound;
 
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 use crate::speech_recognition::word_stream::{Listening, WordStream, WordStreamParams};
-use opendr_perception_common::category_scores::category_from_logits;
-use opendr_sound::Sound;
 
 #[cfg(feature = "training")]
 pub use fit::{TrainableWords, WordFitParams};

@@ -9,15 +9,15 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Random, Result, Value};
+use opendr_perception_common::labelled::{LabelledBatch, class_of};
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
+use opendr_sound::Sound;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
 use super::fit::TrainableWords;
 use super::{FILE, WordParams};
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
-use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
-use opendr_sound::Sound;
 
 /// What the training minimises: the cross-entropy.
 pub(super) struct WordObjective<'a, K: TrainableWords> {

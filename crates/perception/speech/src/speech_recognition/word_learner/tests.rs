@@ -5,6 +5,7 @@ use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{Random, Value};
+use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_training::Objective;
 
 use super::objective::WordObjective;
@@ -13,7 +14,6 @@ use crate::speech_recognition::{
     EdgeSpeechNet, EdgeSpeechNetsKind, EdgeSpeechNetsParams, MatchboxNet, MatchboxNetFitParams,
     MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnKind, QuadraticSelfOnnParams,
 };
-use opendr_perception_testing::overfit::losses_on_one_batch;
 
 /// Small networks.
 fn matchboxnet() -> MatchboxNetParams {

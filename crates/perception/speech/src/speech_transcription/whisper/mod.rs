@@ -27,10 +27,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::WhisperTranscription;
 use opendr_engine::{Device, Pool, Result, Task};
-
-use network::{Heard, Network};
 use opendr_sound::Sound;
 use opendr_sound::resampler::resampled;
+
+use network::{Heard, Network};
 use spectrogram::{RATE, Spectrogram, SpectrogramMaker};
 use tokenizer::Tokenizer;
 use transcribe::Transcript;

@@ -1,7 +1,6 @@
 //! Sound as Whisper is given it.
 
 use opendr_engine::Result;
-
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
 
 /// Samples a second.

@@ -3,13 +3,13 @@
 use opendr_engine::Result;
 use opendr_engine::learner::Streaming;
 use opendr_engine::target::WhisperTranscription;
+use opendr_sound::Sound;
+use opendr_sound::resampler::Resampler;
 
 use super::Whisper;
 use super::phrases::{Phrases, Step};
 use super::spectrogram::{HOP, RATE, WINDOW};
 use super::transcribe::Transcript;
-use opendr_sound::Sound;
-use opendr_sound::resampler::Resampler;
 
 /// What a stream remembers: at most 30 s of the phrase that goes on, and nothing of silence.
 #[derive(Debug, Default)]

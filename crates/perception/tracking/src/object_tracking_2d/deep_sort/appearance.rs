@@ -3,9 +3,8 @@
 use opendr_engine::data::Image;
 use opendr_engine::model::Model;
 use opendr_engine::{Device, Error, Result};
-use opendr_vision::Preprocess;
-
 use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_vision::Preprocess;
 
 /// The input: a person upright, pixels.
 const SIZE: [usize; 2] = [128, 256];

@@ -14,12 +14,12 @@ use opendr_engine::overlap::image_overlap;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Name, TrackingAnnotationList};
 use opendr_engine::{Device, Result, Task};
+use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 use super::TrackerInputs;
 use crate::tracking::{HeightFilter, Life, Pairing, SoundBox, sound_boxes};
 use appearance::Appearance;
 use gallery::Gallery;
-use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 /// What a user may set.
 #[derive(Debug, Clone, Params)]

@@ -1,9 +1,9 @@
 use opendr_engine::Random;
 use opendr_engine::model::Model;
 use opendr_engine::target::BoundingBox;
+use opendr_perception_testing::test_models::{container, test_data};
 
 use super::*;
-use opendr_perception_testing::test_models::{container, test_data};
 
 fn tracker() -> Option<DeepSort> {
     let model = container("deep_sort", "person_reid/osnet_x0_25_msmt17.onnx", "")?;

@@ -5,6 +5,7 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
+use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
 
 use super::layout::VpitLayout;
@@ -12,7 +13,6 @@ use super::network::VpitNetwork;
 use super::objective::VpitObjective;
 use super::pairs::Pairs;
 use super::{Vpit, VpitParams};
-use opendr_perception_common::trainable_weights::network_from_base;
 
 /// How a user may train it: on recordings of point clouds with numbered boxes in space.
 #[derive(Debug, Clone, Params)]

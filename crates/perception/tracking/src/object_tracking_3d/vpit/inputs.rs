@@ -1,10 +1,9 @@
 //! What the learner takes.
 
+use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::learner::{Inputs, Port, Ports};
 use opendr_engine::target::BoundingBox3DList;
 use opendr_engine::{Header, Result, ValueType};
-
-use opendr_clouds::object_detection_3d::Scan;
 
 /// A scan, and with the first what is to be followed.
 #[derive(Debug, Clone, Copy)]

@@ -1,10 +1,9 @@
 //! What the network sees, and what it answers.
 
+use opendr_clouds::pillars::{PillarGrid, Voxeliser};
 use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
 use serde::{Deserialize, Serialize};
-
-use opendr_clouds::pillars::{PillarGrid, Voxeliser};
 
 /// Pillars along a side of a view.
 pub const VIEW: usize = 64;

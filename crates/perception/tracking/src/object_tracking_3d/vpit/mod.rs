@@ -24,6 +24,7 @@ mod template;
 mod tests;
 mod view;
 
+use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
@@ -39,7 +40,6 @@ use layout::{CELLS, CHANNELS, FEATURES, PLACES, VIEW};
 use object::Object;
 #[cfg(feature = "training")]
 pub use objective::VpitObjective;
-use opendr_clouds::object_detection_3d::Scan;
 use template::{Comparison, Template};
 use view::{VIEW_LEN, ViewPainter};
 

@@ -1,11 +1,11 @@
 //! What is followed: where it is and how it moves.
 
+use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::target::{BoundingBox3DList, LidarBox, Name};
 use opendr_engine::{Error, Result};
 
 use super::choice::Found;
 use super::{Extrapolation, VpitParams};
-use opendr_clouds::object_detection_3d::Scan;
 
 pub(super) struct Object {
     pub name: Name,

@@ -5,6 +5,7 @@ use burn::tensor::{Device, Tensor, TensorData};
 use opendr_engine::Result;
 use opendr_engine::learner::Learner;
 use opendr_engine::model::Manifest;
+use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
@@ -12,7 +13,6 @@ use super::layout::{CHANNELS, PLACES, TEMPLATE, VIEW, VpitLayout};
 use super::network::VpitNetwork;
 use super::pairs::{VpitBatch, VpitBatches};
 use super::{FILE, Vpit};
-use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 
 /// The training of one tracker.
 #[derive(Debug)]

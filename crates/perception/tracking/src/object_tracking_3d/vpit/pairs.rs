@@ -1,5 +1,6 @@
 //! Two scans of the same objects, a few moments apart, and batches of them.
 
+use opendr_clouds::object_detection_3d::Scan;
 use opendr_datasets::loader::Collate;
 use opendr_engine::data::PointCloud;
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
@@ -8,7 +9,6 @@ use opendr_engine::{Error, Random, Result, Value};
 
 use super::layout::{PLACES, TEMPLATE, VpitLayout};
 use super::view::{VIEW_LEN, ViewPainter};
-use opendr_clouds::object_detection_3d::Scan;
 
 /// Each sample of a data set of recordings, with one of the next ones of its recording.
 pub(super) struct Pairs<'a> {

@@ -1,9 +1,9 @@
 //! Views: the surroundings of a place as a picture of pillars, in the frame of what stands there.
 
+use opendr_clouds::pillars::{Voxeliser, scatter};
 use opendr_engine::data::PointCloud;
 
 use super::layout::{CHANNELS, VIEW, VpitLayout};
-use opendr_clouds::pillars::{Voxeliser, scatter};
 
 /// Draws views; what it needs of memory is kept for the next.
 #[derive(Default)]
