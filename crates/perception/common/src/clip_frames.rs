@@ -16,13 +16,13 @@ const MEAN: f32 = 0.45 * 255.0;
 const DEVIATION: f32 = 0.225 * 255.0;
 
 impl ClipFrames {
-    /// Clips of `frames` frames of `side` x `side` pixels.
+    /// Makes clips of `frames` frames of `side` x `side` pixels.
     pub fn new(side: usize, frames: usize) -> Self {
         Self { preprocess: Preprocess::new(side, side).normalise([MEAN; 3], [DEVIATION; 3]), frames }
     }
 
-    /// Numbers of a frame.
-    pub fn len(&self) -> usize {
+    /// Returns how many numbers a frame has.
+    pub fn frame_len(&self) -> usize {
         self.preprocess.len()
     }
 
@@ -31,7 +31,7 @@ impl ClipFrames {
     /// # Errors
     /// As the picture's preprocessing.
     pub fn picture_into(&self, image: &Image, input: &mut Vec<f32>) -> Result<()> {
-        input.resize(self.len(), 0.0);
+        input.resize(self.frame_len(), 0.0);
         self.preprocess.run_into(image.view(), input).map(drop)
     }
 
@@ -56,8 +56,8 @@ impl ClipFrames {
         // The planes of each channel lie below each other: the clip is a picture of all frames, and a frame is a part of it.
         let levels = Pixels::F32(video.array().clone().into_data());
         let strip = Image::new(levels, width, given * height, PixelFormat::Rgb, Layout::Chw)?;
-        input.resize(self.frames * self.len(), 0.0);
-        for (index, part) in input.chunks_exact_mut(self.len()).enumerate() {
+        input.resize(self.frames * self.frame_len(), 0.0);
+        for (index, part) in input.chunks_exact_mut(self.frame_len()).enumerate() {
             let last = (self.frames - 1).max(1);
             let from = (index * (given - 1) + last / 2) / last;
             if let Some(frame) = strip.view().crop(0, from * height, width, height) {

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::picture_network::input_of;
 
-/// The pre-processing for the network's `input`: its size and layout, and what the model says of the levels 0..=255, which
+/// Returns the pre-processing for the network's `input`: its size and layout, and what the model says of the levels 0..=255, which
 /// become `(level - mean) / std`; both are `usual` where it says nothing.
 ///
 /// # Errors

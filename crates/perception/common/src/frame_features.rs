@@ -38,30 +38,30 @@ impl LastFrame {
         self.seen.clear();
     }
 
-    /// Whether the person was seen.
+    /// Returns whether the person was seen.
     pub fn is_seen(&self) -> bool {
         !self.places.is_empty()
     }
 }
 
-/// Features of a coordinate: place, motion, bone.
+/// Number of features of a coordinate: place, motion, bone.
 pub const KINDS: usize = 3;
 /// Bodies smaller than this have no size to divide by.
 const SMALLEST: f32 = 1e-6;
 
 impl FrameFeatures {
-    /// Place, motion and bones of joints of `coordinates` numbers, each with its parent.
+    /// Computes place, motion and bones of joints of `coordinates` numbers, each with its parent.
     pub fn new(parents: Vec<usize>, coordinates: usize) -> Self {
         Self { parents, coordinates, kinds: KINDS }
     }
 
-    /// Place and motion only, of points that no bones join.
+    /// Computes place and motion only, of points that no bones join.
     pub fn without_bones(points: usize, coordinates: usize) -> Self {
         Self { parents: (0..points).collect(), coordinates, kinds: KINDS - 1 }
     }
 
-    /// Numbers of a frame.
-    pub fn len(&self) -> usize {
+    /// Returns how many numbers a frame has.
+    pub fn frame_len(&self) -> usize {
         self.kinds * self.coordinates * self.parents.len()
     }
 
@@ -181,9 +181,9 @@ impl FrameFeatures {
         let (joints, given) = (self.parents.len(), sequence.shape()[2]);
         let ClipWork { last, frame, clip } = work;
         last.forget();
-        frame.resize(self.len(), 0.0);
+        frame.resize(self.frame_len(), 0.0);
         clip.clear();
-        clip.resize(self.len() * frames, 0.0);
+        clip.resize(self.frame_len() * frames, 0.0);
         let mut put = |at: usize, frame: &[f32]| {
             for (row, numbers) in frame.chunks_exact(joints).enumerate() {
                 let start = (row * frames + at) * joints;

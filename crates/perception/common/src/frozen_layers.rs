@@ -13,7 +13,7 @@ use opendr_training::training_device;
 #[derive(Debug)]
 pub struct FrozenLayers(Session);
 
-/// Whether the job trains where the inference runtime runs frozen layers.
+/// Returns whether the job trains where the inference runtime runs frozen layers.
 ///
 /// # Errors
 /// `InvalidParam` for an environment that names no device.
@@ -22,7 +22,7 @@ pub fn is_on_processor(job: &FitJob<'_>) -> Result<bool> {
 }
 
 impl FrozenLayers {
-    /// The layers that `forward` runs for pictures of `[width, height]`; `names` are for its outputs.
+    /// Exports the layers that `forward` runs for pictures of `[width, height]`; `names` are for its outputs.
     pub fn new<M: Module, O: Outputs>(
         network: &M,
         [width, height]: [usize; 2],
@@ -34,7 +34,7 @@ impl FrozenLayers {
         Session::open(&model, Place::Cpu).map(Self)
     }
 
-    /// What they answer to `images`, `[batch, 3, height, width]`, in the order of the names.
+    /// Returns what they answer to `images`, `[batch, 3, height, width]`, in the order of the names.
     pub fn run(&self, images: &[f32], shape: [usize; 4], device: &Device) -> Result<Vec<Tensor<4>>> {
         let mut answers = Vec::with_capacity(self.0.outputs().len());
         self.0.run(&[TensorView::new(&shape, images)?], |outputs| {

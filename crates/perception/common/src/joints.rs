@@ -5,7 +5,7 @@ use opendr_engine::target::{Keypoint, Pose};
 const SHOULDERS: [&str; 2] = ["l_sho", "r_sho"];
 const HIPS: [&str; 2] = ["l_hip", "r_hip"];
 
-/// OpenDR's 18 joints of a pose of any skeleton, as [`joint_of`] finds them.
+/// Returns OpenDR's 18 joints of a pose of any skeleton, as [`joint_of`] finds them.
 #[cfg(feature = "training")]
 pub fn opendr_joints(pose: &Pose) -> [Keypoint; 18] {
     let mut joints = [Keypoint::MISSING; 18];
@@ -15,7 +15,7 @@ pub fn opendr_joints(pose: &Pose) -> [Keypoint; 18] {
     joints
 }
 
-/// The joint called `name`, if it was found. One that the pose's skeleton does not have is told by others: the neck is the
+/// Returns the joint called `name`, if it was found. One that the pose's skeleton does not have is told by others: the neck is the
 /// middle of the shoulders, the pelvis that of the hips, the belly that of both, and the nose stands for face and
 /// head (and they for it). Between joints, the lower score counts.
 pub fn joint_of(pose: &Pose, name: &str) -> Option<Keypoint> {

@@ -14,7 +14,7 @@ pub struct LabelledBatch {
 }
 
 impl LabelledBatch {
-    /// No inputs, with room for `capacity` of `size` numbers.
+    /// Makes an empty batch, with room for `capacity` of `size` numbers.
     pub fn with_capacity(capacity: usize, size: usize) -> Self {
         Self { inputs: Vec::with_capacity(capacity * size), classes: Vec::with_capacity(capacity) }
     }
@@ -25,13 +25,13 @@ impl LabelledBatch {
         self.classes.push(class);
     }
 
-    /// The inputs `[batch, rows, columns]`.
+    /// Returns the inputs `[batch, rows, columns]`.
     pub fn inputs(&self, [rows, columns]: [usize; 2], device: &Device) -> Tensor<3> {
         let shape = [self.classes.len(), rows, columns];
         Tensor::from_data(TensorData::new(self.inputs.clone(), shape), device)
     }
 
-    /// The mean cross-entropy of logits `[batch, classes]`; with `weights`, one a class, the weighted mean.
+    /// Returns the mean cross-entropy of logits `[batch, classes]`; with `weights`, one a class, the weighted mean.
     pub fn cross_entropy(&self, logits: Tensor<2>, weights: &[f32], device: &Device) -> Tensor<1> {
         let count = self.classes.len();
         let classes = Tensor::<1, Int>::from_data(TensorData::new(self.classes.clone(), [count]), device);
@@ -40,7 +40,7 @@ impl LabelledBatch {
     }
 }
 
-/// The class of a sample, below `classes`.
+/// Returns the class of a sample, below `classes`.
 ///
 /// # Errors
 /// `InvalidInput` when it has none, or one that the network does not have.
@@ -57,7 +57,7 @@ pub fn class_of(sample: &Sample, classes: usize) -> Result<i64> {
     }
 }
 
-/// The classes to train: `wanted`, called `parameter`, or as many as the data name or have.
+/// Returns the classes to train: `wanted`, called `parameter`, or as many as the data name or have.
 ///
 /// # Errors
 /// `InvalidInput` when the data name more classes than are wanted.

@@ -51,7 +51,9 @@ pub struct PartMaps<'a> {
 /// A person in pixels of the network's input; each joint's confidence is the heat map's.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Person {
+    /// COCO's 17 joints.
     pub joints: [Keypoint; JOINTS],
+    /// Mean score of the joints that no better person has.
     pub score: f32,
 }
 

@@ -44,17 +44,17 @@ impl PictureNetwork {
         Ok(Self { session, preprocess, inputs: Pool::default() })
     }
 
-    /// Where an output stands in what [`PictureNetwork::run`] shows.
+    /// Returns where an output stands in what [`PictureNetwork::run`] shows.
     pub fn output(&self, name: &str) -> Result<usize> {
         self.session.output_index(name)
     }
 
-    /// Width and height of the network's input.
+    /// Returns width and height of the network's input.
     pub fn size(&self) -> [usize; 2] {
         self.preprocess.size()
     }
 
-    /// What the network says of its outputs.
+    /// Returns what the network says of its outputs.
     pub fn outputs(&self) -> &[TensorInfo] {
         self.session.outputs()
     }
@@ -132,7 +132,7 @@ impl PictureNetwork {
     }
 }
 
-/// Size and layout of an input of pictures: `[1, 3, height, width]` or `[1, height, width, 3]`.
+/// Returns size and layout of an input of pictures: `[1, 3, height, width]` or `[1, height, width, 3]`.
 ///
 /// # Errors
 /// `Format` when it is none, or leaves its size open.

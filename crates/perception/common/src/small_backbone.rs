@@ -24,7 +24,7 @@ struct Block {
 const BLOCKS: [(usize, usize); 4] = [(5, 2), (3, 1), (3, 2), (3, 1)];
 
 impl SmallBackbone {
-    /// For pictures of so many channels, `width` channels in its first block.
+    /// Makes a network for pictures of so many channels, `width` channels in its first block.
     pub fn new(channels: usize, width: usize, device: &Device) -> Self {
         let (mut inputs, mut outputs) = (channels, width);
         let blocks = BLOCKS.iter().enumerate().map(|(index, (kernel, stride))| {
@@ -39,12 +39,12 @@ impl SmallBackbone {
         Self { blocks, features: inputs }
     }
 
-    /// How many features it has.
+    /// Returns how many features it has.
     pub fn features(&self) -> usize {
         self.features
     }
 
-    /// `[batch, channels, height, width]` to features `[batch, features]`.
+    /// Computes, of pictures `[batch, channels, height, width]`, features `[batch, features]`.
     pub fn forward(&self, images: Tensor<4>) -> Tensor<2> {
         let features = self.blocks.iter().fold(images, |features, block| block.forward(features));
         let [batch, channels, height, width] = features.dims();

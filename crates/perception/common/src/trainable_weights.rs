@@ -9,7 +9,7 @@ use opendr_engine::{Error, Result};
 /// The file in the container. The ONNX beside it cannot stand for it: batch normalisations are gone there.
 pub const TRAINABLE: &str = "network.bpk";
 
-/// What goes into the file.
+/// Returns the weights of `network` as the bytes of the file.
 ///
 /// # Errors
 /// `Internal` when something of the network has no form on disk.
@@ -19,7 +19,7 @@ pub fn bytes_from_network<M: Module>(network: &M) -> Result<Vec<u8>> {
     Ok(bytes.to_vec())
 }
 
-/// `network` with the weights of the container that training begins with, where there is one.
+/// Returns `network` with the weights of the container that training begins with, where there is one.
 ///
 /// # Errors
 /// `Format` when the container has none, or those of a network of other sizes.

@@ -7,13 +7,16 @@ use opendr_vision::Similarity;
 /// A square in a picture whose upper side points along `angle`, in radians, clockwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TurnedSquare {
+    /// Centre, x and y in pixels.
     pub centre: [f32; 2],
+    /// Length of a side in pixels.
     pub side: f32,
+    /// Angle of the upper side in radians, clockwise.
     pub angle: f32,
 }
 
 impl TurnedSquare {
-    /// Around the points, as small as a rectangle turned by `angle` allows; its longer side counts. `None` without
+    /// Returns the square around the points, as small as a rectangle turned by `angle` allows; its longer side counts. `None` without
     /// points, or where one is not finite.
     pub fn around(points: impl Iterator<Item = [f32; 2]>, angle: f32) -> Option<Self> {
         let (sine, cosine) = angle.sin_cos();
@@ -32,7 +35,7 @@ impl TurnedSquare {
         Some(Self { centre, side: (x1 - x0).max(y1 - y0), angle })
     }
 
-    /// Moved by `down` times its side towards its lower side, then `scale` times as large.
+    /// Returns the square moved by `down` times its side towards its lower side, then `scale` times as large.
     pub fn moved(self, down: f32, scale: f32) -> Self {
         let (sine, cosine) = self.angle.sin_cos();
         let [x, y] = self.centre;
@@ -40,7 +43,7 @@ impl TurnedSquare {
         Self { centre: [x - by * sine, y + by * cosine], side: self.side * scale, ..self }
     }
 
-    /// Whether it can show something of a picture: all is finite, it is at least a pixel, at most eight times as large
+    /// Returns whether it can show something of a picture: all is finite, it is at least a pixel, at most eight times as large
     /// as the picture, and touches it.
     pub fn is_in(&self, size: [usize; 2]) -> bool {
         let [width, height] = size.map(|side| side as f32);
@@ -53,19 +56,19 @@ impl TurnedSquare {
             && touches(self.centre[1], height)
     }
 
-    /// The square as a crop of `side` pixels.
+    /// Returns the square as a crop of `side` pixels.
     pub fn crop(&self, side: usize) -> Similarity {
         Similarity::rotated_square(self.centre, self.side, self.angle, side)
     }
 
-    /// `[left, top, right, bottom]` as if it were upright: how squares are compared.
+    /// Returns `[left, top, right, bottom]` as if it were upright: how squares are compared.
     pub fn upright(&self) -> [f32; 4] {
         let ([x, y], half) = (self.centre, self.side / 2.0);
         [x - half, y - half, x + half, y + half]
     }
 }
 
-/// The angle of a square that shows the way from `low` to `high` as upwards.
+/// Returns the angle of a square that shows the way from `low` to `high` as upwards.
 pub fn angle_upwards(low: [f32; 2], high: [f32; 2]) -> f32 {
     (high[0] - low[0]).atan2(low[1] - high[1])
 }

@@ -45,24 +45,24 @@ impl FaceFinder {
     }
 }
 
-/// The face that takes most of the picture.
+/// Returns the face that takes most of the picture.
 pub fn largest(faces: &BoundingBoxList) -> Option<&BoundingBox> {
     faces.boxes.iter().max_by(|one, other| one.area().total_cmp(&other.area()))
 }
 
-/// Where the line from eye to eye points, the first two of a face's points; 0 without them.
+/// Returns the angle of the line from eye to eye, the first two of a face's points; 0 without them.
 pub fn eye_angle(face: &BoundingBox) -> f32 {
     let eyes = face.landmarks.first_chunk::<2>();
     eyes.map_or(0.0, |[from, to]| (to[1] - from[1]).atan2(to[0] - from[0]))
 }
 
-/// The square around a face's box, `scale` times its longer side, turned by `angle`, as a crop of `side` pixels.
+/// Returns the square around a face's box, `scale` times its longer side, turned by `angle`, as a crop of `side` pixels.
 pub fn square_around(face: &BoundingBox, scale: f32, angle: f32, side: usize) -> Similarity {
     let centre = [face.left + face.width / 2.0, face.top + face.height / 2.0];
     Similarity::rotated_square(centre, scale * face.width.max(face.height), angle, side)
 }
 
-/// The whole of a picture as a crop of `side` pixels: its longer side fills it.
+/// Returns the whole of a picture as a crop of `side` pixels: its longer side fills it.
 pub fn whole_picture(image: &Image, side: usize) -> Similarity {
     let [width, height] = [image.width(), image.height()].map(|side| side as f32);
     Similarity::rotated_square([width / 2.0, height / 2.0], width.max(height), 0.0, side)

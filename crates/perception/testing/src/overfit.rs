@@ -9,7 +9,7 @@ use opendr_engine::Random;
 use opendr_engine::dataset::Sample;
 use opendr_training::Objective;
 
-/// The loss of `samples`, one batch, before training and after 300 steps on it alone.
+/// Returns the loss of `samples`, one batch, before training and after 300 steps on it alone.
 pub fn losses_on_one_batch<O: Objective>(
     objective: &O,
     network: impl FnOnce(&Device) -> O::Network,

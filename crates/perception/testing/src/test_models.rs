@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use opendr_engine::model::{Manifest, ModelWriter};
 
-/// A path in the folder of test data; `None`, said aloud, without one.
+/// Returns a path in the folder of test data; `None`, said aloud, without one.
 pub fn test_data(path: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("OPENDR_TEST_DATA").map(PathBuf::from);
     if folder.is_none() {
@@ -13,13 +13,13 @@ pub fn test_data(path: &str) -> Option<PathBuf> {
     Some(folder?.join(path))
 }
 
-/// A container of `learner` with the model at `path` among the test models and one class in each line of `classes`.
+/// Returns a container of `learner` with the model at `path` among the test models and one class in each line of `classes`.
 pub fn container(learner: &str, path: &str, classes: &str) -> Option<PathBuf> {
     let model = std::fs::read(test_data("models")?.join(path)).unwrap();
     Some(container_of(learner, &model, classes))
 }
 
-/// A container of `learner` with `model`.
+/// Returns a container of `learner` with `model`.
 pub fn container_of(learner: &str, model: &[u8], classes: &str) -> PathBuf {
     let test = std::thread::current().name().unwrap_or_default().replace("::", "-");
     let folder = std::env::temp_dir().join(format!("opendr-{test}-{learner}-{}", std::process::id()));

@@ -133,7 +133,7 @@ impl Collate for ClipBatches {
     type Batch = LabelledBatch;
 
     fn start(&self, capacity: usize) -> LabelledBatch {
-        LabelledBatch::with_capacity(capacity, self.frames * self.features.len())
+        LabelledBatch::with_capacity(capacity, self.frames * self.features.frame_len())
     }
 
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {

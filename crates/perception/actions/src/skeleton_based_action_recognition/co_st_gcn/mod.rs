@@ -182,7 +182,7 @@ impl Learner for CoStGcn {
         self.features.check(sequence)?;
         let [_, _, frames, _, persons] = sequence.shape();
         let CoStGcnState { persons: known, frame: features, sum } = state;
-        features.resize(self.features.len(), 0.0);
+        features.resize(self.features.frame_len(), 0.0);
         for person in 0..persons.min(self.params.num_person) {
             if known.len() <= person {
                 known.push(Person::default());
