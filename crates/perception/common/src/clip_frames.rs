@@ -81,7 +81,7 @@ mod tests {
             let (taken, mut input) = (ClipFrames::new(32, frames), Vec::new());
             taken.clip_into(&video, &mut input).unwrap();
             let level = |at: &usize| (*at as f32 / 10.0 - 0.45) / 0.225;
-            for (part, at) in input.chunks_exact(taken.len()).zip(&wanted) {
+            for (part, at) in input.chunks_exact(taken.frame_len()).zip(&wanted) {
                 assert!(part.iter().all(|number| (number - level(at)).abs() < 1e-4), "{frames} {at}");
             }
         }

@@ -1,8 +1,8 @@
 //! From sound to what the network is given.
 
 use opendr_engine::{Error, Pool, Result};
-use opendr_sound::Sound;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
+use opendr_sound::{Sound, standardise};
 
 /// Frames that the network is given: 1.2 s of sound; what is longer is cut, what is shorter filled up.
 pub const FRAMES: usize = 40;

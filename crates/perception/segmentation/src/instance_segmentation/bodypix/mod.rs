@@ -135,8 +135,12 @@ impl Learner for BodyPix {
 }
 
 impl BodyPix {
-    /// Shows `each` the persons in a picture, and the map of whose pixels are whose: the first person's have the number 1.
-    pub(crate) fn look<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
+    /// Finds the persons in a picture and shows them to `each`, with the map of whose pixels are whose: the first person's have
+    /// the number 1. Returns what `each` makes of them.
+    ///
+    /// # Errors
+    /// `Format` when the network answers maps of other sizes; what kept it from running.
+    pub fn look<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
         let Work { planes, peaks, persons, squares, across, owners } = &mut *self.work.take();
         let params = &self.params;
         let size = [image.width(), image.height()];
