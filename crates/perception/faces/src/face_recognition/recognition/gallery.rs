@@ -122,11 +122,13 @@ impl Gallery {
     }
 
     /// Whether the file of a container is of its gallery.
+    #[cfg(feature = "training")]
     pub fn is_file(name: &str) -> bool {
         name == HEADER || name == EMBEDDINGS
     }
 
     /// Numbers of an embedding.
+    #[cfg(feature = "training")]
     pub fn dimension(&self) -> usize {
         self.dimension
     }
