@@ -22,29 +22,8 @@ fn main() -> io::Result<()> {
         }
         code.push_str("];\n");
     }
-    code.push_str(&weights(&models.join("weights"))?);
     println!("cargo::rustc-env=OPENDR_IMPORTER={}", importer(&here)?);
     fs::write(Path::new(&variable("OUT_DIR")?).join("embedded.rs"), code)
-}
-
-/// The list of the weights that are built in, by their path within `folder`.
-fn weights(folder: &Path) -> io::Result<String> {
-    println!("cargo::rerun-if-changed={}", folder.display());
-    let mut code = String::from("pub(crate) const WEIGHTS: &[(&str, &[u8])] = &[\n");
-    if folder.is_dir() {
-        let folder = fs::canonicalize(folder)?;
-        let mut learners =
-            fs::read_dir(&folder)?.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
-        learners.sort();
-        let found = learners
-            .iter()
-            .flat_map(|learner| ["json", "onnx", "safetensors"].map(|ending| files(learner, ending)));
-        for path in found.collect::<io::Result<Vec<_>>>()?.concat() {
-            let name = path.strip_prefix(&folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-            let _ = writeln!(code, "({name:?}, include_bytes!({path:?})),");
-        }
-    }
-    Ok(code + "];\n")
 }
 
 /// A variable that cargo sets.

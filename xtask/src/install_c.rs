@@ -37,11 +37,29 @@ fn install(prefix: &Path, built: &Path) -> Result<()> {
         place.link(&file, "lib/libopendr.so.0")?;
         place.link("libopendr.so.0", "lib/libopendr.so")?;
     }
+    for (file, name) in weights()? {
+        place.copy(&file, &format!("share/opendr/models/{name}"))?;
+    }
     place.write("lib/pkgconfig/opendr.pc", &pkg_config())?;
     place.write("lib/cmake/OpenDR/OpenDRConfig.cmake", &cmake_config())?;
     place.write("lib/cmake/OpenDR/OpenDRConfigVersion.cmake", &cmake_version())?;
     println!("installed OpenDR {VERSION} under {}", prefix.display());
     Ok(())
+}
+
+/// The weights of our own, each with its path below `models/weights`.
+fn weights() -> Result<Vec<(PathBuf, String)>> {
+    let folder = root().join("models/weights");
+    let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
+    let mut found = Vec::new();
+    for learner in fs::read_dir(&folder).map_err(failed)? {
+        for file in fs::read_dir(learner.map_err(failed)?.path()).map_err(failed)? {
+            let path = file.map_err(failed)?.path();
+            let name = path.strip_prefix(&folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            found.push((path, name));
+        }
+    }
+    Ok(found)
 }
 
 fn pkg_config() -> String {

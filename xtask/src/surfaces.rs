@@ -31,10 +31,10 @@ pub const EXAMPLES: [&str; 22] = [
     "tflite_to_onnx",
 ];
 
-/// The arguments of `cargo build` for the command, the C library and [`EXAMPLES`], with the test learner. The features are those of the
-/// tests, so that nothing is compiled twice. The Python module comes with its wheel.
+/// The arguments of `cargo build` for the command, the C library and [`EXAMPLES`], with the test learner. Choice and features are those of
+/// the tests, so that nothing is compiled twice; the wheel's module is compiled once more, for Python's sake.
 pub fn arguments() -> Vec<&'static str> {
-    let words = ["build", "--workspace", "--exclude", "opendr-python", "--lib", "--bins", TEST_LEARNER];
+    let words = ["build", "--workspace", "--lib", "--bins", TEST_LEARNER];
     words.into_iter().chain(EXAMPLES.into_iter().flat_map(|name| ["--example", name])).collect()
 }
 

@@ -7,12 +7,15 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
-use crate::shell::{Result, command, root, step, target};
+use crate::shell::{Result, command, output, root, step, target};
 use crate::tools::{self, Python, install_debian};
 use crate::{install_c, parity, ros, rust_tests, surfaces, wheel};
 
 /// The learner that every surface is tested with is in every build for tests.
 pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
+
+/// What needs a GPU, and ROS 2 over Zenoh.
+const DEVICES: &str = "--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh";
 
 /// How many suites of Python run beside each other: they wait for programs, sockets and clocks more than they compute.
 const LANES: usize = 2;
@@ -69,70 +72,72 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
         let programs = programs()?;
         let built = ["--workspace", "--lib", "--bins", "--tests", TEST_LEARNER];
         rust_tests::run(checks, tree, programs, &tests, &built)?;
-        documentation(checks, tree, &tests)?;
+        let sources = tree.map(|tree| tree.of(is_source, &[]));
+        let examples = &mut tests(&["test", "--workspace", "--doc", TEST_LEARNER]);
+        checks.run("documentation tests", sources, Output::Live, None, examples)?;
         let suites = suites(&environments, &environment, programs)?;
         run_beside_each_other(checks, tree, suites)
     })
 }
 
-/// Format, lints, and that what no test builds compiles.
+/// Format, lints of every combination of features that no test builds, documentation. All of them check with the same features of what
+/// the workspace depends on, so that nothing is checked twice: the devices and Zenoh are on, and the whole workspace is chosen.
 fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     let sources = tree.map(|tree| tree.of(is_source, &[]));
     let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
     live("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    live("lints", &mut clippy(&["--all-targets", TEST_LEARNER]))?;
     live(
-        "lints",
-        &mut cargo(&["clippy", "--workspace", "--all-targets", TEST_LEARNER, "--", "--deny", "warnings"]),
+        "documentation",
+        linted(cargo(&["doc", "--workspace", "--no-deps", TEST_LEARNER, DEVICES]))
+            .env("RUSTDOCFLAGS", "--deny warnings"),
     )?;
-    // What needs a GPU, and ROS 2 over Zenoh, in the two crates that have it. Burn's CUDA compiler comes through a build script
-    // that downloads LLVM, except where only documentation is built; a check needs no more than that.
-    let devices = ["--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh"];
-    let packages = ["clippy", "--package=opendr-training", "--package=opendr-ros"];
+    // The C library turns training on, and so is left out.
+    let free_threaded = |features: &str| {
+        let mut clippy = clippy(&["--exclude=opendr-c", "--no-default-features", features]);
+        clippy.env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"));
+        clippy.env("PYO3_BUILD_EXTENSION_MODULE", "1");
+        clippy
+    };
     live(
-        "lints of cuda, wgpu, zenoh",
-        cargo(&packages).args(devices).args(["--", "--deny", "warnings"]).env("DOCS_RS", "1"),
-    )?;
-    // Surfaces that turn training on are left out of the choice of packages; the rest is chosen with the workspace, so that what it
-    // depends on has the features that it has everywhere.
-    live(
-        "without training",
-        &mut cargo(&["check", "--workspace", "--exclude=opendr-python", "--exclude=opendr-c"]),
-    )?;
-    // One family of learners by itself.
-    live(
-        "a single family",
-        &mut cargo(&[
-            "check",
-            "--package=opendr-cli",
-            "--no-default-features",
-            "--features=detection,training",
-        ]),
+        "lints without training, for free-threaded Python",
+        &mut free_threaded("--features=opendr-python/perception,opendr-python/ros"),
     )?;
     live(
-        "free-threaded Python",
-        cargo(&["check", "--workspace", "--exclude=opendr-c", "--no-default-features"])
-            .env("PYO3_CONFIG_FILE", root().join("bindings/python/free_threaded.txt"))
-            .env("PYO3_BUILD_EXTENSION_MODULE", "1"),
+        "lints of a single family, for free-threaded Python",
+        &mut free_threaded("--features=opendr-python/detection,opendr-python/training"),
     )?;
     Ok(())
 }
 
-/// Examples in documentation run, and pages have no broken link.
-fn documentation(checks: &Checks, tree: Option<&Tree>, cargo: &dyn Fn(&[&str]) -> Command) -> Result<()> {
-    let sources = tree.map(|tree| tree.of(is_source, &[]));
-    let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
-    live("documentation tests", &mut cargo(&["test", "--workspace", "--doc", TEST_LEARNER]))?;
-    live(
-        "documentation",
-        cargo(&["doc", "--workspace", "--no-deps", TEST_LEARNER]).env("RUSTDOCFLAGS", "--deny warnings"),
-    )?;
-    Ok(())
+/// Clippy over the workspace with these arguments and [`DEVICES`].
+fn clippy(arguments: &[&str]) -> Command {
+    let mut clippy = cargo(&["clippy", "--workspace", DEVICES]);
+    clippy.args(arguments).args(["--", "--deny", "warnings"]);
+    downloads_nothing(clippy)
+}
+
+/// Has cargo take crates of the workspace as `cargo clippy -- --deny warnings` has checked them, instead of checking them once more.
+fn linted(mut cargo: Command) -> Command {
+    if let Ok(sysroot) = output(command("rustc").args(["--print", "sysroot"])) {
+        cargo.env("RUSTC_WORKSPACE_WRAPPER", Path::new(sysroot.trim()).join("bin/clippy-driver"));
+        cargo.env("CLIPPY_ARGS", "--deny__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__");
+    }
+    downloads_nothing(cargo)
+}
+
+/// Burn's CUDA compiler comes through a build script that downloads LLVM, except where only documentation is built; a check needs no more
+/// than that.
+fn downloads_nothing(mut cargo: Command) -> Command {
+    cargo.env("DOCS_RS", "1");
+    cargo
 }
 
 /// The suites of Python, the longest first.
 fn suites(environments: &Environments, environment: &Environment, programs: u64) -> Result<Vec<Suite>> {
     let wheel = wheel::build(&environments.package, wheel::For::Tests)?;
     environments.package.install_wheel(&wheel)?;
+    let models = wheel::build_models(&environments.package)?;
     let prefix = target().join("c");
     install_c::install_for_tests(&prefix)?;
     let package = target().join("python-package");
@@ -156,7 +161,7 @@ fn suites(environments: &Environments, environment: &Environment, programs: u64)
         &["bindings/python/tests"],
         &[programs, module],
     );
-    of_package.command.env("OPENDR_WHEEL", &wheel);
+    of_package.command.env("OPENDR_WHEEL", &wheel).env("OPENDR_MODELS_WHEEL", &models);
     let mut of_c = suite("tests of C programs", &environments.outside, &["tests/c"], &[programs]);
     of_c.command.env("OPENDR_C_PREFIX", &prefix);
     let mut parity =
@@ -309,6 +314,7 @@ impl Environment {
     pub fn apply(&self, command: &mut Command) {
         command.env("ORT_DYLIB_PATH", &self.library).env("OPENDR_TEST_CACHE", &self.cache);
         command.env("OPENDR_BIN", surfaces::opendr()).env("OPENDR_EXAMPLES", target().join("debug/examples"));
+        command.env("OPENDR_MODELS", root().join("models/weights"));
         if let Some(data) = &self.data {
             command.env("OPENDR_TEST_DATA", data);
         }

@@ -32,14 +32,22 @@ impl For {
 
 /// Builds a wheel with the pip of `python`, as a user does.
 pub fn build(python: &Python, purpose: For) -> Result<PathBuf> {
-    let folder = purpose.folder();
+    pip_wheel(python, &purpose.folder(), "bindings/python", &[("MATURIN_PEP517_ARGS", &purpose.arguments())])
+}
+
+/// Builds the data package with the weights of our own, `bindings/models`.
+pub fn build_models(python: &Python) -> Result<PathBuf> {
+    pip_wheel(python, &target().join("wheels-models"), "bindings/models", &[])
+}
+
+fn pip_wheel(python: &Python, folder: &Path, package: &str, environment: &[(&str, &str)]) -> Result<PathBuf> {
     // Nothing there is what is wanted.
-    fs::remove_dir_all(&folder).ok();
-    let mut wheel = command(python.program());
-    wheel.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "wheel", "--no-deps", "--wheel-dir"]);
-    wheel.env("MATURIN_PEP517_ARGS", purpose.arguments());
-    step("wheel", wheel.arg(&folder).arg("./bindings/python"))?;
-    only_wheel(&folder)
+    fs::remove_dir_all(folder).ok();
+    let mut pip = command(python.program());
+    pip.args(["-m", "pip", "--quiet", "--disable-pip-version-check", "wheel", "--no-deps", "--wheel-dir"]);
+    pip.envs(environment.iter().copied());
+    step(&format!("wheel of {package}"), pip.arg(folder).arg(format!("./{package}")))?;
+    only_wheel(folder)
 }
 
 /// Unpacks a wheel into a folder for `PYTHONPATH`.

@@ -5,11 +5,11 @@ import os
 import subprocess
 import sys
 import venv
+import zipfile
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).resolve().parents[3]
 IMPORT = """
 import json, os, sys, time
 def resident():
@@ -39,6 +39,16 @@ print(json.dumps({
     "ms": statistics.median(taken),
 }))
 """
+GESTURE = """
+import json
+import numpy
+import opendr
+from opendr.engine.data import Vector
+
+learner = opendr.learner("keypoint_gesture", device="cpu", verbose=False)
+category = learner.infer(Vector(numpy.linspace(0, 1, 42, dtype=numpy.float32)))
+print(json.dumps({"confidence": float(category.confidence)}))
+"""
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +56,14 @@ def wheel():
     path = os.environ.get("OPENDR_WHEEL")
     if not path:
         pytest.skip("no OPENDR_WHEEL")
+    return Path(path).resolve()
+
+
+@pytest.fixture(scope="module")
+def models_wheel():
+    path = os.environ.get("OPENDR_MODELS_WHEEL")
+    if not path:
+        pytest.skip("no OPENDR_MODELS_WHEEL")
     return Path(path).resolve()
 
 
@@ -63,8 +81,10 @@ class Environment:
         pip = [self.programs / "python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", package]
         subprocess.run(pip, check=True, env={**os.environ, "PYTHONPATH": ""})
 
-    def run(self, program, *arguments):
+    def run(self, program, *arguments, fails=False, **variables):
+        """Returns what a program prints; of one that fails, what it says."""
         kept = {name: value for name, value in os.environ.items() if name in ("OPENDR_CACHE", "OPENDR_MODEL_REPOSITORY")}
+        kept = variables or kept
         done = subprocess.run(
             [self.programs / program, *map(str, arguments)],
             env={**kept, "PATH": str(self.programs), "HOME": str(self.home)},
@@ -72,8 +92,8 @@ class Environment:
             capture_output=True,
             text=True,
         )
-        assert done.returncode == 0, done.stderr
-        return done.stdout
+        assert (done.returncode != 0) == fails, done.stderr
+        return done.stderr if fails else done.stdout
 
 
 @pytest.fixture(scope="module")
@@ -81,12 +101,27 @@ def environment(wheel, tmp_path_factory):
     return Environment(tmp_path_factory.mktemp("install"), wheel)
 
 
-def test_the_wheel_is_small(wheel):
+def test_the_wheel_has_no_weights(wheel):
     assert wheel.name.startswith("opendr_rs-") and "-cp39-abi3-" in wheel.name
-    # Weights of our own come on top: they are there for `download` without a network, and hardly compress.
-    weights = sum(file.stat().st_size for file in (ROOT / "models/weights").glob("*/*") if file.is_file())
-    assert 0 < weights <= 16e6
-    assert wheel.stat().st_size - weights <= 15e6
+    names = zipfile.ZipFile(wheel).namelist()
+    assert not [name for name in names if name.endswith((".onnx", ".safetensors"))]
+
+
+@pytest.mark.skipif("OPENDR_SHIPPED" not in os.environ, reason="the wheel of the tests is built quickly; cargo xtask ship")
+def test_the_wheel_is_small(wheel, models_wheel):
+    assert wheel.stat().st_size <= 12e6
+    assert models_wheel.stat().st_size <= 20e6
+
+
+def test_models_of_our_own_come_with_their_package(wheel, models_wheel, tmp_path):
+    """Where nothing else can have them: outside of the sources, without a network, with an empty cache."""
+    environment = Environment(tmp_path, wheel)
+    kept = {"OPENDR_OFFLINE": "1"}
+    refused = environment.run("python", "-c", GESTURE, fails=True, **kept)
+    assert "pip install opendr-rs-models" in refused and "OPENDR_MODELS" in refused
+    environment.install(str(models_wheel))
+    gesture = json.loads(environment.run("python", "-c", GESTURE, **kept))
+    assert 0 < gesture["confidence"] <= 1
 
 
 def test_nothing_comes_with_it_but_numpy(environment):

@@ -5,19 +5,33 @@ use std::path::Path;
 
 use opendr_engine::model::{Model, ModelWriter};
 use opendr_engine::{Result, ResultExt};
+use opendr_rl::{POLICY, Policy, onnx_from_policy};
 
 /// Writes a model to `output`: the network alone when that ends in `.onnx`, else the container, as a zip when it ends in
 /// `.zip`, or a folder.
 ///
 /// # Errors
-/// As [`Model::onnx`] and [`ModelWriter`]; `Integrity` when a file of the model is damaged.
+/// As [`network`] and [`ModelWriter`]; `Integrity` when a file of the model is damaged.
 pub fn export(model: &Model, output: &Path) -> Result<()> {
     if output.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("onnx")) {
-        return fs::write(output, model.onnx()?).context(|| format!("writing {}", output.display()));
+        return fs::write(output, network(model)?).context(|| format!("writing {}", output.display()));
     }
     let mut writer = ModelWriter::new(output, model.manifest().clone())?;
     for file in &model.manifest().files {
         writer.add(&file.name, &model.file(&file.name)?)?;
     }
     writer.finish().map(drop)
+}
+
+/// Returns the model's network as an ONNX file; that of a policy, whose container has its parameters alone, is made.
+///
+/// # Errors
+/// As [`Model::onnx`]; `Unsupported` for a policy that ONNX cannot express.
+pub fn network(model: &Model) -> Result<Vec<u8>> {
+    let files = &model.manifest().files;
+    let has = |wanted: &dyn Fn(&str) -> bool| files.iter().any(|file| wanted(&file.name));
+    if has(&|name| name == POLICY) && !has(&|name| name.ends_with(".onnx")) {
+        return onnx_from_policy(&Policy::from_bytes(&model.file(POLICY)?)?);
+    }
+    model.onnx()
 }

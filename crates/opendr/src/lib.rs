@@ -44,7 +44,7 @@ mod tune;
 
 pub use by_name::{download, learner, learner_with};
 pub use eval_in::{ActingStream, eval_in, trained_in};
-pub use export::export;
+pub use export::{export, network};
 pub use fit::{
     FitData, FitEnvironments, FitOptions, Fitted, Opening, check_fit, fit, fit_in, teacher, teacher_with,
 };

@@ -89,7 +89,7 @@ fn check_imports(variant: &Variant) -> Result<()> {
 
 fn check_source(source: &Source) -> Result<()> {
     match source {
-        Source::Repository { files } | Source::Embedded { files } => check_paths(files),
+        Source::Repository { files } | Source::ModelsPackage { files } => check_paths(files),
         Source::Url { files } => files.values().try_for_each(|address| {
             let sound = ["http://", "https://"].iter().any(|scheme| address.starts_with(scheme))
                 && address.len() <= 2048

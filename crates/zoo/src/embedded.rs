@@ -1,4 +1,4 @@
-//! The cards, class lists and weights that are built in.
+//! The cards and class lists that are built in.
 
 use opendr_engine::Result;
 use opendr_engine::target::Classes;
@@ -19,9 +19,4 @@ pub fn embedded_cards() -> Result<Vec<Card>> {
 pub(crate) fn classes(list: &str) -> Option<Classes> {
     let (_, text) = CLASS_LISTS.iter().find(|(name, _)| *name == list)?;
     Some(text.lines().map(str::trim).filter(|line| !line.is_empty()).collect())
-}
-
-/// The file at `path` in `models/weights`.
-pub(crate) fn weights(path: &str) -> Option<&'static [u8]> {
-    WEIGHTS.iter().find(|(name, _)| *name == path).map(|(_, bytes)| *bytes)
 }

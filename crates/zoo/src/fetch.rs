@@ -9,9 +9,9 @@ use crate::archive::extract;
 use crate::cache::Cache;
 use crate::card::{Card, CardFile};
 use crate::download::{address_below, download};
-use crate::embedded::weights;
 use crate::http::Http;
 use crate::item::Item;
+use crate::models_package::ModelsPackage;
 use crate::npm::npm_archive;
 use crate::pip::wheel;
 use crate::repository::Repository;
@@ -23,6 +23,7 @@ pub(crate) struct Fetch<'a> {
     pub(crate) cache: &'a Cache,
     pub(crate) http: &'a Http,
     pub(crate) repository: Option<&'a Repository>,
+    pub(crate) models: &'a ModelsPackage,
     pub(crate) offline: bool,
     pub(crate) progress: &'a dyn Progress,
 }
@@ -52,12 +53,19 @@ impl Fetch<'_> {
                     repository.fetch_file(place, file, self.http, self.cache, self.progress)
                 })
             }
-            Source::Embedded { files } => self.each(item, files, |path, file| {
-                let bytes = weights(path).ok_or_else(|| {
-                    Error::not_found(format!("this program has no weights {path:?} built in"))
-                })?;
-                self.cache.insert(file, bytes, &self.cache.work(self.progress)?)
-            }),
+            Source::ModelsPackage { files } => {
+                let found = self.each(item, files, |place, file| {
+                    let bytes = self.models.read(place, file)?;
+                    self.cache.insert(file, &bytes, &self.cache.work(self.progress)?)
+                });
+                match (found, source.published().package()) {
+                    (Err(absent), Some(package)) => {
+                        let got = self.package_members(item, &source.published(), package);
+                        got.map_err(|error| self.models.absent(&absent, &error))
+                    }
+                    (found, _) => found,
+                }
+            }
             Source::Url { files } => self.each(item, files, |address, file| self.address(address, file)),
             Source::Github { repository, commit, files } => {
                 let base = format!("https://github.com/{repository}/raw/{commit}");
@@ -106,7 +114,7 @@ impl Fetch<'_> {
         let own: Vec<_> = package.files.values().collect();
         let mut wanted = self.wanted(source);
         for file in &item.variant.files {
-            wanted.extend(package.files.get(&file.name).map(|member| (member.as_str(), file)));
+            wanted.extend(package.files.get(&file.name).map(|member| (member.clone(), file)));
         }
         let mut missing: BTreeMap<_, _> = own.iter().map(|member| (member.as_str(), ())).collect();
         extract(&archive, &|name| wanted.get(name).map(|file| file.size), &mut |name, bytes| {
@@ -129,14 +137,15 @@ impl Fetch<'_> {
     }
 
     /// Every member that any card wants from the same package.
-    fn wanted(&self, source: &Source) -> HashMap<&str, &CardFile> {
+    fn wanted(&self, source: &Source) -> HashMap<String, &CardFile> {
         let mut wanted = HashMap::new();
         for variant in self.cards.iter().flat_map(|card| &card.variants) {
-            let same = variant.sources.iter().filter(|other| other.is_same_package(source));
-            for places in same.map(Source::files) {
+            let same =
+                variant.sources.iter().map(Source::published).filter(|other| other.is_same_package(source));
+            for source in same {
                 for file in &variant.files {
-                    if let Some(member) = places.get(&file.name) {
-                        wanted.insert(member.as_str(), file);
+                    if let Some(member) = source.files().get(&file.name) {
+                        wanted.insert(member.clone(), file);
                     }
                 }
             }

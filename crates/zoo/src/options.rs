@@ -6,6 +6,8 @@ use std::time::Duration;
 
 use opendr_engine::{Result, cache_dir};
 
+use crate::models_package::installed;
+
 /// How a [`Zoo`](crate::Zoo) works.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
@@ -14,6 +16,8 @@ pub struct ZooOptions {
     pub cache: PathBuf,
     /// A folder or an http(s) address that is asked before all other sources.
     pub repository: Option<String>,
+    /// Folders in which weights of our own are looked for, in this order; each as `models/weights` of the sources.
+    pub models: Vec<PathBuf>,
     /// Never use the network.
     pub offline: bool,
     /// Longest wait for a server to go on.
@@ -23,11 +27,13 @@ pub struct ZooOptions {
 }
 
 impl ZooOptions {
-    /// The defaults with this cache folder and no repository.
+    /// The defaults with this cache folder and no repository; weights of our own are read from `OPENDR_MODELS` and where the package
+    /// `opendr-rs-models` is installed.
     pub fn new(cache: impl Into<PathBuf>) -> Self {
         Self {
             cache: cache.into(),
             repository: None,
+            models: installed(),
             offline: false,
             timeout: Duration::from_secs(20),
             retry_pause: Duration::from_millis(500),

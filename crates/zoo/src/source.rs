@@ -1,9 +1,12 @@
 //! Where a card's files can be had.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 
 use serde::Deserialize;
+
+use crate::models_package::{PACKAGE, published};
 
 /// From a file's name in the card to its place in the source.
 pub type Places = BTreeMap<String, String>;
@@ -18,9 +21,10 @@ pub enum Source {
         /// Where each file is.
         files: Places,
     },
-    /// Files of `models/weights/`, which are built into the program.
-    Embedded {
-        /// Where each file is.
+    /// Files of `models/weights/`, weights of our own: in the data package `opendr-rs-models`, wherever it lies on this machine
+    /// ([`ZooOptions::models`]), else got with the installed pip.
+    ModelsPackage {
+        /// Where each file is below the package's weights.
         files: Places,
     },
     /// Plain addresses.
@@ -69,7 +73,7 @@ impl Source {
     pub fn files(&self) -> &Places {
         match self {
             Self::Repository { files }
-            | Self::Embedded { files }
+            | Self::ModelsPackage { files }
             | Self::Url { files }
             | Self::Github { files, .. } => files,
             Self::Npm(package) | Self::Pypi(package) => &package.files,
@@ -88,6 +92,14 @@ impl Source {
         }
     }
 
+    /// The source with the package of weights of our own as what it is in the Python package index.
+    pub(crate) fn published(&self) -> Cow<'_, Self> {
+        match self {
+            Self::ModelsPackage { files } => Cow::Owned(Self::Pypi(published(files))),
+            other => Cow::Borrowed(other),
+        }
+    }
+
     /// The package, when it is one.
     pub fn package(&self) -> Option<&Package> {
         match self {
@@ -102,7 +114,7 @@ impl fmt::Display for Source {
         let first = |files: &Places| files.values().next().cloned().unwrap_or_default();
         match self {
             Self::Repository { files } => write!(f, "OPENDR_MODEL_REPOSITORY {}", first(files)),
-            Self::Embedded { .. } => f.write_str("this program"),
+            Self::ModelsPackage { .. } => f.write_str(PACKAGE),
             Self::Url { files } => f.write_str(&first(files)),
             Self::Github { repository, commit, files } => {
                 write!(f, "GitHub {repository}@{commit} {}", first(files))

@@ -13,6 +13,7 @@ use crate::embedded::embedded_cards;
 use crate::fetch::Fetch;
 use crate::http::Http;
 use crate::item::Item;
+use crate::models_package::ModelsPackage;
 use crate::options::ZooOptions;
 use crate::repository::{Repository, card_files, copy_container};
 use crate::stopped;
@@ -37,6 +38,7 @@ pub struct Zoo {
     cards: Vec<Card>,
     offline: bool,
     repository: Option<Repository>,
+    models: ModelsPackage,
     cache: Cache,
     http: Http,
 }
@@ -56,6 +58,7 @@ impl Zoo {
             cards,
             offline: options.offline,
             repository: options.repository.as_deref().map(Repository::new),
+            models: ModelsPackage::new(options.models),
             cache: Cache::new(options.cache),
             http: Http::new(options.timeout, options.retry_pause),
         }
@@ -221,6 +224,7 @@ impl Zoo {
             cache: &self.cache,
             http: &self.http,
             repository: self.repository.as_ref(),
+            models: &self.models,
             offline: self.offline,
             progress,
         };

@@ -3,7 +3,6 @@
 //! Families have this crate as a dev-dependency; no program has it. Begin with [`test_models::test_data`].
 #![allow(clippy::unwrap_used)]
 
-#[cfg(feature = "training")]
 pub mod overfit;
 pub mod promises;
 pub mod test_models;

@@ -4,6 +4,7 @@
 
 mod cards;
 mod http;
+mod models_package;
 #[cfg(unix)]
 mod onnx_runtime;
 mod parts;

@@ -9,7 +9,6 @@ use opendr_onnx::proto::GraphProto;
 pub enum Field {
     Byte(u8),
     Int(i32),
-    Float(f32),
     /// A vector of bytes or a string.
     Bytes(Vec<u8>),
     Ints(Vec<i32>),
@@ -50,14 +49,13 @@ fn table(bytes: &mut Vec<u8>, fields: &Table) -> usize {
         let inline = match field {
             Field::Byte(value) => u32::from(*value),
             Field::Int(value) => value.cast_unsigned(),
-            Field::Float(value) => value.to_bits(),
             _ => 0,
         };
         bytes.extend(inline.to_le_bytes());
     }
     for (i, (_, field)) in fields.iter().enumerate() {
         let target = match field {
-            Field::Byte(_) | Field::Int(_) | Field::Float(_) => continue,
+            Field::Byte(_) | Field::Int(_) => continue,
             Field::Bytes(values) => vector(bytes, values.len(), values),
             Field::Ints(values) => vector(bytes, values.len(), &raw(values, |value| value.to_le_bytes())),
             Field::Longs(values) => vector(bytes, values.len(), &raw(values, |value| value.to_le_bytes())),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use image::RgbImage;
 use image::imageops::{FilterType, resize};
+use opendr_engine::data::PixelFormat;
 use opendr_inference::{ElementType, TensorInfo, TensorView};
 
 /// The values that a model wants for a pixel of 0 to 255.
@@ -56,7 +57,9 @@ impl Tensor {
 
 /// Decodes a picture.
 pub fn read(path: &Path) -> RgbImage {
-    image::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).to_rgb8()
+    let picture = opendr_vision::open(path).unwrap();
+    let [width, height] = [picture.width(), picture.height()].map(|size| size as u32);
+    RgbImage::from_raw(width, height, picture.hwc_u8(PixelFormat::Rgb)).unwrap()
 }
 
 /// The picture, squeezed to the size of `input`; free sizes become 256, further channels repeat the first ones.
