@@ -58,7 +58,7 @@ const PASCAL: [&str; 8] = [
 ];
 
 /// Every model of the test data, the values it wants, and how its outputs have to agree.
-const MODELS: [(&str, Scale, Agreement); 26] = [
+const MODELS: [(&str, Scale, Agreement); 34] = [
     ("classification/mobilenet_v2_1.0_224_qdq.onnx", Scale::Raw, Labels(&PHOTOS)),
     ("classification/resnet8_cifar10.onnx", Scale::Raw, Close),
     ("classification/vww_person_96.onnx", Scale::Unit, Close),
@@ -71,6 +71,14 @@ const MODELS: [(&str, Scale, Agreement); 26] = [
     ("facial_expression/emotion_7cls_gray64.onnx", Scale::Signed, Close),
     ("facial_landmarks/face_mesh_468_192.onnx", Scale::Unit, Close),
     ("facial_landmarks/iris_64.onnx", Scale::Unit, Close),
+    ("found/FastestDet.onnx", Scale::Unit, Close),
+    ("found/ch_ppocr_mobile_v2.0_cls_infer.onnx", Scale::Signed, Close),
+    ("found/deeplabv3_mnv2_ade20k_uint8.onnx", Scale::Raw, Labels(&PHOTOS)),
+    ("found/en_PP-OCRv3_det_infer.onnx", Scale::ImageNet, Close),
+    ("found/en_number_mobile_v2.0_rec_infer.onnx", Scale::Signed, Close),
+    ("found/person-reidentification-retail-0288.onnx", Scale::Raw, Close),
+    ("found/road_segmentation_adas_0001.onnx", Scale::Raw, Close),
+    ("found/yolox_nano.onnx", Scale::Raw, Close),
     ("grasp/grconvnet3_cornell_rgbd_ch16_224.onnx", Scale::Centred, Close),
     ("hand/hand_landmark_lite_224.onnx", Scale::Unit, Close),
     ("hand/palm_detection_lite_192.onnx", Scale::Unit, Close),

@@ -100,7 +100,7 @@ fn maps_that_do_not_fit_are_refused() {
 #[test]
 fn highest_score_is_the_answer() {
     let scores = Heatmap::from_scores(vec![0.5, 0.0, 0.5, 0.25, 0.0, 1.0], &[3, 1, 2]).unwrap();
-    let (labels, shape) = labels_of(&scores).unwrap();
+    let (labels, shape) = scores.class_labels().unwrap();
     assert_eq!((&labels[..], shape), (&[0, 2][..], &[1, 2][..]));
     let mut segmentation = Segmentation::default();
     assert_eq!(segmentation.update(0, &scores, &map(&[0, 2])).unwrap(), 1.0);
