@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
 use crate::junit::{self, Outcome};
-use crate::shell::{Result, is_installed, output, root, target};
+use crate::shell::{Result, is_installed, output, root};
 
 /// Name of the check.
 const NAME: &str = "tests";

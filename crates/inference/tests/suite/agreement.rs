@@ -155,7 +155,7 @@ impl Compared {
     fn label_difference(&self) -> f64 {
         let labels = |output: &Output| -> Vec<usize> {
             match self.info.element_type {
-                ElementType::I64 => output.values.iter().map(|&label| label as usize).collect(),
+                ElementType::I32 | ElementType::I64 => output.values.iter().map(|&label| label as usize).collect(),
                 _ => output.values.chunks(*output.shape.last().unwrap()).map(position_of_largest).collect(),
             }
         };
@@ -208,6 +208,7 @@ fn run(session: &Session, inputs: &[TensorView<'_>]) -> Vec<Output> {
 fn numbers(tensor: &TensorView<'_>) -> Vec<f64> {
     match tensor.data() {
         TensorData::F32(data) => data.iter().map(|&value| f64::from(value)).collect(),
+        TensorData::I32(data) => data.iter().map(|&value| f64::from(value)).collect(),
         TensorData::I64(data) => data.iter().map(|&value| value as f64).collect(),
         TensorData::U8(data) => data.iter().map(|&value| f64::from(value)).collect(),
         TensorData::I8(data) => data.iter().map(|&value| f64::from(value)).collect(),

@@ -128,6 +128,6 @@ fn each_box_is_a_picture_of_its_own() {
     assert!(count >= 17 && right == count, "{right} of {count}");
 
     let Some((alone, emotions)) = learner(&models, "facial_emotion") else { return };
-    let error = Pipeline::default().then_each(alone, emotions).err().unwrap();
+    let error = Pipeline::default().then_each(alone, emotions.as_ref()).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::InvalidParam, "{error}");
 }
