@@ -159,8 +159,7 @@ impl Program<'_> {
         let numbers = self.floats();
         let axes = if self.byte() < 250 { shape.len() } else { usize::MAX };
         let length = if self.byte() < 250 { numbers.len() } else { usize::MAX };
-        let tensor =
-            opendr_tensor { name, numbers: numbers.as_ptr(), length, shape: shape.as_ptr(), axes };
+        let tensor = opendr_tensor { name, numbers: numbers.as_ptr(), length, shape: shape.as_ptr(), axes };
         let (given, index, file) = (usize::from(self.byte()) % 3, self.size(), self.text());
         let mut tensors = null_mut();
         let mut seen = std::mem::MaybeUninit::uninit();

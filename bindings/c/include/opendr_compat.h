@@ -9,8 +9,8 @@
  * a model that was not loaded has NULL for its handles.
  *
  * Memory: loadX() and initX() begin a model, picture or vector, and freeX() of the same name frees it; freeing it again does
- * nothing. loadTensor(), loadTensorVector(), loadDetectionsVector(), iterTensorVector(), forwardX() and initRandomX() take what
- * was begun by initTensor(), initTensorVector() or initDetectionsVector(), and free what is in it.
+ * nothing. loadTensor(), loadTensorVector(), loadDetectionsVector(), iterTensorVector(), forwardX() and the initX() that fill
+ * a tensor take what was begun by initTensor(), initTensorVector() or initDetectionsVector(), and free what is in it.
  */
 #include "opendr/activity_recognition_x3d.h"
 #include "opendr/data.h"

@@ -108,7 +108,8 @@ impl Network {
         let mut views: Vec<Option<TensorView<'_>>> = vec![None; infos.len()];
         for (index, tensor) in given.iter().enumerate() {
             // SAFETY: the caller's promise.
-            let (name, view) = unsafe { (optional_text(tensor.name, "the name of an input")?, tensor.view()?) };
+            let (name, view) =
+                unsafe { (optional_text(tensor.name, "the name of an input")?, tensor.view()?) };
             let at = match name {
                 Some(name) => infos.iter().position(|info| info.name == name),
                 None => Some(index),
@@ -116,7 +117,10 @@ impl Network {
             let view_of_input = at.and_then(|at| views.get_mut(at)).ok_or_else(|| {
                 let name = name.map_or_else(|| format!("number {index}"), |name| format!("{name:?}"));
                 let names: Vec<_> = infos.iter().map(ToString::to_string).collect();
-                Error::invalid_input(format!("the network has no input {name}; it takes {}", names.join(", ")))
+                Error::invalid_input(format!(
+                    "the network has no input {name}; it takes {}",
+                    names.join(", ")
+                ))
             })?;
             if view_of_input.replace(view).is_some() {
                 return Err(Error::invalid_input(format!(
@@ -201,11 +205,7 @@ pub unsafe extern "C" fn opendr_network_run(
     guard(|| {
         // SAFETY: the rules at the top of opendr.h.
         let (out, network, inputs) = unsafe {
-            (
-                Out::new(tensors, "tensors")?,
-                Network::of(network)?,
-                slice(inputs, input_count, "inputs")?,
-            )
+            (Out::new(tensors, "tensors")?, Network::of(network)?, slice(inputs, input_count, "inputs")?)
         };
         // SAFETY: the rules at the top of opendr.h.
         out.set(unsafe { network.run(inputs) }?);

@@ -102,8 +102,7 @@ pub unsafe extern "C" fn opendr_tensors_get(
             Error::invalid_input(format!("there is no tensor {index}; there are {count}, counted from 0"))
         })?;
         let (name, axes, length) = (name.as_ptr(), shape.len(), numbers.len());
-        let tensor =
-            opendr_tensor { name, numbers: numbers.as_ptr(), length, shape: shape.as_ptr(), axes };
+        let tensor = opendr_tensor { name, numbers: numbers.as_ptr(), length, shape: shape.as_ptr(), axes };
         // SAFETY: the rules at the top of opendr.h.
         unsafe { place.write(tensor) };
         Ok(())

@@ -21,8 +21,8 @@ static inline void freeX3dModel(X3dModelT *model) {
     memset(model, 0, sizeof *model);
 }
 
-/* Loads a network; modelPath "" or NULL takes the pretrained one. mode, "xs", "s", "m" or "l", gives the sizes that the network
- * leaves open. */
+/* Loads a network; modelPath "" or NULL takes the pretrained one. mode, "xs", "s", "m" or "l", gives the sizes that the
+ * network leaves open. */
 static inline void loadX3dModel(const char *modelPath, char *mode, X3dModelT *model) {
     static const struct {
         const char *name;
@@ -56,8 +56,8 @@ static inline void loadX3dModel(const char *modelPath, char *mode, X3dModelT *mo
     }
 }
 
-/* Runs the network. The numbers of the tensor are in the order of the network's axes: channels before frames, or frames before
- * channels where it has four axes. */
+/* Runs the network. The numbers of the tensor are in the order of the network's axes: channels before frames, or frames
+ * before channels where it has four axes. */
 static inline void forwardX3d(X3dModelT *model, OpenDRTensorT *tensor, OpenDRTensorVectorT *vector) {
     opendr_compat_forward("forwardX3d", model->onnxSession, OPENDR_COMPAT_CHANNELS_FIRST, tensor, vector);
 }

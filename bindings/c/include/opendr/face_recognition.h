@@ -98,7 +98,7 @@ static inline void loadFaceRecognitionModel(const char *modelPath, FaceRecogniti
 }
 
 /* Returns the person with the largest face in a picture and how sure that is. data is -1 for a person who is not known, and
- * where there is no face, whose confidence is 0. */
+ * where there is no face; confidence is 0 then. */
 static inline OpenDRCategoryTargetT inferFaceRecognition(FaceRecognitionModelT *model, OpenDRImageT *image) {
     OpenDRCategoryTargetT target = {-1, 0.0f};
     opendr_bounding_box_list *faces = NULL;
@@ -124,8 +124,8 @@ static inline OpenDRCategoryTargetT inferFaceRecognition(FaceRecognitionModelT *
     return target;
 }
 
-/* Makes the persons known whose pictures lie in databaseFolder, a folder of its name for each, and writes the model with them
- * into the folder outputPath, over an earlier one. Pictures without a face are left out. */
+/* Makes the persons known whose pictures lie in databaseFolder, in a folder of their name each, and writes the model with
+ * them into the folder outputPath, over an earlier one. Pictures without a face are left out. */
 static inline void buildDatabaseFaceRecognition(const char *databaseFolder, const char *outputPath,
     FaceRecognitionModelT *model) {
     char *output = opendr_compat_json_quoted(outputPath != NULL ? outputPath : "");
@@ -148,8 +148,8 @@ static inline void buildDatabaseFaceRecognition(const char *databaseFolder, cons
     free(output);
 }
 
-/* Loads a database that buildDatabaseFaceRecognition() wrote, or a model container with persons. When it fails, nobody is known:
- * database is NULL. */
+/* Loads a database that buildDatabaseFaceRecognition() wrote, or a model container with persons. When it fails, nobody is
+ * known: database is NULL. */
 static inline void loadDatabaseFaceRecognition(const char *databasePath, FaceRecognitionModelT *model) {
     const char *path = databasePath != NULL ? databasePath : "";
     opendr_learner *old = (opendr_learner *)model->onnxSession, *learner = NULL;
@@ -174,8 +174,8 @@ static inline void loadDatabaseFaceRecognition(const char *databasePath, FaceRec
     free(inner);
 }
 
-/* Writes the name of a person, at most OPENDR_PERSON_NAME_SIZE bytes with the zero; a longer name is cut between characters, and
- * "" stands for a person who is not known. */
+/* Writes the name of a person, at most OPENDR_PERSON_NAME_SIZE bytes with the zero; a longer name is cut between characters,
+ * and "" stands for a person who is not known. */
 static inline void decodeCategoryFaceRecognition(FaceRecognitionModelT *model, OpenDRCategoryTargetT category,
     char *personName) {
     const char *name = category.data >= 0 && category.data < model->nPersons ? model->personNames[category.data] : "";

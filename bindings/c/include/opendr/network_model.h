@@ -84,8 +84,8 @@ typedef enum opendr_compat_order {
     OPENDR_COMPAT_CHANNELS_FIRST
 } opendr_compat_order;
 
-/* Writes the shape of a tensor for a network of so many axes, 0 for any. Where these are fewer than five, the first axes of size 1
- * are left out. Returns the number of axes. */
+/* Writes the shape of a tensor for a network of so many axes, 0 for any. Where these are fewer than five, the first axes of
+ * size 1 are left out. Returns the number of axes. */
 static inline size_t opendr_compat_shape(const OpenDRTensorT *tensor, opendr_compat_order order, size_t axes,
     size_t shape[5]) {
     const int frames_first[5] = {tensor->batchSize, tensor->frames, tensor->channels, tensor->width, tensor->height};
@@ -99,8 +99,8 @@ static inline size_t opendr_compat_shape(const OpenDRTensorT *tensor, opendr_com
     return kept;
 }
 
-/* Writes a tensor of a network as OpenDR's five sizes: of four axes they are batch, channels, width, height; of fewer the last
- * ones; of more the first are multiplied. Returns whether they fit. */
+/* Writes a tensor of a network as OpenDR's five sizes: of four axes they are batch, channels, width, height; of fewer the
+ * last ones; of more the first are multiplied. Returns whether they fit. */
 static inline bool opendr_compat_sizes(const opendr_tensor *tensor, OpenDRTensorT *seen) {
     int *const all[5] = {&seen->batchSize, &seen->frames, &seen->channels, &seen->width, &seen->height};
     size_t sizes[5] = {1, 1, 1, 1, 1};

@@ -15,8 +15,8 @@ typedef struct NanodetModel {
     int keepRatio;
 } NanodetModelT;
 
-/* Loads a model container; modelPath "" or NULL takes the pretrained model. modelName is not used. The model's own size is used:
- * height and width other than 0 give a line on stderr. */
+/* Loads a model container; modelPath "" or NULL takes the pretrained model. modelName is not used. The model's own size is
+ * used: height and width other than 0 give a line on stderr. */
 static inline void loadNanodetModel(const char *modelPath, const char *modelName, const char *device, float scoreThreshold,
     int height, int width, NanodetModelT *model) {
     opendr_learner *learner = NULL;

@@ -1,7 +1,7 @@
 #ifndef OPENDR_OBJECT_DETECTION_2D_YOLOV5_H
 #define OPENDR_OBJECT_DETECTION_2D_YOLOV5_H
 
-/* A network of YOLOv5 by OpenDR's names; opendr_compat.h explains these headers. It loads; nothing finds boxes in its outputs yet. */
+/* A network of YOLOv5 by OpenDR's names; opendr_compat.h explains these headers. Nothing finds boxes in its outputs yet. */
 #include "network_model.h"
 #include "target.h"
 
@@ -59,8 +59,8 @@ static inline void opendr_compat_label_yolov5(Yolov5ModelT *model, const char *m
     }
 }
 
-/* Loads a network from an ONNX file, or from OpenDR's folder, whose JSON has the classes. Thresholds of 0 are those of the JSON;
- * height and width of 0 are those that the network was trained with. */
+/* Loads a network from an ONNX file, or from OpenDR's folder, whose JSON has the classes. Thresholds of 0 are those of the
+ * JSON; height and width of 0 are those that the network was trained with. */
 static inline void loadYolov5Model(const char *modelPath, const char *modelName, const char *device, float confThreshold,
     float iouThreshold, int height, int width, Yolov5ModelT *model) {
     const opendr_network *network;

@@ -10,7 +10,7 @@
 #include "data.h"
 #include "target.h"
 
-/* Values out of the JSON of a model: "" or 0 where there is none. A text lives until the next of these calls in the thread. */
+/* Values out of the JSON of a model: "" or 0 where there is none. A text lives until the next such call of the thread. */
 
 static inline const char *jsonGetStringFromKey(const char *json, const char *key, int index) {
     return opendr_json_text(json, NULL, key, index);

@@ -1,7 +1,8 @@
 #ifndef OPENDR_SKELETON_BASED_ACTION_RECOGNITION_PST_H
 #define OPENDR_SKELETON_BASED_ACTION_RECOGNITION_PST_H
 
-/* A network over sequences of skeletons by OpenDR's names; opendr_compat.h explains these headers. There is no pretrained one. */
+/* A network over sequences of skeletons by OpenDR's names; opendr_compat.h explains these headers. There is no pretrained
+ * one. */
 #include "network_model.h"
 #include "target.h"
 

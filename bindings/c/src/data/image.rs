@@ -60,7 +60,8 @@ pub(crate) const FORMATS: [(opendr_pixel_format, PixelFormat); 5] = [
     (OPENDR_RGBA, PixelFormat::Rgba),
     (OPENDR_BGRA, PixelFormat::Bgra),
 ];
-pub(crate) const LAYOUTS: [(opendr_layout, Layout); 2] = [(OPENDR_HWC, Layout::Hwc), (OPENDR_CHW, Layout::Chw)];
+pub(crate) const LAYOUTS: [(opendr_layout, Layout); 2] =
+    [(OPENDR_HWC, Layout::Hwc), (OPENDR_CHW, Layout::Chw)];
 
 /// Pixels in memory.
 #[repr(C)]

@@ -8,15 +8,19 @@ static inline void fill(OpenDRTensorT *tensor) {
     for (size_t i = 0; i < length; i++) tensor->data[i] = (float)(i % 8) / 8.0f;
 }
 
-/* A line for each tensor: its sizes, and its first numbers. */
+/* A line for each tensor: its sizes, its first numbers, and the mean of all. */
 static inline void print_tensors(OpenDRTensorVectorT *vector) {
     for (int i = 0; i < vector->nTensors; i++) {
         OpenDRTensorT tensor;
+        double sum = 0.0;
+        int length;
         initTensor(&tensor);
         iterTensorVector(&tensor, vector, i);
         printf("%d %d %d %d %d:", tensor.batchSize, tensor.frames, tensor.channels, tensor.width, tensor.height);
         for (int number = 0; number < 4; number++) printf(" %.9g", (double)tensor.data[number]);
-        printf("\n");
+        length = tensor.batchSize * tensor.frames * tensor.channels * tensor.width * tensor.height;
+        for (int number = 0; number < length; number++) sum += (double)tensor.data[number];
+        printf(" %.9g\n", sum / length);
         freeTensor(&tensor);
     }
 }

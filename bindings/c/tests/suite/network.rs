@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::ptr::{null, null_mut};
 
+use opendr::Device;
 use opendr::inference::{Session, TensorView};
 use opendr::model::{Manifest, ModelWriter};
-use opendr::Device;
 use opendr_c::opendr_status::*;
 use opendr_c::*;
 
@@ -26,7 +26,8 @@ impl Container {
     fn new(name: &str) -> Self {
         let folder = std::env::temp_dir().join(format!("opendr-c-{name}-{}", std::process::id()));
         let mut manifest = Manifest::new("x3d", "stick_figures");
-        manifest.params = serde_json::from_str(r#"{"num_frames": 8, "side": 48, "width": 0.67, "depth": 0.5}"#).unwrap();
+        manifest.params =
+            serde_json::from_str(r#"{"num_frames": 8, "side": 48, "width": 0.67, "depth": 0.5}"#).unwrap();
         let mut writer = ModelWriter::new(&folder, manifest).unwrap();
         writer.add("model.onnx", &fs::read(stick_figures()).unwrap()).unwrap();
         writer.add("words.txt", b"no network").unwrap();
@@ -180,7 +181,11 @@ fn wrong_inputs_are_refused() {
     refused(call(&[opendr_tensor { numbers: null(), ..good }]), OPENDR_INVALID_INPUT, "numbers of a tensor");
     refused(call(&[opendr_tensor { shape: null(), ..good }]), OPENDR_INVALID_INPUT, "shape of a tensor");
     for huge in [usize::MAX, usize::MAX / 4 + 1, 1 << 62] {
-        refused(call(&[opendr_tensor { length: huge, ..good }]), OPENDR_INVALID_INPUT, "do not fit in memory");
+        refused(
+            call(&[opendr_tensor { length: huge, ..good }]),
+            OPENDR_INVALID_INPUT,
+            "do not fit in memory",
+        );
         refused(call(&[opendr_tensor { axes: huge, ..good }]), OPENDR_INVALID_INPUT, "do not fit in memory");
         let shape = [huge, huge, huge, huge];
         let status = call(&[tensor(None, &numbers, &shape)]);
