@@ -12,8 +12,8 @@ const SYSTEM_LIBRARIES: [&str; 7] = ["gcc_s", "util", "rt", "pthread", "m", "dl"
 
 /// Builds the library for users and installs it under `prefix`.
 pub fn run(prefix: &Path) -> Result<()> {
-    step("C library", command("cargo").args(["build", "--release", "--package", "opendr-c"]))?;
-    install(prefix, &target().join("release"))
+    step("C library", command("cargo").args(["build", "--profile", "dist", "--package", "opendr-c"]))?;
+    install(prefix, &target().join("dist"))
 }
 
 /// As [`run`], the library that [`surfaces::build`](crate::surfaces::build) built, with the learner that tests use.

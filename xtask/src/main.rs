@@ -26,7 +26,7 @@ usage: cargo xtask VERB
              what has passed in this build folder and has not changed since is left out
   test --all
              that, with nothing left out
-  ship       the wheels that users get, in the release profile, and the tests of what they are
+  ship       the wheels that users get, in the profile dist, and the tests of what they are
   test-extended
              the tests that need PyTorch, with the interpreter OPENDR_TORCH_PYTHON
   test-c     the part of it that tests the C library

@@ -5,7 +5,7 @@ use crate::test::Environment;
 use crate::tools::{self, Python, install_debian};
 use crate::wheel;
 
-/// Builds the wheels in the release profile and tests them in environments of their own.
+/// Builds the wheels in the profile `dist` and tests them in environments of their own.
 pub fn run() -> Result<()> {
     install_debian()?;
     let python = Python::install(&tools::PACKAGE)?;

@@ -12,7 +12,7 @@ use crate::tools::Python;
 pub enum For {
     /// Tests: out of the same build as everything else that they test, with the test learner.
     Tests,
-    /// Users: the release profile, packed as small as it goes.
+    /// Users: the profile `dist`, packed as small as it goes.
     Users,
 }
 
