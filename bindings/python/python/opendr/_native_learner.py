@@ -14,6 +14,7 @@ from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr._upstream.arguments import by_name, methods, value_here
 from opendr._upstream.rows import Argument, Learner as Row, arguments
 from opendr.engine import data, target
+from opendr.engine._parameters import parameters
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import BaseLearner, Learner
 
@@ -294,13 +295,17 @@ class NativeBase(BaseLearner):
             raise TypeError(f"infer takes {len(names)} inputs ({', '.join(names)}), not {len(inputs)}")
         ports, overrides = dict(zip(names, inputs)), dict[str, Any]()
         live = {field["name"] for field in self._entry["params"] if field["live"]}
+        known = parameters(type(self)) if named else {}
         for name, value in self._known(named, stacklevel=4).items():
             if name in ports:
                 raise TypeError(f"infer got {name} twice; give it once")
             if name not in names and name not in live:
-                known = ", ".join([*names, *sorted(live)])
-                raise TypeError(f"infer has no argument {name!r}; there are {known}")
-            (ports if name in names else overrides)[name] = value
+                there = ", ".join([*names, *sorted(live)])
+                raise TypeError(f"infer has no argument {name!r}; there are {there}")
+            if name in names:
+                ports[name] = value
+            else:
+                overrides[name] = known[name].checked(value)
         # None stands for what is left out, where that may be.
         may_lack = {port["name"] for port in self._entry["ports"] if port["optional"] or port["init"]}
         return {name: value for name, value in ports.items() if value is not None or name not in may_lack}, overrides

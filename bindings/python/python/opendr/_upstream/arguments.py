@@ -129,6 +129,13 @@ def placed_load(method: Callable[..., Any], wanted: Sequence[Argument]) -> Calla
     return call
 
 
+_SPECIAL: dict[str, Callable[..., Callable[..., Any]]] = {
+    "infer": placed_infer,
+    "eval": placed_eval,
+    "load": placed_load,
+}
+
+
 def refused(name: str, instead: str) -> Callable[..., NoReturn]:
     """Returns a method of OpenDR that says what to use instead of it."""
 
@@ -147,8 +154,8 @@ def methods(row: Learner, parent: type) -> dict[str, Any]:
     for name in METHODS:
         wanted = arguments(getattr(row, name))
         if wanted:
-            wrap = {"infer": placed_infer, "eval": placed_eval, "load": placed_load}.get(name, functools.partial(placed, name))
-            found[name] = wrap(getattr(parent, name), wanted)
+            method, special = getattr(parent, name), _SPECIAL.get(name)
+            found[name] = placed(name, method, wanted) if special is None else special(method, wanted)
     if row.download or row.folder is not None or row.picture or row.modes:
         found["download"] = Download(row, parent)
     found.update({name: refused(name, instead) for name, instead in row.methods.items() if instead})

@@ -65,7 +65,8 @@ def paths(task: str) -> Mapping[str, Mapping[str, Home]]:
     found: dict[str, dict[str, Home]] = {}
     for path, names in rows(task).MODULES.items():
         parts = [f"opendr.{task}", *filter(None, path.split("."))]
-        classes = {name: home for name, home in names.items() if name[0].isupper()}
+        # The engine has a class of that name.
+        classes = {name: home for name, home in names.items() if name[0].isupper() and name != "Dataset"}
         for count in range(1, len(parts)):
             found.setdefault(".".join(parts[:count]), {}).update(classes)
         found.setdefault(".".join(parts), {}).update(names)
@@ -89,16 +90,15 @@ def spec_of(module: str) -> Optional[ModuleSpec]:
     task = _task(module)
     if task is None or module not in paths(task):
         return None
-    return ModuleSpec(module, _Loader, origin="opendr._upstream", is_package=True)
+    loader: Any = _Loader()
+    return ModuleSpec(module, loader, origin="opendr._upstream", is_package=True)
 
 
 class _Loader:
-    @staticmethod
-    def create_module(spec: ModuleSpec) -> None:
+    def create_module(self, spec: ModuleSpec) -> None:
         return None
 
-    @staticmethod
-    def exec_module(module: types.ModuleType) -> None:
+    def exec_module(self, module: types.ModuleType) -> None:
         module.__doc__ = f"OpenDR's {module.__name__[len('opendr.') :]}."
         add_names(module)
 

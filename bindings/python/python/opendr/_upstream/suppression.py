@@ -318,7 +318,8 @@ def overlaps(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     shared = np.clip(high - low, 0, None).prod(axis=2)
     areas = np.clip(corners[:, 2:] - corners[:, :2], 0, None).prod(axis=1)
     union = areas[:, None] + areas[None, :] - shared
-    return np.divide(shared, union, out=np.zeros_like(shared), where=union > 0)
+    shares: NDArray[np.float64] = np.divide(shared, union, out=np.zeros_like(shared), where=union > 0)
+    return shares
 
 
 def centre_distances(corners: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -328,7 +329,8 @@ def centre_distances(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     low = np.minimum(corners[:, None, :2], corners[None, :, :2])
     high = np.maximum(corners[:, None, 2:], corners[None, :, 2:])
     diagonal = ((high - low) ** 2).sum(axis=2)
-    return np.divide(apart, diagonal, out=np.zeros_like(apart), where=diagonal > 0)
+    shares: NDArray[np.float64] = np.divide(apart, diagonal, out=np.zeros_like(apart), where=diagonal > 0)
+    return shares
 
 
 def best_above(overlap: NDArray[np.float64]) -> NDArray[np.float64]:

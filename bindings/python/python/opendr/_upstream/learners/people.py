@@ -120,11 +120,13 @@ def _share(part: int, whole: int) -> float:
 
 def _posture(pose: Pose) -> Category:
     """The posture of a person, by the rule of the native half."""
-    joints = {name: tuple(point) for name, point in zip(pose.joints, pose.data.tolist()) if min(point) >= 0}
+    joints = {name: point for name, point in zip(pose.joints, pose.data.tolist()) if min(point) >= 0}
 
     def middle(*names: str) -> Optional[tuple[float, float]]:
         points = [joints[name] for name in names if name in joints]
-        return tuple(sum(axis) / len(points) for axis in zip(*points)) if points else None  # type: ignore[return-value]
+        if not points:
+            return None
+        return sum(x for x, _ in points) / len(points), sum(y for _, y in points) / len(points)
 
     hips, knees = middle("r_hip", "l_hip"), middle("r_knee", "l_knee")
     torso = _lies(middle("neck") or middle("r_sho", "l_sho"), hips, _TORSO)

@@ -40,7 +40,8 @@ class Transcription(NativeLearner):
         found = by_name(f"{type(self).__name__}.load", self._LOAD, given, named, stacklevel=3)
         name, folder = found.pop("name", None), found.pop("download_dir", None)
         if "path" not in found and name is not None:
-            found["path"] = self.download(name=name, path=folder)
+            download: Any = self.download
+            found["path"] = download(name=name, path=folder)
         return super().load(**found)
 
 

@@ -42,7 +42,7 @@ class DeepSort(NativeLearner):
         ``ImageWithDetections``, or a list of them, and the numbers of the frames (``frame_ids``)."""
         first = inputs[0] if inputs else arguments.get("batch", arguments.get("image"))
         several = isinstance(first, (list, tuple))
-        items = list(first) if isinstance(first, (list, tuple)) else [first]
+        items: list[Any] = list(first) if isinstance(first, (list, tuple)) else [first]
         if not items or not all(isinstance(item, ImageWithDetections) for item in items) or "detections" in arguments:
             return super().infer(*inputs, **arguments)
         owner = f"{type(self).__name__}.infer"
@@ -164,9 +164,11 @@ class Vpit(NativeLearner):
 
 
 def _renamed(track: TrackingAnnotation3D, frame: Optional[int], id: Optional[int]) -> TrackingAnnotation3D:
-    data = track.data
     names = ("name", "truncated", "occluded", "alpha", "bbox2d", "dimensions", "location", "rotation_y")
-    number, at = track.id if id is None else id, track.frame if frame is None else frame
     return TrackingAnnotation3D(
-        *(data[name] for name in names), id=number, score=track.confidence, frame=at, class_name=track.class_name
+        **{name: track.data[name] for name in names},
+        id=track.id if id is None else id,
+        score=track.confidence,
+        frame=track.frame if frame is None else frame,
+        class_name=track.class_name,
     )
