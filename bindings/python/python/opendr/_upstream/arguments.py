@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import os
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
@@ -52,6 +53,11 @@ def value_here(owner: str, row: Learner, name: str, value: Any, choices: Sequenc
     Raises:
         opendr.Unsupported: What it stands for is not here.
     """
+    if str(value) in row.instead.get(name, "").split() and value not in choices:
+        warnings.warn(
+            f"{owner}: {name}={value!r} is not here; the default takes its place", UserWarning, stacklevel=stacklevel
+        )
+        return None
     if not isinstance(value, str) or value in choices:
         return value
     instead = row.without.get(name, {}).get(value)
@@ -63,11 +69,6 @@ def value_here(owner: str, row: Learner, name: str, value: Any, choices: Sequenc
     # Without a schedule, the learning rate is what it is.
     if name == "lr_schedule" and value == "" and "constant" in choices:
         return "constant"
-    if value in row.instead.get(name, "").split():
-        warnings.warn(
-            f"{owner}: {name}={value!r} is not here; the default takes its place", UserWarning, stacklevel=stacklevel
-        )
-        return None
     return value
 
 
@@ -146,6 +147,25 @@ def refused(name: str, instead: str) -> Callable[..., NoReturn]:
     return call
 
 
+def _signature(method: Callable[..., Any], wanted: Sequence[Argument]) -> inspect.Signature:
+    """The signature of ``method`` with OpenDR's arguments by place, and all others by name."""
+    this, *others = inspect.signature(method).parameters.values()
+    ours = {parameter.name: parameter for parameter in others}
+    shown = [this]
+    for argument in wanted:
+        known = ours.pop(argument.ours or "", None)
+        required = known is not None and known.default is known.empty and shown[-1].default is known.empty
+        default = inspect.Parameter.empty if required else None if known is None else known.default
+        kind, hint = inspect.Parameter.POSITIONAL_OR_KEYWORD, Any if known is None else known.annotation
+        shown.append(inspect.Parameter(argument.name, kind, default=default, annotation=hint))
+    left = [parameter for parameter in ours.values() if parameter.kind != parameter.VAR_POSITIONAL]
+    named = [
+        parameter if parameter.kind == parameter.VAR_KEYWORD else parameter.replace(kind=inspect.Parameter.KEYWORD_ONLY)
+        for parameter in left
+    ]
+    return inspect.Signature([*shown, *named])
+
+
 def methods(row: Learner, parent: type) -> dict[str, Any]:
     """The methods of a learner's class that differ from those of ``parent``."""
     from opendr._upstream.downloads import Download
@@ -155,7 +175,9 @@ def methods(row: Learner, parent: type) -> dict[str, Any]:
         wanted = arguments(getattr(row, name))
         if wanted:
             method, special = getattr(parent, name), _SPECIAL.get(name)
-            found[name] = placed(name, method, wanted) if special is None else special(method, wanted)
+            call: Any = placed(name, method, wanted) if special is None else special(method, wanted)
+            call.__signature__ = _signature(method, wanted)
+            found[name] = call
     if row.download or row.folder is not None or row.picture or row.modes:
         found["download"] = Download(row, parent)
     found.update({name: refused(name, instead) for name, instead in row.methods.items() if instead})

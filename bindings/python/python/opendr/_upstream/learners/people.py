@@ -26,10 +26,26 @@ class HighResolutionPoses(NativeLearner):
         """Predicts by the method ``adaptive``."""
         return self.infer(image=img, upsample_ratio=upsample_ratio, stride=stride, method="adaptive")
 
-    def eval_adaptive(self, *given: Any, **named: Any) -> dict[str, Any]:
+    def eval_adaptive(
+        self,
+        dataset: Any,
+        silent: bool = False,
+        verbose: bool = False,
+        use_subset: bool = False,
+        subset_size: Optional[int] = None,
+        upsample_ratio: Optional[int] = None,
+        images_folder_name: Optional[str] = None,
+        annotations_filename: Optional[str] = None,
+        **options: Any,
+    ) -> dict[str, Any]:
         """Measures the method ``adaptive`` as ``eval`` measures."""
+        given = {"upsample_ratio": upsample_ratio, "images_folder_name": images_folder_name}
+        given["annotations_filename"] = annotations_filename
+        subset = {"use_subset": use_subset, "subset_size": subset_size}
+        wanted = {name: value for name, value in {**subset, **given}.items() if value is not None}
+        evaluate: Any = self.eval
         with self._for_now({"method": "adaptive"}):
-            numbers: dict[str, Any] = self.eval(*given, **named)
+            numbers: dict[str, Any] = evaluate(dataset, silent=silent, verbose=verbose, **wanted, **options)
         return numbers
 
 

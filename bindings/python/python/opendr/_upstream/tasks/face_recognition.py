@@ -22,6 +22,8 @@ LEARNERS = {
         methods={"align": "infer finds and aligns the faces of any picture"},
         same={"mode": {"backbone_only": "reference", "finetune": "full"}},
         without={"mode": {"head_only": "give mode=\"full\" to train the head"}},
+        # It is measured where fit is given val_dataset.
+        instead={"val_after": "0"},
         folder="",
         demos="inference, eval",
         differs=(
