@@ -349,3 +349,87 @@ def test_attributes_are_opendrs(module):
     for name, wanted in ATTRIBUTES[module].items():
         cls = getattr(importlib.import_module(f"opendr.{module}"), name)
         assert [key for key in wanted.split() if not hasattr(cls, key)] == [], name
+
+
+def version(python):
+    """The version of an interpreter that has the lock; None where it does not run."""
+    program = (
+        "import sys, sysconfig, json\n"
+        "print(json.dumps(None if sysconfig.get_config_var('Py_GIL_DISABLED') else sys.version_info[:2]))"
+    )
+    try:
+        done = subprocess.run([python, "-c", program], capture_output=True, text=True, timeout=60)
+        return done.returncode == 0 and tuple(json.loads(done.stdout) or ()) or None
+    except (OSError, ValueError, subprocess.TimeoutExpired):
+        return None
+
+
+def found_interpreters():
+    """Interpreters of this machine by their version."""
+    names = [f"python3.{minor}" for minor in range(9, 20)]
+    paths = [path for path in map(shutil.which, names) if path]
+    paths += map(str, sorted(Path.home().glob(".pyenv/versions/*/bin/python")))
+    return {known: path for path in paths if (known := version(path)) and known >= (3, 9)}
+
+
+def environment_of(python, folder):
+    """The program of an environment with NumPy beside `python`."""
+    program = folder / "bin/python"
+    beside = Path(sys.executable).parents[2] / "uv/bin/uv"
+    uv = shutil.which("uv") or (str(beside) if beside.is_file() else None)
+    if uv:
+        make, install = [uv, "venv", "--quiet", "--python", python], [uv, "pip", "install", "--quiet", "--python", program]
+    else:
+        make, install = [python, "-m", "venv"], [program, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    if not (folder / "numpy.installed").is_file():
+        shutil.rmtree(folder, ignore_errors=True)
+        for command in ([*make, folder], [*install, "numpy"]):
+            done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": ""})
+            if done.returncode != 0:
+                pytest.skip(f"no environment of {python}: {done.stderr.strip()[-300:]}")
+        (folder / "numpy.installed").touch()
+    return program
+
+
+@pytest.fixture(scope="module", params=["this", "3.9", "newest"])
+def outcomes(request, zoo, tmp_path_factory):
+    """How the programs went under an interpreter, by name."""
+    folder = tmp_path_factory.mktemp("programs")
+    (folder / "package").mkdir()
+    (folder / "package/opendr").symlink_to(Path(opendr.__file__).parent)
+    python = sys.executable
+    if request.param != "this":
+        there = found_interpreters()
+        wanted = (3, 9) if request.param == "3.9" else max(there, default=sys.version_info[:2])
+        if wanted == sys.version_info[:2]:
+            pytest.skip(f"Python {wanted[0]}.{wanted[1]} runs the tests itself")
+        if wanted not in there:
+            pytest.skip("no Python 3.9")
+        cache = os.environ.get("OPENDR_TEST_CACHE")
+        home = Path(cache) if cache else tmp_path_factory.mktemp("environments")
+        python = environment_of(there[wanted], home / f"python-{wanted[0]}.{wanted[1]}")
+    done = subprocess.run(
+        [python, PROGRAMS.parent / "run_programs.py", folder / "runs", *sorted(PROGRAMS.glob("*.py"))],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(folder / "package"), "DISPLAY": "", "WAYLAND_DISPLAY": ""},
+    )
+    lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith('{"program": ')]
+    assert done.returncode == 0, done.stderr
+    return {Path(line["program"]).stem: line for line in lines}
+
+
+def test_there_are_forty_programs():
+    assert len(list(PROGRAMS.glob("*.py"))) >= 40
+
+
+def test_programs_cover_every_learner_and_data_set():
+    text = "".join(path.read_text("utf-8") for path in PROGRAMS.glob("*.py"))
+    wanted = {name for _, name, home in NAMES if not isinstance(home, Absent)} - {"get_AF_dataset", "visualize"}
+    assert [name for name in sorted(wanted) if not re.search(rf"\b{name}\b", text)] == []
+
+
+@pytest.mark.parametrize("program", [path.stem for path in sorted(PROGRAMS.glob("*.py"))])
+def test_program_runs(outcomes, program):
+    assert program in outcomes, "the interpreter ended before"
+    assert outcomes[program]["failure"] is None, outcomes[program]["failure"]

@@ -14,7 +14,7 @@ from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr._upstream.arguments import by_name, methods, value_here
 from opendr._upstream.rows import Argument, Learner as Row, arguments
 from opendr.engine import data, target
-from opendr.engine._parameters import parameters
+from opendr.engine._parameters import Parameter, parameters
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import BaseLearner, Learner
 
@@ -244,8 +244,9 @@ class NativeBase(BaseLearner):
 
     def _fit_params(self, given: dict[str, Any]) -> dict[str, Any]:
         """The parameters of the training: those of this call over those of the constructor."""
-        names = [field["name"] for field in self._entry["fit_params"]]
-        params = {name: getattr(self, name) for name in names}
+        names, known = [field["name"] for field in self._entry["fit_params"]], parameters(type(self))
+        # What was set, even where the attribute says what the loaded model has.
+        params = {name: Parameter.__get__(known[name], self) for name in names}
         for name, value in self._known(given, stacklevel=4).items():
             if name not in names:
                 raise TypeError(f"fit has no argument {name!r}; parameters of the training: {', '.join(names)}")
@@ -562,6 +563,17 @@ def _teacher(teacher: Optional[Learner]) -> Any:
     return name, teacher
 
 
+class _Classes(Parameter):
+    """The classes that are to be trained, and once there is a model those that it has."""
+
+    def __init__(self, parameter: Parameter) -> None:
+        vars(self).update(vars(parameter))
+
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> Any:
+        handle = None if instance is None else vars(instance).get("_handle")
+        return handle and handle.classes or super().__get__(instance, owner)
+
+
 def _alias(name: str) -> property:
     """OpenDR's name of a parameter as an attribute."""
     return property(lambda self: getattr(self, name), lambda self, value: setattr(self, name, value))
@@ -617,4 +629,6 @@ def native_class(entry: Table, module: str) -> type[NativeBase]:
     }
     made: Any = type(entry["class_name"], (parent,), namespace)
     made.__signature__ = constructor(made)
+    if "classes" in {field["name"] for field in fields}:
+        made.classes = _Classes(vars(made)["classes"])
     return made  # type: ignore[no-any-return]

@@ -5,9 +5,42 @@ from __future__ import annotations
 import os
 from typing import Any, Optional, Union
 
-from opendr._native_learner import NativeLearner
+from opendr._native_learner import NativeLearner, PathLike
 from opendr.engine.data import Image
-from opendr.engine.target import Heatmap
+from opendr.engine.datasets import ExternalDataset, formats
+from opendr.engine.target import BoundingBoxList, Heatmap
+
+
+class HighResolution(NativeLearner):
+    """Patches of large pictures, also cut out of pictures with boxes."""
+
+    def fit(
+        self,
+        dataset: Any,
+        val_dataset: Any = None,
+        logging_path: PathLike = "",
+        silent: bool = False,
+        verbose: bool = True,
+        **options: Any,
+    ) -> dict[str, Any]:
+        """Trains as ``fit`` of every learner does; of an ``ExternalDataset`` with boxes it takes patches."""
+        return super().fit(_with_boxes(dataset), val_dataset, logging_path, silent, verbose, **options)
+
+    def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
+        """Measures as ``eval`` of every learner does, on the patches of an ``ExternalDataset`` with boxes."""
+        from opendr._upstream.segmentation_datasets import HighResolutionDataset
+
+        boxes = _with_boxes(dataset)
+        return super().eval(dataset if boxes is dataset else HighResolutionDataset(dataset.path), **options)
+
+
+def _with_boxes(dataset: Any) -> Any:
+    """A data set whose format has boxes, opened to give them; any other as it is."""
+    if not isinstance(dataset, ExternalDataset):
+        return dataset
+    wanted = dataset.dataset_type.lower()
+    found = (table for table in formats() if wanted in (table["name"], *table["aliases"]))
+    return dataset.open(target=BoundingBoxList) if any("BoundingBoxList" in table["targets"] for table in found) else dataset
 
 
 class PanopticPictures(NativeLearner):

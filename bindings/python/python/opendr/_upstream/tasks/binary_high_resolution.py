@@ -18,6 +18,7 @@ LEARNERS = {
         fit="dataset silent verbose",
         eval="dataset silent verbose",
         optimize="do_constant_folding!onnx",
+        mixin="opendr._upstream.learners.scenes:HighResolution",
         demos="train_eval, inference",
         differs=("`infer` gives the map and a `Category` for the whole picture; `download` has no demo data",),
     ),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from opendr._upstream.rows import HERE, Absent, Home, Learner
 
-_CORRIDOR = Absent('opendr.simulation.make("UavDepthCorridor-v1") flies without Webots')
+_CORRIDOR = Absent('opendr.simulation has "UavDepthCorridor-v1", which needs no Webots')
 
 MODULES: dict[str, dict[str, Home]] = {
     "e2e_planning_learner": {"EndToEndPlanningRLLearner": HERE},
