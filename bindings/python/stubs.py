@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what is made of the registries: the type stubs of the learners' modules, and the pages docs/learners.md,
-docs/metrics.md and docs/datasets.md.
+"""Writes what is made of the registries: the type stubs of the learners' modules, the pages docs/learners.md, docs/metrics.md
+and docs/datasets.md, and of the table of OpenDR's names the end of docs/python.md.
 
     bindings/python/stubs.py [--check]
 
@@ -20,7 +20,7 @@ from opendr._native_learner import OF_SEVERAL_PARTS, NativeLearner
 from opendr._native_learner_rl import NativeLearnerRL
 from opendr._reference import document
 from opendr._registered import _DRAWING
-from opendr._upstream.modules import names_of
+from opendr._upstream.modules import TASKS, names_of, rows
 from opendr._upstream.rows import HERE, Absent
 from opendr._upstream.rows import arguments as arguments_of
 from opendr.engine.learners import BaseLearner
@@ -60,6 +60,21 @@ format is recognised where none is named. Pictures and other bulky data are read
 What is broken (a file that is cut off or missing, a class that there is none of, a box outside its picture, NaN) is told
 with file and line or key. The first ends the work; with `--skip-broken` it is left out, counted and listed.
 `opendr data check` lists everything.
+"""
+UPSTREAM_MARK = "## Names, arguments and demos of OpenDR 3.0\n"
+UPSTREAM_TEXT = """
+Made by `bindings/python/stubs.py` from the table in `opendr/_upstream`, which the package itself works by; do not edit what
+follows. It has {names} names in {modules} module paths: {here} are here, {missing} say what to use instead of them. Module
+paths of OpenDR (`opendr.perception.object_detection_2d.ssd.ssd_learner`) lead to the classes here. Their arguments by place are in
+OpenDR's order, for the constructor, `infer`, `fit`, `eval`, `optimize`, `download`, `load` and `save`; ours are given by name.
+"""
+DEMOS_TEXT = """Programs in `projects/python/perception` of OpenDR were followed line by line. They want `device="cpu"` where there is no CUDA
+device, and data that they do not download. In all of them `fit` and `eval` give numbers by name and one `"report"`, `optimize` writes a
+smaller model and wants `output`, and one picture gives one prediction.
+"""
+MISSING_TEXT = """These can be imported; their use raises `opendr.Unsupported`.
+"""
+IDLE_TEXT = """These are taken, with a `UserWarning`, beside those that [learners.md](learners.md) lists.
 """
 TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": "list[Any]"}
 #: What stands for a datum in `infer`, besides an object of its class.
@@ -339,6 +354,41 @@ def datasets_page():
     return text
 
 
+def table_of_opendr(page):
+    """docs/python.md with its end made anew."""
+    text, demos, idle, missing = page[: page.index(UPSTREAM_MARK)] + UPSTREAM_MARK, "", "", ""
+    names = {}
+    for task in TASKS:
+        for path, found in rows(task).MODULES.items():
+            for name, home in found.items():
+                names.setdefault((task, name), (path, home))
+        for name, row in sorted(getattr(rows(task), "LEARNERS", {}).items()):
+            demos += f"| `{name}` | {row.demos} | {cell('; '.join(row.differs))} |\n"
+            idle += idle_arguments(name, row)
+    for (task, name), (path, home) in sorted(names.items(), key=lambda item: item[0][::-1]):
+        if isinstance(home, Absent):
+            module = ".".join(filter(None, (task, path)))
+            missing += f"| `{name}` | `opendr.{module}` | {cell(home.use)} |\n"
+    count = sum(isinstance(home, Absent) for _, home in names.values())
+    modules = {".".join(filter(None, (task, path))) for task in TASKS for path in rows(task).MODULES}
+    text += UPSTREAM_TEXT.format(names=len(names), modules=len(modules), here=len(names) - count, missing=count)
+    text += f"\n### Demos\n\n{DEMOS_TEXT}\n| learner | demos | what remained different |\n|---|---|---|\n{demos}"
+    text += f"\n### Not here yet\n\n{MISSING_TEXT}\n| name | module | instead |\n|---|---|---|\n{missing}"
+    text += f"\n### Arguments without effect\n\n{IDLE_TEXT}\n| learner | arguments | why |\n|---|---|---|\n{idle}"
+    return text
+
+
+def idle_arguments(name, row):
+    """Rows of arguments that the table says to have no effect, by their reasons."""
+    reasons = {}
+    for method in ("init", "infer", "fit", "eval", "optimize", "download", "load", "save"):
+        for argument in arguments_of(getattr(row, method)):
+            if argument.ours is None:
+                place = argument.name if method == "init" else f"{method}({argument.name})"
+                reasons.setdefault(argument.reason, []).append(f"`{place}`")
+    return "".join(f"| `{name}` | {', '.join(places)} | {cell(reason)} |\n" for reason, places in reasons.items())
+
+
 def stubs():
     files, listed = {}, {}
     for task, entries in by_task().items():
@@ -353,6 +403,7 @@ def stubs():
 def main():
     stale = False
     pages = {"learners.md": page(), "metrics.md": metrics_page(), "datasets.md": datasets_page()}
+    pages["python.md"] = table_of_opendr((DOCS / "python.md").read_text())
     files = {**{DOCS / name: text for name, text in pages.items()}, **{STUBS / name: text for name, text in stubs().items()}}
     for path, text in files.items():
         there = path.read_text() if path.is_file() else ""

@@ -1,6 +1,6 @@
 """Runs programs one after the other, each in a folder of its own; a line of JSON tells how each went.
 
-    run_programs.py FOLDER PROGRAM...
+run_programs.py FOLDER PROGRAM...
 """
 
 import json

@@ -12,9 +12,11 @@ import sys
 from pathlib import Path
 
 import opendr
+import opendr._upstream
 import pytest
 from opendr._upstream.arguments import METHODS
 from opendr._upstream.modules import TASKS, names_of, rows
+from opendr._upstream.reasons import REASONS
 from opendr._upstream.rows import Absent, arguments
 from opendr.engine.learners import BaseLearner
 
@@ -99,7 +101,8 @@ def test_every_argument_is_known(name):
         options = "options" in there
         wanted = [argument.ours for argument in arguments(getattr(row, method)) if argument.ours is not None]
         assert options or set(wanted) <= there, f"{name}.{method}: {set(wanted) - there}"
-    assert [argument.name for argument in arguments(row.init)] == list(inspect.signature(cls).parameters)[: len(row.init.split())]
+    places = [argument.name for argument in arguments(row.init)]
+    assert places == list(inspect.signature(cls).parameters)[: len(places)]
     for argument in arguments(row.init):
         if argument.ours is None:
             assert argument.name not in own | fit, f"{name} knows {argument.name}, the table has a reason"
@@ -108,6 +111,11 @@ def test_every_argument_is_known(name):
         if instead:
             with pytest.raises(opendr.Unsupported, match=re.escape(instead)):
                 cls(device="cpu").__getattribute__(method)(1, name=2)
+
+
+def test_every_reason_is_used():
+    source = "".join(path.read_text("utf-8") for path in Path(opendr._upstream.__file__).parent.rglob("*.py"))
+    assert [reason for reason in REASONS if not re.search(rf"!{reason}\b", source)] == []
 
 
 def signatures(text):
@@ -281,12 +289,12 @@ CONSTRUCTORS = {
     "perception.binary_high_resolution": {
         "HighResolutionDataset": "dataset_folder patch_size non_zero_threshold transform",
     },
-    "perception.pose_estimation": {"CocoTrainDataset": "labels images_folder", "CocoValDataset": "labels images_folder"},
+    "perception.pose_estimation": dict.fromkeys(("CocoTrainDataset", "CocoValDataset"), "labels images_folder"),
     "perception.fall_detection": {"URFallDatasetIterator": "data labels"},
     "perception.activity_recognition": {
         "DummyTimeseriesDataset": "num_sines num_datapoints base_offset sequence_len",
-        "KineticsDataset": "path frames_per_clip step_between_clips temporal_downsampling split video_transform use_caching"
-        " decoder_backend spatial_pixels",
+        "KineticsDataset": "path frames_per_clip step_between_clips temporal_downsampling split video_transform"
+        " use_caching decoder_backend spatial_pixels",
     },
     "perception.heart_anomaly_detection.gated_recurrent_unit.algorithm.data": {"Dataset": "x y"},
     "utils.hyperparameter_tuner": {"HyperparameterTuner": "learner_class study"},
@@ -314,7 +322,8 @@ ATTRIBUTES = {
         + " ".join(BaseLearner.__signature__.parameters),
     },
     "perception.object_detection_2d": {
-        "DetectionDataset": "set_transform transform set_image_transform set_target_transform get_image get_bboxes num_classes",
+        "DetectionDataset": "set_transform transform set_image_transform set_target_transform get_image get_bboxes"
+        " num_classes",
     },
     "perception.panoptic_segmentation": {
         "CityscapesDataset": "evaluate prepare_data",
@@ -378,9 +387,11 @@ def environment_of(python, folder):
     beside = Path(sys.executable).parents[2] / "uv/bin/uv"
     uv = shutil.which("uv") or (str(beside) if beside.is_file() else None)
     if uv:
-        make, install = [uv, "venv", "--quiet", "--python", python], [uv, "pip", "install", "--quiet", "--python", program]
+        make = [uv, "venv", "--quiet", "--python", python]
+        install = [uv, "pip", "install", "--quiet", "--python", program]
     else:
-        make, install = [python, "-m", "venv"], [program, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        make = [python, "-m", "venv"]
+        install = [program, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
     if not (folder / "numpy.installed").is_file():
         shutil.rmtree(folder, ignore_errors=True)
         for command in ([*make, folder], [*install, "numpy"]):

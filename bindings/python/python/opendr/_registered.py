@@ -32,7 +32,8 @@ def task_modules(package: types.ModuleType) -> None:
         module = sys.modules.get(name)
         if module is None:
             module = types.ModuleType(name, f"Learners of the task {entry['task']}.")
-            module.__dict__.update(__all__=[], __path__=[])
+            # Programs of OpenDR look for files beside a learner's module.
+            module.__dict__.update(__all__=[], __path__=[], __file__=package.__file__)
             made[name] = sys.modules[name] = module
             setattr(package, entry["task"], module)
         found = {entry["class_name"]: native_class(entry, name)}

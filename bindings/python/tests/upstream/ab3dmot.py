@@ -8,7 +8,6 @@ from opendr.perception.object_tracking_3d.ab3dmot.object_tracking_3d_ab3dmot_lea
 
 assert Same is ObjectTracking3DAb3dmotLearner
 learner = ObjectTracking3DAb3dmotLearner("cpu", 2, 1)
-learner.load()
 for step in range(4):
     car = BoundingBox3D("Car", 0, 0, 0.0, [0, 0, 1, 1], [4.0, 1.5, 1.8], [5 + 0.2 * step, 1.6, 20], 0.0, 0.9)
     tracks = learner.infer(BoundingBox3DList([car]))

@@ -28,7 +28,9 @@ np.save("clip.npy", video.numpy())
 with open("voice.wav", "wb") as file:
     samples = (32767 * audio.numpy().reshape(-1)).astype("<i2").tobytes()
     file.write(b"RIFF" + (36 + len(samples)).to_bytes(4, "little") + b"WAVEfmt " + (16).to_bytes(4, "little"))
-    file.write(b"\x01\x00\x01\x00" + (22050).to_bytes(4, "little") + (44100).to_bytes(4, "little") + b"\x02\x00\x10\x00")
+    file.write(
+        b"\x01\x00\x01\x00" + (22050).to_bytes(4, "little") + (44100).to_bytes(4, "little") + b"\x02\x00\x10\x00"
+    )
     file.write(b"data" + len(samples).to_bytes(4, "little") + samples)
 audio, video = learner.load_inference_data("voice.wav", "clip.npy")
 prediction = learner.infer(audio, video)

@@ -7,10 +7,10 @@ from opendr.perception.semantic_segmentation import BisenetLearner, CamVidDatase
 
 root = os.path.join(os.environ["OPENDR_TEST_DATA"], "data/camvid")
 learner = BisenetLearner(device="cpu", context_path="resnet18", batch_size=1, iters=1, num_workers=0)
-learner.download("bisenet", mode="pretrained")
-learner.load("bisenet/bisenet_camvid")
-learner.download("bisenet", mode="testingImage")
-heatmap = learner.infer(Image.open("bisenet/testingImage.png"))
+learner.download("./bisenet_camvid", mode="pretrained")
+learner.load("./bisenet_camvid")
+learner.download("./", mode="testingImage")
+heatmap = learner.infer(Image.open("./test1.png"))
 assert heatmap.numpy().ndim == 2 and heatmap.class_names
 
 datatrain = CamVidDataset(root, mode="train")

@@ -37,9 +37,9 @@ assert TrackingAnnotationList.from_mot(tracks.mot().tolist())[1].id == 8
 car = BoundingBox3D("Car", 0, 0, 0.1, [0, 0, 1, 1], [4, 1.5, 1.8], [1, 2, 3], 0.2, 0.9)
 cars = BoundingBox3DList([car])
 assert BoundingBox3DList.from_kitti(cars.kitti())[0].location.tolist() == [1, 2, 3]
-followed = TrackingAnnotation3DList([
-    TrackingAnnotation3D("Car", 0, 0, 0.1, [0, 0, 1, 1], [4, 1.5, 1.8], [1, 2, 3], 0.2, 4, 0.9, 6)
-])
+followed = TrackingAnnotation3DList(
+    [TrackingAnnotation3D("Car", 0, 0, 0.1, [0, 0, 1, 1], [4, 1.5, 1.8], [1, 2, 3], 0.2, 4, 0.9, 6)]
+)
 assert followed.kitti(True)["frame"].tolist() == [6] and followed.bounding_box_3d_list()[0].name == "Car"
 assert str(Category(3, "cat", 0.9)) == "Class 3 (cat) with confidence 0.9" and Category(1).action is None
 assert Keypoint([1.5, 2]).x == 1.5
@@ -48,4 +48,6 @@ assert pose["r_sho"].y == 1 and "nose" in str(pose) and pose.id is None
 heatmap = Heatmap(np.zeros((2, 3), np.uint8), {0: "road"})
 assert heatmap.shape() == (2, 3) and heatmap.class_names[0] == "road" and heatmap.opencv().shape == (2, 3)
 assert str(WhisperTranscription("hello", [])) == "hello" and VoskTranscription("hi", True).accept_waveform
-assert isinstance(box, Target) and issubclass(Target, BaseTarget) and issubclass(WhisperTranscription, BaseTranscription)
+assert (
+    isinstance(box, Target) and issubclass(Target, BaseTarget) and issubclass(WhisperTranscription, BaseTranscription)
+)

@@ -31,12 +31,13 @@ with open("labels/0000.txt", "w") as file:
 assert [len(found) for found in inputs] == [1, 1] and truths[1][0].id == 5 and truths[1][0].frame == 1
 assert inputs[0][0].dimensions.tolist() == [12.34, 2.85, 2.63]
 learner = ObjectTracking3DAb3dmotLearner(device="cpu", min_updates=1)
-learner.load()
 assert [len(learner.infer(bounding_boxes_3d_list=found)) for found in inputs] == [1, 1]
 
 for frame in (0, 1):
     shutil.copy(os.path.join(root, "velodyne/000000.bin"), f"scans/00000{frame}.bin")
-recording = LabeledTrackingPointCloudsDatasetIterator("scans", "labels/0000.txt", os.path.join(root, "calib/000000.txt"))
+recording = LabeledTrackingPointCloudsDatasetIterator(
+    "scans", "labels/0000.txt", os.path.join(root, "calib/000000.txt")
+)
 cloud, tracks = recording[1]
 assert len(recording) == 2 and tracks[0].id == 5
 try:

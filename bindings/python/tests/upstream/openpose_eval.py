@@ -4,7 +4,10 @@ import os
 
 from opendr.engine.datasets import ExternalDataset
 from opendr.perception.pose_estimation import LightweightOpenPoseLearner
-from opendr.perception.pose_estimation.lightweight_open_pose.algorithm.datasets.coco import CocoTrainDataset, CocoValDataset
+from opendr.perception.pose_estimation.lightweight_open_pose.algorithm.datasets.coco import (
+    CocoTrainDataset,
+    CocoValDataset,
+)
 
 root = os.path.join(os.environ["OPENDR_TEST_DATA"], "data/tiny_coco")
 pose_estimator = LightweightOpenPoseLearner(device="cpu", temp_path="./parent_dir")

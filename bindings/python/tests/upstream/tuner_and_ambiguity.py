@@ -31,7 +31,9 @@ class Parabola(Learner):
         return lambda results: results["loss"]
 
 
-best = HyperparameterTuner(Parabola).optimize(fit_arguments={"dataset": None}, eval_arguments={"dataset": None}, n_trials=20)
+best = HyperparameterTuner(Parabola).optimize(
+    fit_arguments={"dataset": None}, eval_arguments={"dataset": None}, n_trials=20
+)
 assert abs(best["lr"] - 0.5) < 0.3
 
 heatmap = np.zeros((32, 32))

@@ -7,7 +7,9 @@ from opendr.perception.object_detection_3d import LabeledPointCloudsDatasetItera
 from opendr.perception.object_tracking_3d import ObjectTracking3DVpitLearner
 
 root = os.path.join(os.environ["OPENDR_TEST_DATA"], "data/kitti/object_vis")
-learner = ObjectTracking3DVpitLearner("configs/pointpillars_car.proto", device="cpu", backbone="pp", search_type="small")
+learner = ObjectTracking3DVpitLearner(
+    "configs/pointpillars_car.proto", device="cpu", backbone="pp", search_type="small"
+)
 learner.download("pointpillars_car_xyres_16", "./models")
 learner.load("./models/pointpillars_car_xyres_16", full=True)
 dataset = LabeledPointCloudsDatasetIterator(

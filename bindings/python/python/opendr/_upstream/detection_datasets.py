@@ -306,7 +306,8 @@ def _objects(file: str) -> list[tuple[str, list[float]]]:
     try:
         objects = list(ElementTree.fromstring(text).iter("object"))
         corners = [
-            " ".join(entry.findtext(f"bndbox/{edge}", "") for edge in ("xmin", "ymin", "xmax", "ymax")) for entry in objects
+            " ".join(entry.findtext(f"bndbox/{edge}", "") for edge in ("xmin", "ymin", "xmax", "ymax"))
+            for entry in objects
         ]
         names = [entry.findtext("name", "").strip().lower() for entry in objects]
     except ElementTree.ParseError as error:

@@ -52,7 +52,9 @@ class Download:
     def _check(self, owner: str, names: dict[str, Any]) -> None:
         known = self._row.models.split()
         for name, value in names.items():
-            asked = {value} if isinstance(value, str) else set(value) if isinstance(value, (set, list, tuple)) else set()
+            asked = (
+                {value} if isinstance(value, str) else set(value) if isinstance(value, (set, list, tuple)) else set()
+            )
             unknown = sorted(map(str, asked - set(known))) if name != "method_name" and known else []
             if unknown:
                 raise NotFound(f"{owner}: there is no model {unknown[0]!r}; there are {', '.join(known)}")

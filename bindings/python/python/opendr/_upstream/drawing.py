@@ -46,7 +46,9 @@ def draw_detections(
     corners = np.asarray(boxes, dtype=float).reshape(-1, 4)
     values, names = np.asarray(scores, dtype=float).reshape(-1), np.asarray(classes).reshape(-1)
     if not len(corners) == len(values) == len(names):
-        raise ValueError(f"{len(corners)} boxes have {len(values)} scores and {len(names)} classes; give as many of each")
+        raise ValueError(
+            f"{len(corners)} boxes have {len(values)} scores and {len(names)} classes; give as many of each"
+        )
     rows = zip(corners.tolist(), names.tolist(), values.tolist())
     found = [BoundingBox(int(name), x0, y0, x1 - x0, y1 - y0, score) for (x0, y0, x1, y1), name, score in rows]
     return draw_bounding_boxes(img, BoundingBoxList(found), class_names, show, line_thickness)
@@ -85,9 +87,7 @@ def _bar(pixels: Any, weight: float) -> None:
     pixels[rows, split:, :3] = (0, 255, 0)
 
 
-def visualize(
-    learner: Any, image_path: Union[str, os.PathLike[str]], show: bool = True
-) -> tuple[Image, Heatmap]:
+def visualize(learner: Any, image_path: Union[str, os.PathLike[str]], show: bool = True) -> tuple[Image, Heatmap]:
     """Shows what BinaryHighResolutionLearner finds in a picture.
 
     Args:

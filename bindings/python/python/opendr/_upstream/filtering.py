@@ -30,7 +30,9 @@ class FilteredLearnerWrapper:
         self.classes: list[str] = list(getattr(learner, "classes", []))
         unknown = [name for name in self.allowed_classes if name not in self.classes]
         if unknown:
-            raise ValueError(f"{type(learner).__name__} does not find {', '.join(unknown)}; load it, and see its classes")
+            raise ValueError(
+                f"{type(learner).__name__} does not find {', '.join(unknown)}; load it, and see its classes"
+            )
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
         """Predicts as the detector does, of the allowed classes."""

@@ -65,6 +65,8 @@ class Learner(NamedTuple):
     picture: str = ""
     #: Whether ``download`` also loads the model.
     loads: bool = False
+    #: Whether it needs no model: it is loaded when it is first used.
+    ready: bool = False
     #: OpenDR's demos that were followed line by line.
     demos: str = ""
     #: What remained different, a sentence each.

@@ -44,7 +44,9 @@ class CamVidDataset(DatasetIterator):
     @staticmethod
     def download_data(path: PathLike) -> NoReturn:
         """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
-        raise Unsupported("CamVid cannot be downloaded from here; get it from whoever publishes it, and give its folder")
+        raise Unsupported(
+            "CamVid cannot be downloaded from here; get it from whoever publishes it, and give its folder"
+        )
 
     def __getitem__(self, idx: int) -> Any:
         return self._samples[idx]
@@ -151,6 +153,13 @@ class SemanticKittiDataset(DatasetIterator):
         if not self._parts:
             raise FileNotFoundError(f"no scans of the part {self.split} in {os.path.join(self.path, 'sequences')}")
         self._places = [(clouds, labels, index) for clouds, labels in self._parts for index in range(len(clouds))]
+
+    @staticmethod
+    def load_point_cloud(path: PathLike) -> PointCloud:
+        """Reads a scan, four little-endian float32 numbers a point."""
+        import numpy as np
+
+        return PointCloud(np.fromfile(path, dtype="<f4").reshape(-1, 4))
 
     def evaluate(self, *given: Any, **named: Any) -> NoReturn:
         """Raises ``opendr.Unsupported``: metrics of ``opendr.metrics`` measure."""

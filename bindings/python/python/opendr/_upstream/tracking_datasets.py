@@ -124,7 +124,9 @@ class RawMotDatasetIterator(DatasetIterator):
     def __getitem__(self, idx: int) -> tuple[Any, TrackingAnnotationList]:
         part, frame, path = self._frames[idx]
         image = Image.open(path)
-        label = os.path.splitext(path.replace(f"{os.sep}images{os.sep}", f"{os.sep}labels_with_ids{os.sep}"))[0] + ".txt"
+        label = (
+            os.path.splitext(path.replace(f"{os.sep}images{os.sep}", f"{os.sep}labels_with_ids{os.sep}"))[0] + ".txt"
+        )
         return image, self._tracks(label, image, part, frame)
 
     def __len__(self) -> int:
@@ -141,7 +143,9 @@ class RawMotDatasetIterator(DatasetIterator):
                 corner = (x * image.width - size[0] / 2, y * image.height - size[1] / 2)
                 # Persons of different data sets are different ones.
                 known = (part << 32) + int(person)
-                tracks.append(TrackingAnnotation(0, *corner, *size, id=known, score=1, frame=frame, class_name="person"))
+                tracks.append(
+                    TrackingAnnotation(0, *corner, *size, id=known, score=1, frame=frame, class_name="person")
+                )
         return TrackingAnnotationList(tracks, classes=self.classes)
 
 

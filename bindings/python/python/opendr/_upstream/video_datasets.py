@@ -68,7 +68,9 @@ class KineticsDataset(DatasetIterator):
         """Raises ``opendr.Unsupported``: the data have to be had from whoever publishes them."""
         from opendr._errors import Unsupported
 
-        raise Unsupported("Kinetics cannot be downloaded from here; get it from whoever publishes it, and give its folder")
+        raise Unsupported(
+            "Kinetics cannot be downloaded from here; get it from whoever publishes it, and give its folder"
+        )
 
     def __getitem__(self, idx: int) -> tuple[Any, Category]:
         video, category = self._samples[idx]

@@ -11,14 +11,14 @@ from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 from numpy.typing import ArrayLike, NDArray
 from opendr._upstream.space_datasets import KittiTrackingDatasetIterator as KittiTrackingDatasetIterator
 from opendr._upstream.space_datasets import LabeledTrackingPointCloudsDatasetIterator as LabeledTrackingPointCloudsDatasetIterator
-from opendr._native_learner import NativeLearner, PathLike
-from opendr._upstream.learners.tracking import Vpit
+from opendr._native_learner import PathLike
+from opendr._upstream.learners.tracking import BoxesInSpace, Vpit
 from opendr.engine.data import PointCloud
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
 from opendr.engine.target import BoundingBox3DList, TrackingAnnotation3DList
 
-class ObjectTracking3DAb3dmotLearner(NativeLearner):
+class ObjectTracking3DAb3dmotLearner(BoxesInSpace):
     """AB3DMOT follows boxes in space by motion and shared volume.
 
     Task: object_tracking_3d. ``infer`` takes:
@@ -60,7 +60,7 @@ class ObjectTracking3DAb3dmotLearner(NativeLearner):
     @overload
     def infer(self, boxes_3d: Iterator[BoundingBox3DList], *, max_staleness: int = ..., min_updates: int = ..., iou_threshold: float = ..., per_class: bool = ..., state_dimensions: Any = ..., measurement_dimensions: Any = ..., state_transition_matrix: Any = ..., measurement_function_matrix: Any = ..., covariance_matrix: Any = ..., process_uncertainty_matrix: Any = ...) -> Iterator[TrackingAnnotation3DList]: ...
     def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ...) -> dict[str, Any]: ...
-    def eval(self, dataset: Dataset, logging_path: Any = ..., silent: Any = ..., verbose: bool = ..., count: Optional[int] = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., folder: Optional[PathLike] = ..., skip_broken: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def eval(self, dataset: Any, logging_path: Any = ..., silent: Any = ..., verbose: Any = ..., count: Any = ..., **options: Any) -> dict[str, Any]: ...
 
 class ObjectTracking3DVpitLearner(Vpit):
     """VPIT follows one object in the scans of a lidar from a box in the first; it trains on recordings.

@@ -61,11 +61,11 @@ class EndToEndPlanningRLLearner(Planner):
     def download(cls, path: Optional[PathLike] = ..., url: Optional[str] = ..., *, mode: str = ..., verbose: bool = ..., variant: Optional[str] = ...) -> str: ...
 
 class AgiEnv:
-    """Not here yet: opendr.simulation.make("UavDepthCorridor-v1") flies without Webots."""
+    """Not here yet: opendr.simulation has "UavDepthCorridor-v1", which needs no Webots."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
 
 class UAVDepthPlanningEnv:
-    """Not here yet: opendr.simulation.make("UavDepthCorridor-v1") flies without Webots."""
+    """Not here yet: opendr.simulation has "UavDepthCorridor-v1", which needs no Webots."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -153,9 +153,7 @@ def _posture(pose: Pose) -> Category:
     return Category(*(_FALLEN if torso is not False and 2 * sum(seen) > len(seen) else _STANDING))
 
 
-def _lies(
-    upper: Optional[tuple[float, float]], lower: Optional[tuple[float, float]], limit: float
-) -> Optional[bool]:
+def _lies(upper: Optional[tuple[float, float]], lower: Optional[tuple[float, float]], limit: float) -> Optional[bool]:
     if upper is None or lower is None or upper == lower:
         return None
     across, down = abs(lower[0] - upper[0]), lower[1] - upper[1]

@@ -40,7 +40,11 @@ def _with_boxes(dataset: Any) -> Any:
         return dataset
     wanted = dataset.dataset_type.lower()
     found = (table for table in formats() if wanted in (table["name"], *table["aliases"]))
-    return dataset.open(target=BoundingBoxList) if any("BoundingBoxList" in table["targets"] for table in found) else dataset
+    return (
+        dataset.open(target=BoundingBoxList)
+        if any("BoundingBoxList" in table["targets"] for table in found)
+        else dataset
+    )
 
 
 class PanopticPictures(NativeLearner):

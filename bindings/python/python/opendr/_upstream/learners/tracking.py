@@ -88,6 +88,24 @@ def _numbered(tracks: Any, frame_ids: Any) -> Any:
     return tracks
 
 
+class BoxesInSpace(NativeLearner):
+    """A tracker of boxes in space, which has no weights to load."""
+
+    def infer(self, *inputs: Any, **arguments: Any) -> Any:
+        """Predicts as ``infer`` of every learner does."""
+        self._make_ready()
+        return super().infer(*inputs, **arguments)
+
+    def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
+        """Measures as ``eval`` of every learner does."""
+        self._make_ready()
+        return super().eval(dataset, **options)
+
+    def _make_ready(self) -> None:
+        if not self.is_ready:
+            self.load()
+
+
 class SingleObject(NativeLearner):
     """A tracker of one object.
 
@@ -147,10 +165,17 @@ class Vpit(NativeLearner):
         """
         box = label_lidar.bounding_box_3d() if isinstance(label_lidar, TrackingAnnotation3D) else label_lidar
         self.reset()
-        self.infer(point_cloud=point_cloud, init_box=BoundingBox3DList([box]) if isinstance(box, BoundingBox3D) else box)
+        self.infer(
+            point_cloud=point_cloud, init_box=BoundingBox3DList([box]) if isinstance(box, BoundingBox3D) else box
+        )
 
     def infer(
-        self, point_cloud: Any, frame: Optional[int] = None, id: Optional[int] = None, init_box: Any = None, **arguments: Any
+        self,
+        point_cloud: Any,
+        frame: Optional[int] = None,
+        id: Optional[int] = None,
+        init_box: Any = None,
+        **arguments: Any,
     ) -> Any:
         """Predicts where the object is; ``init_box`` comes with the first scan of a stream, ``frame`` and ``id`` are those
         of the annotations."""

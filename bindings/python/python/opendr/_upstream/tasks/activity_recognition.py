@@ -8,7 +8,9 @@ _TIMESERIES = "opendr._upstream.video_datasets"
 
 MODULES: dict[str, dict[str, Home]] = {
     "continual_transformer_encoder.continual_transformer_encoder_learner": {
-        "CoTransEncLearner": Absent("use GatedRecurrentUnitLearner of heart_anomaly_detection for classes of time series")
+        "CoTransEncLearner": Absent(
+            "use GatedRecurrentUnitLearner of heart_anomaly_detection for classes of time series"
+        )
     },
     "cox3d.cox3d_learner": {"CoX3DLearner": HERE},
     "datasets.dummy_timeseries_dataset": {"DummyTimeseriesDataset": _TIMESERIES},

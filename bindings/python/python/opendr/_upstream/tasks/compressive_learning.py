@@ -26,7 +26,7 @@ LEARNERS = {
             " imagenet_resnet50 imagenet_densenet121"
         },
         folder="",
-        demos="demo",
+        demos="–",
         differs=("one backbone, `small`, trained on Fashion-MNIST",),
     ),
 }

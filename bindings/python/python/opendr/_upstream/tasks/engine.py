@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from opendr._upstream.rows import Absent, Home
 
-_DATA = (
-    "Data Image ImageWithDetections PointCloud PointCloudWithCalibration SkeletonSequence Timeseries Vector Video"
-)
+_DATA = "Data Image ImageWithDetections PointCloud PointCloudWithCalibration SkeletonSequence Timeseries Vector Video"
 _TARGETS = (
     "BaseTarget BaseTranscription BoundingBox BoundingBox3D BoundingBox3DList BoundingBoxList Category CocoBoundingBox"
     " Heatmap Keypoint Pose Target TrackingAnnotation TrackingAnnotation3D TrackingAnnotation3DList"

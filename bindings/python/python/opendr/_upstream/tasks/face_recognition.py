@@ -21,13 +21,14 @@ LEARNERS = {
         optimize="do_constant_folding!onnx",
         methods={"align": "infer finds and aligns the faces of any picture"},
         same={"mode": {"backbone_only": "reference", "finetune": "full"}},
-        without={"mode": {"head_only": "give mode=\"full\" to train the head"}},
+        without={"mode": {"head_only": 'give mode="full" to train the head'}},
         # It is measured where fit is given val_dataset.
         instead={"val_after": "0"},
         folder="",
         demos="inference, eval",
         differs=(
             "`infer` gives a box for each face, with the person as `class_name`; `download` has no test data",
+            "`eval` counts persons that were made known, and makes no pairs",
             "one backbone, MobileFaceNet",
         ),
     ),

@@ -35,7 +35,7 @@ LEARNERS = {
         demos="inference",
         differs=(
             "`infer` gives one `Category` with the scores of all emotions; there are no valence and arousal",
-            "it does not train; `eval` takes a data set",
+            "it does not train; `eval` takes a data set; `image_processing` has no functions: `opendr.Source` reads cameras",
         ),
     ),
     "ProgressiveSpatioTemporalBLNLearner": Learner(
@@ -43,11 +43,11 @@ LEARNERS = {
         " num_workers epochs experiment_name device_indices val_batch_size drop_after_epoch start_epoch dataset_name"
         " num_class num_point num_person in_channels blocksize num_blocks num_layers topology layer_threshold"
         " block_threshold",
-        infer="facial_landmarks_batch>skeleton_sequence monte_carlo_dropout!model mcdo_repeats!model",
+        infer="facial_landmarks_batch>skeleton_sequence monte_carlo_dropout!dropout mcdo_repeats!dropout",
         fit="dataset val_dataset logging_path silent verbose momentum nesterov!nesterov weight_decay"
-        " monte_carlo_dropout!model mcdo_repeats!model train_data_filename!names train_labels_filename!names"
+        " monte_carlo_dropout!dropout mcdo_repeats!dropout train_data_filename!names train_labels_filename!names"
         " val_data_filename!names val_labels_filename!names",
-        eval="val_dataset>dataset val_loader!truth epoch!model monte_carlo_dropout!model mcdo_repeats!model silent verbose"
+        eval="val_dataset>dataset val_loader!loader epoch!epoch monte_carlo_dropout!dropout mcdo_repeats!dropout silent verbose"
         " val_data_filename!names val_labels_filename!names save_score!csv wrong_file!csv result_file!csv show_topk!csv",
         optimize="do_constant_folding!onnx",
         load="path model_name verbose",

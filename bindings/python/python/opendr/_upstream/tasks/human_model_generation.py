@@ -6,6 +6,8 @@ from opendr._upstream.rows import Absent, Home
 
 MODULES: dict[str, dict[str, Home]] = {
     "pifu_generator_learner": {
-        "PIFuGeneratorLearner": Absent("there is no learner of bodies in space; BlazePoseLearner gives joints in a picture")
+        "PIFuGeneratorLearner": Absent(
+            "there is no learner of bodies in space; BlazePoseLearner gives joints in a picture"
+        )
     },
 }

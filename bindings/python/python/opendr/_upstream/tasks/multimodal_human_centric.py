@@ -17,7 +17,9 @@ MODULES: dict[str, dict[str, Home]] = {
         "MIntRecDataset": Absent("there is no learner of intents yet; AudiovisualEmotionLearner takes sound and video"),
     },
     "intent_recognition_learner.intent_recognition_learner": {
-        "IntentRecognitionLearner": Absent("AudiovisualEmotionLearner takes sound and video, WhisperLearner gives the words")
+        "IntentRecognitionLearner": Absent(
+            "AudiovisualEmotionLearner takes sound and video, WhisperLearner gives the words"
+        )
     },
     f"{_GESTURES}.algorithm.data": {"RgbdDataset": _HANDS, "get_hand_gesture_dataset": _HANDS},
     f"{_GESTURES}.rgbd_hand_gesture_learner": {

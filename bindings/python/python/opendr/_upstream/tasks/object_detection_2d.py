@@ -74,7 +74,7 @@ LEARNERS = {
         instead={"backbone": "vgg16_atrous resnet50_v1 mobilenet1.0 mobilenet0.25 resnet34_v1b"},
         folder="ssd_default_person",
         picture="people.jpg",
-        demos="inference, train, eval",
+        demos="inference, train, eval; nms: cluster, soft, seq2seq inference",
         differs=(
             "pretrained on persons alone, by 281 pictures; `mobilenet0.75` is the backbone",
             "`extract_maps=True` gives boxes without maps",
@@ -89,7 +89,7 @@ LEARNERS = {
         eval=_SUBSET,
         folder="centernet_default",
         picture="bicycles.jpg",
-        demos="inference, eval",
+        demos="inference, train, eval",
         differs=("it does not train; SingleShotDetectorLearner and NanodetLearner do",),
     ),
     "NanodetLearner": Learner(
@@ -106,7 +106,7 @@ LEARNERS = {
         demos="inference, train, eval",
         differs=(
             "one network, NanoDet-m at 416 pixels, whatever `model_to_use`",
-            "`optimize` makes the model smaller (`calibration=`, or `precision=\"fp16\"`); there is no TorchScript",
+            '`optimize` makes the model smaller (`calibration=`, or `precision="fp16"`); there is no TorchScript',
             "boxes are sorted by falling confidence",
         ),
     ),
@@ -116,7 +116,7 @@ LEARNERS = {
         infer="m1_image>colour m2_image>infrared",
         fit="m1_train_edataset>dataset m2_train_edataset!pairs annotations_folder!part m1_train_annotations_file!part"
         " m2_train_annotations_file!part m1_train_images_folder>split m2_train_images_folder!pairs out_dir>output"
-        " trial_dir!path logging_path silent verbose m1_val_edataset>val_dataset m2_val_edataset!pairs"
+        " trial_dir!trial logging_path silent verbose m1_val_edataset>val_dataset m2_val_edataset!pairs"
         " m1_val_annotations_file!part m2_val_annotations_file!part m1_val_images_folder>val_split"
         " m2_val_images_folder!pairs",
         eval="m1_edataset>dataset m2_edataset!pairs m1_images_folder>split m2_images_folder!pairs"

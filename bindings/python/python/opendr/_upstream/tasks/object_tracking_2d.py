@@ -30,12 +30,12 @@ LEARNERS = {
         fit="dataset val_dataset val_epochs!training logging_path silent verbose train_split_paths!part"
         " val_split_paths!part resume_optimizer!training nID!training",
         eval="dataset val_split_paths!part logging_path!log silent verbose",
-        optimize="do_constant_folding!onnx img_size!size optimizable_dcn_v2!model",
+        optimize="do_constant_folding!onnx img_size!size optimizable_dcn_v2!dcn",
         download="model_name path server_url>url",
         mixin="opendr._upstream.learners.tracking:NumberedFrames",
         models="crowdhuman_dla34 fairmot_dla34",
         folder="{model_name=fairmot_dla34}",
-        demos="inference, eval",
+        demos="benchmark_fair_mot",
         differs=("NanoDet and ByteTrack are behind it, whatever `model_name`; it does not train",),
     ),
     "ObjectTracking2DDeepSortLearner": Learner(
@@ -49,7 +49,7 @@ LEARNERS = {
         mixin="opendr._upstream.learners.tracking:DeepSort",
         models="deep_sort",
         folder="{model_name=deep_sort}",
-        demos="inference, eval",
+        demos="benchmark_deep_sort",
         differs=("an `ImageWithDetections` is one input, a picture and its boxes are two; it does not train",),
     ),
     "SiamRPNLearner": Learner(
@@ -57,8 +57,13 @@ LEARNERS = {
         infer="img>image init_box",
         fit="dataset log_interval!training n_gpus!training val_dataset logging_path silent verbose",
         mixin="opendr._upstream.learners.tracking:SingleObject",
+        download="path mode verbose url overwrite!overwrite",
         folder="siamrpn_opendr",
         demos="inference, eval",
-        differs=("a stream that begins with one box gives one annotation a frame, else a list; it does not train",),
+        differs=(
+            "coordinates are floats: OpenCV wants `int(box.left)`",
+            "a stream that begins with one box gives one annotation a frame, else a list; it does not train",
+            "`download` has no videos; there is no format of OTB",
+        ),
     ),
 }

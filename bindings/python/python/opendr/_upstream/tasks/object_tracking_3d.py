@@ -30,14 +30,18 @@ LEARNERS = {
         infer="bounding_boxes_3d_list>boxes_3d",
         fit="dataset val_dataset logging_path silent verbose",
         eval="dataset logging_path!log silent verbose count>limit",
-        demos="inference",
-        differs=('`eval` takes an ExternalDataset(path, "kitti_tracking"), or pairs of boxes and annotations by frame',),
+        mixin="opendr._upstream.learners.tracking:BoxesInSpace",
+        ready=True,
+        demos="benchmark_ab3dmot",
+        differs=(
+            '`eval` takes an ExternalDataset(path, "kitti_tracking"), or pairs of boxes and annotations by frame',
+        ),
     ),
     "ObjectTracking3DVpitLearner": Learner(
         init="model_config_path lr optimizer lr_schedule checkpoint_after_iter checkpoint_load_iter temp_path device"
         " tanet_config_path optimizer_params!optimizer lr_schedule_params!scheduler feature_blocks window_influence"
         " score_upscale rotation_penalty rotation_step rotations_count rotation_interpolation target_size search_size"
-        " context_amount target_feature_merge_scale loss_function r_pos!model augment augment_rotation"
+        " context_amount target_feature_merge_scale loss_function r_pos!boxes augment augment_rotation"
         " train_pseudo_image search_type target_type bof_mode bof_training_steps extrapolation_mode"
         " offset_interpolation vertical_offset_interpolation min_top_score overwrite_strides target_features_mode"
         " upscaling_mode regress_vertical_position regression_training_isolation vertical_regressor_type"
@@ -55,7 +59,7 @@ LEARNERS = {
         instead={"lr_schedule": "exponential_decay_learning_rate"},
         models="pointpillars_car_xyres_16 tanet_car_xyres_16",
         folder="{model_name=pointpillars_car_xyres_16}",
-        demos="inference",
+        demos="–",
         differs=("one network, PointPillars, trained on simulated drives",),
     ),
 }

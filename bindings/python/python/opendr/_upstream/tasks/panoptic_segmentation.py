@@ -28,7 +28,8 @@ LEARNERS = {
         download="path mode trained_on",
         methods={"visualize": ""},
         mixin="opendr._upstream.learners.scenes:PanopticPictures",
-        folder="efficient_ps",
+        models="cityscapes kitti",
+        folder="model_{trained_on=cityscapes}.pth",
         modes={"model": "pretrained"},
         demos="example_usage",
         differs=(
@@ -43,9 +44,12 @@ LEARNERS = {
         download="path mode trained_on",
         methods={"visualize": "`opendr data view` draws scans from above"},
         same={"optimizer": {"SGD": "sgd"}},
-        folder="efficient_lps",
+        models="semantickitti",
+        folder="model_{trained_on=semantickitti}.pth",
         modes={"model": "pretrained"},
         demos="example_usage",
-        differs=("trained on simulated streets; SemanticKittiDataset gives scans with classes, `eval` does not take it",),
+        differs=(
+            "trained on simulated streets; SemanticKittiDataset gives scans with classes, `eval` does not take it",
+        ),
     ),
 }

@@ -43,10 +43,10 @@ LEARNERS = {
         optimize="do_constant_folding!onnx",
         instead={"backbone": "mobilenet mobilenetv2 shufflenet"},
         folder="openpose_default",
-        demos="inference, eval, train",
+        demos="inference, eval",
         differs=(
-            "`download(mode=\"test_data\")` is not there: COCO's pictures have to be had from COCO",
-            "`eval` gives `ap`, `ap50`, ... by name; `confidence` of a pose is between 0 and 1",
+            "`download(mode=\"test_data\")` is not there: COCO's pictures have to be had from COCO, in COCO's folders",
+            "`eval` gives `map`, `map50`, ... by name; `confidence` of a pose is between 0 and 1",
             "one backbone, MobileNetV1 0.5 by default",
         ),
     ),

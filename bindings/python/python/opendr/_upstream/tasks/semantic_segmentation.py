@@ -8,7 +8,9 @@ MODULES: dict[str, dict[str, Home]] = {
     "bisenet.CamVid": {"CamVidDataset": "opendr._upstream.segmentation_datasets"},
     "bisenet.bisenet_learner": {"BisenetLearner": HERE},
     "yolov8_seg.yolov8_seg_learner": {
-        "YOLOv8SegLearner": Absent("use DeeplabLearner for classes, BodyPixLearner of instance_segmentation for persons")
+        "YOLOv8SegLearner": Absent(
+            "use DeeplabLearner for classes, BodyPixLearner of instance_segmentation for persons"
+        )
     },
 }
 
@@ -19,10 +21,13 @@ LEARNERS = {
         infer="img>image",
         fit="dataset val_dataset silent verbose",
         eval="dataset silent verbose",
-        folder="bisenet_camvid",
+        folder="",
         modes={"testingImage": "images"},
-        picture="testingImage.png",
+        picture="test1.png",
         demos="inference, train, eval",
-        differs=("trained on drawn streets; `infer` gives the map in the size of the picture with `full_size`",),
+        differs=(
+            "trained on drawn streets; `infer` gives the map in the size of the picture with `full_size`",
+            "CamVid has to be had from whoever publishes it",
+        ),
     ),
 }

@@ -5,7 +5,9 @@ from __future__ import annotations
 from opendr._upstream.rows import Absent, Home
 
 _NAMES: dict[str, Home] = {
-    "SingleDemoGraspLearner": Absent("use GrConvNetLearner of perception.grasp_detection, which finds grasps of any object")
+    "SingleDemoGraspLearner": Absent(
+        "use GrConvNetLearner of perception.grasp_detection, which finds grasps of any object"
+    )
 }
 
 MODULES: dict[str, dict[str, Home]] = {

@@ -28,7 +28,7 @@ LEARNERS = {
         fit="dataset val_dataset logging_path silent verbose momentum nesterov!nesterov weight_decay"
         " train_data_filename!names train_labels_filename!names val_data_filename!names val_labels_filename!names"
         " skeleton_data_type!joint",
-        eval="val_dataset>dataset val_loader!truth epoch!model silent verbose val_data_filename!names"
+        eval="val_dataset>dataset val_loader!loader epoch!epoch silent verbose val_data_filename!names"
         " val_labels_filename!names skeleton_data_type!joint save_score!csv wrong_file!csv result_file!csv"
         " show_topk!csv",
         optimize="do_constant_folding!onnx",
@@ -43,7 +43,7 @@ LEARNERS = {
         },
         models="stgcn_nturgbd stgcn_kinetics",
         folder="{file_name=stgcn_nturgbd}",
-        demos="demo",
+        demos="–",
         differs=(
             "trained on JHMDB's skeletons; data lie in PART_data.npy and PART_label.npy",
             "one network, ST-GCN",
@@ -61,7 +61,7 @@ LEARNERS = {
         without={"backbone": {name: 'it is not here yet; give backbone="costgcn"' for name in ("costr", "coagcn")}},
         models="costgcn_ntu60_xview_joint.ckpt",
         folder="{file_name=costgcn_ntu60_xview_joint.ckpt}",
-        demos="–",
-        differs=("`infer` gives one `Category` for one frame; trained on JHMDB's skeletons",),
+        demos="costgcn_usage_demo",
+        differs=("`infer` gives one `Category` for one frame; trained on JHMDB's skeletons; no data are downloaded",),
     ),
 }

@@ -21,13 +21,13 @@ LEARNERS = {
         methods={"download_pretrained": ""},
         mixin="opendr._upstream.learners.sounds:Words",
         folder="MatchboxNet",
-        demos="demo",
+        demos="–",
         differs=_DIFFERS,
     ),
     "EdgeSpeechNetsLearner": Learner(
         init=f"{_INIT} architecture {_ENDS}",
         infer="batch>audio",
-        demos="demo",
+        demos="–",
         differs=_DIFFERS,
     ),
     "QuadraticSelfOnnLearner": Learner(
@@ -36,7 +36,7 @@ LEARNERS = {
         methods={"download_pretrained": ""},
         mixin="opendr._upstream.learners.sounds:Words",
         folder="QuadraticSelfOnn",
-        demos="demo",
+        demos="–",
         differs=_DIFFERS,
     ),
 }

@@ -22,6 +22,9 @@ LEARNERS = {
         models="tiny tiny.en base base.en small small.en medium medium.en large",
         folder="whisper_{name=tiny.en}",
         demos="demo",
-        differs=("one model, tiny.en, whatever `name`; others are imported by `opendr import`", "no times of single words"),
+        differs=(
+            "one model, tiny.en, whatever `name`; others are imported by `opendr import`",
+            "no times of single words",
+        ),
     ),
 }
