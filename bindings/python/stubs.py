@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what is made of the registries: the type stubs of the learners' modules, the pages docs/learners.md, docs/metrics.md
-and docs/datasets.md, and of the table of OpenDR's names the end of docs/python.md.
+"""Writes what is made of the registries: the type stubs of the learners' modules, the pages docs/learners.md,
+docs/metrics.md and docs/datasets.md, and of the table of OpenDR's names the end of docs/python.md.
 
     bindings/python/stubs.py [--check]
 
@@ -16,8 +16,7 @@ from pathlib import Path
 
 import opendr
 from opendr import _opendr
-from opendr._native_learner import OF_SEVERAL_PARTS, NativeLearner
-from opendr._native_learner_rl import NativeLearnerRL
+from opendr._native_learner import OF_SEVERAL_PARTS
 from opendr._reference import document
 from opendr._registered import _DRAWING
 from opendr._upstream.modules import TASKS, names_of, rows
@@ -63,14 +62,16 @@ with file and line or key. The first ends the work; with `--skip-broken` it is l
 """
 UPSTREAM_MARK = "## Names, arguments and demos of OpenDR 3.0\n"
 UPSTREAM_TEXT = """
-Made by `bindings/python/stubs.py` from the table in `opendr/_upstream`, which the package itself works by; do not edit what
-follows. It has {names} names in {modules} module paths: {here} are here, {missing} say what to use instead of them. Module
-paths of OpenDR (`opendr.perception.object_detection_2d.ssd.ssd_learner`) lead to the classes here. Their arguments by place are in
-OpenDR's order, for the constructor, `infer`, `fit`, `eval`, `optimize`, `download`, `load` and `save`; ours are given by name.
+Made by `bindings/python/stubs.py` from the table in `opendr/_upstream`, which the package itself works by; do not edit
+what follows. It has {names} names in {modules} module paths: {here} are here, {missing} say what to use instead of
+them. Module paths of OpenDR (`opendr.perception.object_detection_2d.ssd.ssd_learner`) lead to the classes here. Their
+arguments by place are in OpenDR's order, for the constructor, `infer`, `fit`, `eval`, `optimize`, `download`, `load`
+and `save`; ours are given by name.
 """
-DEMOS_TEXT = """Programs in `projects/python/perception` of OpenDR were followed line by line. They want `device="cpu"` where there is no CUDA
-device, and data that they do not download. In all of them `fit` and `eval` give numbers by name and one `"report"`, `optimize` writes a
-smaller model and wants `output`, and one picture gives one prediction.
+DEMOS_TEXT = """
+Programs in `projects/python/perception` of OpenDR were followed line by line. They want `device="cpu"` where there is no
+CUDA device, and data that they do not download. In all of them `fit` and `eval` give numbers by name and one
+`"report"`, `optimize` writes a smaller model and wants `output`, and one picture gives one prediction.
 """
 MISSING_TEXT = """These can be imported; their use raises `opendr.Unsupported`.
 """
@@ -126,7 +127,8 @@ def is_target(kind):
 
 def arguments(entry):
     """The constructor's arguments: OpenDR's own by place, all others by name."""
-    own = {name: field for field in (*entry["fit_params"], *entry["params"]) for name in (field["name"], *field["aliases"])}
+    fields = (*entry["fit_params"], *entry["params"])
+    own = {name: field for field in fields for name in (field["name"], *field["aliases"])}
     base = {name: parameter.annotation for name, parameter in BaseLearner.__signature__.parameters.items()}
 
     def shown(name):
@@ -210,8 +212,9 @@ def method(entry, name, result, more=()):
     usual = [key for key, parameter in ours.items() if parameter.kind == parameter.POSITIONAL_OR_KEYWORD]
     places = {argument.name: argument.ours or argument.name for argument in row} or {key: key for key in usual}
     taken = {*places, *places.values()} - renamed
-    stars = [f"**{key}: Any" for key, parameter in ours.items() if parameter.kind == parameter.VAR_KEYWORD and name != "fit"]
-    rest = [key for key, parameter in ours.items() if key not in taken and parameter.kind != parameter.VAR_KEYWORD]
+    others = [key for key, parameter in ours.items() if parameter.kind == parameter.VAR_KEYWORD]
+    stars = [f"**{key}: Any" for key in others if name != "fit"]
+    rest = [key for key in ours if key not in {*taken, *others}]
     rest += [key for key in fields if key not in {*taken, *rest}]
     # What has two names may be given under either.
     given = [shown(key, known) for key, known in places.items()]
@@ -233,7 +236,8 @@ def methods(entry):
     text = ""
     if entry["fit"] or entry["fit_in"] or row.fit:
         text += method(entry, "fit", "dict[str, Any]", entry["fit_params"])
-    for name, result in (("eval", "dict[str, Any]"), ("optimize", "dict[str, Any]"), ("load", "bool"), ("download", "str")):
+    results = {"eval": "dict[str, Any]", "optimize": "dict[str, Any]", "load": "bool", "download": "str"}
+    for name, result in results.items():
         if getattr(row, name):
             text += method(entry, name, result)
     for name, instead in row.methods.items():
@@ -266,7 +270,8 @@ def module(package, task, entries):
     homes = {name: "opendr._drawing" for kind in kinds for name in _DRAWING.get(kind, ())}
     others = {name: home for name, home in names_of(f"opendr.{package}.{task}").items() if name not in {*homes, *own}}
     homes.update({name: home for name, home in others.items() if home != HERE and not isinstance(home, Absent)})
-    imports = "".join(f"from {home} import {name} as {name}\n" for name, home in sorted(homes.items(), key=lambda it: it[::-1]))
+    by_home = sorted(homes.items(), key=lambda it: it[::-1])
+    imports = "".join(f"from {home} import {name} as {name}\n" for name, home in by_home)
     text = "\n".join(learner(entry) for entry in entries)
     text += "".join(f"\n{absent(name, home)}" for name, home in sorted(others.items()) if isinstance(home, Absent))
     parents = {(parent(entry).__module__, parent(entry).__name__) for entry in entries}
@@ -372,7 +377,7 @@ def table_of_opendr(page):
     count = sum(isinstance(home, Absent) for _, home in names.values())
     modules = {".".join(filter(None, (task, path))) for task in TASKS for path in rows(task).MODULES}
     text += UPSTREAM_TEXT.format(names=len(names), modules=len(modules), here=len(names) - count, missing=count)
-    text += f"\n### Demos\n\n{DEMOS_TEXT}\n| learner | demos | what remained different |\n|---|---|---|\n{demos}"
+    text += f"\n### Demos\n{DEMOS_TEXT}\n| learner | demos | what remained different |\n|---|---|---|\n{demos}"
     text += f"\n### Not here yet\n\n{MISSING_TEXT}\n| name | module | instead |\n|---|---|---|\n{missing}"
     text += f"\n### Arguments without effect\n\n{IDLE_TEXT}\n| learner | arguments | why |\n|---|---|---|\n{idle}"
     return text

@@ -12,7 +12,8 @@ from typing import Any, ClassVar, NoReturn, Optional, Union
 from opendr import _opendr
 from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr._upstream.arguments import by_name, methods, value_here
-from opendr._upstream.rows import Argument, Learner as Row, arguments
+from opendr._upstream.rows import Argument, arguments
+from opendr._upstream.rows import Learner as Row
 from opendr.engine import data, target
 from opendr.engine._parameters import Parameter, parameters
 from opendr.engine.datasets import Dataset

@@ -5,8 +5,8 @@ from opendr.perception.object_detection_2d import CenterNetDetectorLearner
 from opendr.perception.object_detection_2d.utils.vis_utils import draw_bounding_boxes, draw_detections
 
 centernet = CenterNetDetectorLearner(
-    0.001, 120, 8, "cpu", "resnet50_v1b", 512, "step", "", 0, 0, 5, 100, 8, 0.0005, 0.9, 1.0, 0.1, 1.0, "80,100", 0.1, 0,
-    False,
+    0.001, 120, 8, "cpu", "resnet50_v1b", 512, "step", "", 0, 0, 5, 100, 8, 0.0005, 0.9, 1.0, 0.1, 1.0, "80,100", 0.1,
+    0, False,
 )  # fmt: skip
 assert (centernet.device, centernet.lr, centernet.batch_size, centernet.scale) == ("cpu", 0.001, 8, 1.0)
 centernet.download(".", mode="pretrained")

@@ -4,8 +4,8 @@ import os
 
 import numpy as np
 from opendr.engine.data import Image
-from opendr.perception.object_detection_2d import ClusterNMS, FastNMS, SingleShotDetectorLearner, SoftNMS
 from opendr.engine.target import BoundingBox, BoundingBoxList
+from opendr.perception.object_detection_2d import ClusterNMS, FastNMS, SingleShotDetectorLearner, SoftNMS
 from opendr.perception.object_detection_2d.nms.cluster_nms.cluster_nms import ClusterNMS as SameClusterNMS
 from opendr.perception.object_detection_2d.nms.utils import NMSCustom
 

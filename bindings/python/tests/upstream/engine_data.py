@@ -35,7 +35,7 @@ assert Video(np.zeros((3, 2, 4, 4))).data.ndim == 4 and SkeletonSequence(np.zero
 cloud = PointCloudWithCalibration(np.zeros((5, 4)), {"P2": np.eye(4)}, (10, 20))
 assert cloud.image_shape == (10, 20) and "Calib" in str(cloud) and len(PointCloud(np.zeros((5, 3)))) == 5
 try:
-    Vector().data
+    str(Vector().data)
 except ValueError as error:
     assert "empty" in str(error)
 

@@ -19,8 +19,9 @@ class Faces(DatasetIterator):
 
 
 learner = ProgressiveSpatioTemporalBLNLearner(
-    device="cpu", batch_size=2, epochs=1, num_point=20, num_class=2, dataset_name="CASIA", experiment_name="pstbln_casia",
-    blocksize=5, num_blocks=2, num_layers=2, topology=[1], device_indices=[0], num_workers=0, drop_after_epoch=[1],
+    device="cpu", batch_size=2, epochs=1, num_point=20, num_class=2, dataset_name="CASIA",
+    experiment_name="pstbln_casia", blocksize=5, num_blocks=2, num_layers=2, topology=[1], device_indices=[0],
+    num_workers=0, drop_after_epoch=[1],
 )  # fmt: skip
 stats = learner.fit(Faces(), Faces(), "", True, False, 0.9, True, 0.0001)
 assert stats["loss"]

@@ -21,10 +21,10 @@ from opendr.perception.speech_transcription import VoskLearner
 from opendr.simulation.human_model_generation import PIFuGeneratorLearner
 
 for learner in (
-    MobileRLLearner, MultiObjectSearchRLLearner, SingleDemoGraspLearner, ActiveFaceRecognitionLearner, CoTransEncLearner,
-    ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner, DetrLearner, FSeq2NMSLearner,
-    RetinaFaceLearner, YOLOv3DetectorLearner, YOLOv5DetectorLearner, YOLOv8SegLearner, ProgressiveSpatioTemporalGCNLearner,
-    VoskLearner, PIFuGeneratorLearner,
+    MobileRLLearner, MultiObjectSearchRLLearner, SingleDemoGraspLearner, ActiveFaceRecognitionLearner,
+    CoTransEncLearner, ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner, DetrLearner,
+    FSeq2NMSLearner, RetinaFaceLearner, YOLOv3DetectorLearner, YOLOv5DetectorLearner, YOLOv8SegLearner,
+    ProgressiveSpatioTemporalGCNLearner, VoskLearner, PIFuGeneratorLearner,
 ):  # fmt: skip
     try:
         learner(device="cpu")

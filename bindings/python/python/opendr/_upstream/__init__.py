@@ -1,7 +1,7 @@
 """OpenDR 3.0's module paths, names and arguments, and where each of them is here.
 
-``tasks`` has the table, a module for each of OpenDR's packages; everything else follows from it: module paths that are no
-files (``opendr.perception.object_detection_2d.ssd.ssd_learner``), classes that stand in for those that are not here,
+``tasks`` has the table, a module for each of OpenDR's packages; everything else follows from it: module paths that are
+no files (``opendr.perception.object_detection_2d.ssd.ssd_learner``), classes that stand in for those that are not here,
 arguments in OpenDR's order, and the tables of docs/python.md.
 """
 

@@ -186,8 +186,8 @@ class WiderFaceDataset(DetectionDataset):
 class WiderPersonDataset(DetectionDataset):
     """WiderPerson: ``train.txt``, ``val.txt``, and the folders ``Images`` and ``Annotations`` as they are unpacked.
 
-    Pedestrians, riders and persons that are partly seen are of the class ``person``; regions to ignore and crowds are marked
-    as crowds, which no metric counts.
+    Pedestrians, riders and persons that are partly seen are of the class ``person``; regions to ignore and crowds are
+    marked as crowds, which no metric counts.
 
     Args:
         root: The folder that has them.

@@ -32,7 +32,7 @@ class ImageToNumpyArrayTransform:
 
 
 class ResizeImageAndBoxesTransform:
-    """Resizes a picture ``[height, width, channels]`` and its boxes, rows of left, top, right, bottom and whatever else.
+    """Resizes a picture ``[height, width, channels]`` and its boxes, rows of left, top, right, bottom and more.
 
     Args:
         w: The new width, pixels.

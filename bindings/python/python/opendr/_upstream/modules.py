@@ -60,8 +60,8 @@ def learner(task: str, name: str) -> Optional[Learner]:
 
 @functools.lru_cache(maxsize=None)
 def paths(task: str) -> Mapping[str, Mapping[str, Home]]:
-    """The module paths of a package, the package itself among them: names and their homes. The classes of a module are in
-    the packages above it too."""
+    """The module paths of a package, the package itself among them: names and their homes. The classes of a module are
+    in the packages above it too."""
     found: dict[str, dict[str, Home]] = {}
     for path, names in rows(task).MODULES.items():
         parts = [f"opendr.{task}", *filter(None, path.split("."))]

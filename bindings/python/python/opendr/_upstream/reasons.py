@@ -11,7 +11,6 @@ REASONS = {
     "dropout": "a prediction is one pass without dropout",
     "epoch": "only a log would say it",
     "evaluate": "`val_dataset` says whether it is measured",
-    "fold": "there is one model, without folds",
     "flush": "every number is written at once",
     "half": "the runtime chooses the precision",
     "images": "there is one sample picture",

@@ -33,8 +33,8 @@ class Argument(NamedTuple):
 class Learner(NamedTuple):
     """A learner of OpenDR's that is here: the arguments of its methods in OpenDR's order.
 
-    An argument is ``name``, ``name>ours`` for another name here, or ``name!reason`` without effect; an empty text leaves
-    the method's own arguments.
+    An argument is ``name``, ``name>ours`` for another name here, or ``name!reason`` without effect; an empty text
+    leaves the method's own arguments.
     """
 
     init: str = ""

@@ -194,8 +194,8 @@ class HighResolutionDataset(DatasetIterator):
     Args:
         dataset_folder: Pictures, with Pascal VOC's XML files beside them.
         patch_size: Side of the squares, pixels.
-        non_zero_threshold: Squares that lie in boxes with a larger share than this, and in one of them with a smaller, are
-            left out.
+        non_zero_threshold: Squares that lie in boxes with a larger share than this, and in one of them with a smaller,
+            are left out.
         transform: From a square to whatever.
 
     Raises:

@@ -85,8 +85,8 @@ class Market1501DatasetIterator(DatasetIterator):
 class RawMotDatasetIterator(DatasetIterator):
     """The frames of the MOT Challenge as FairMOT lists them, with the tracks in them.
 
-    A list has a picture a line, relative to ``root``; its annotations lie in the same place below ``labels_with_ids`` instead
-    of ``images``: class, number, centre and size as shares of the picture.
+    A list has a picture a line, relative to ``root``; its annotations lie in the same place below ``labels_with_ids``
+    instead of ``images``: class, number, centre and size as shares of the picture.
 
     Args:
         root: The folder that the lists are relative to.

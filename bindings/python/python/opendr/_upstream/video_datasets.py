@@ -85,7 +85,8 @@ class KineticsDataset(DatasetIterator):
 
 
 class DummyTimeseriesDataset(DatasetIterator):
-    """Sines of several wavelengths; the class says whether the sum of the cosines is positive at the end (1), and rises (2).
+    """Sines of several wavelengths; the class says whether the sum of the cosines is positive at the end (1), and
+    rises (2).
 
     Args:
         num_sines: How many sines.

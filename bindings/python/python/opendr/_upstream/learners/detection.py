@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 class SingleShotDetector(NativeLearner):
     """SSD, whose boxes a suppression of one's own may choose among."""
 
+    threshold: float
+
     def infer(self, image: Any, *, custom_nms: Any = None, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does; ``custom_nms`` is an object with ``run_nms``, e.g. ``ClusterNMS()``,
-        or what ``suppression`` takes."""
+        """Predicts as ``infer`` of every learner does; ``custom_nms`` is an object with ``run_nms``, e.g.
+        ``ClusterNMS()``, or what ``suppression`` takes."""
         if not hasattr(custom_nms, "run_nms"):
             given = arguments if custom_nms is None else {**arguments, "custom_nms": custom_nms}
             return super().infer(image, **given)
@@ -41,7 +43,7 @@ class SingleShotDetector(NativeLearner):
         scores = np.zeros((len(found), max(1, len(self.classes))))
         for row, box in enumerate(found.data):
             scores[row, int(box.name)] = box.confidence
-        threshold = known.get("threshold", getattr(self, "threshold"))
+        threshold = known.get("threshold", self.threshold)
         chosen = custom_nms.run_nms(boxes=corners, scores=scores, threshold=threshold, img=picture)
         boxes = chosen[0] if isinstance(chosen, tuple) else chosen
         named = [_with_class(box, self.classes) for box in boxes.data]

@@ -52,8 +52,8 @@ class HighResolutionPoses(NativeLearner):
 class FallDetector(NativeLearner):
     """Falls, of persons that it finds itself or that a learner of poses finds.
 
-    ``FallDetectorLearner(pose_estimator)`` gives a list of pairs, as OpenDR does: a category (1 fallen, -1 standing, 0 not
-    known) and the pose that it was told by. So does ``infer`` of poses.
+    ``FallDetectorLearner(pose_estimator)`` gives a list of pairs, as OpenDR does: a category (1 fallen, -1 standing, 0
+    not known) and the pose that it was told by. So does ``infer`` of poses.
     """
 
     def __init__(self, *given: Any, **named: Any) -> None:
@@ -93,12 +93,12 @@ class FallDetector(NativeLearner):
         return [(_posture(pose), pose) for pose in self.pose_estimator.infer(image)]
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
-        """Measures the falls of persons; with a pose estimator on OpenDR's data sets: an ``ExternalDataset`` of the type
-        ``ur_fall_dataset`` or ``test``, or any pairs of picture and category.
+        """Measures the falls of persons; with a pose estimator on OpenDR's data sets: an ``ExternalDataset`` of the
+        type ``ur_fall_dataset`` or ``test``, or any pairs of picture and category.
 
         Returns:
-            With a pose estimator ``accuracy``, ``sensitivity``, ``specificity``, ``detection_accuracy`` (NaN of nothing) and
-            ``no_detections``; else the numbers of the metric.
+            With a pose estimator ``accuracy``, ``sensitivity``, ``specificity``, ``detection_accuracy`` (NaN of
+            nothing) and ``no_detections``; else the numbers of the metric.
         """
         if self.pose_estimator is None:
             return super().eval(dataset, **options)

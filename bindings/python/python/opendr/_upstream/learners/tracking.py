@@ -27,8 +27,8 @@ class NumberedFrames(NativeLearner):
     """A tracker that can be told the numbers of its frames."""
 
     def infer(self, image: Any, frame_ids: Any = None, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does; ``frame_ids`` are the numbers of the frames, one for a picture, or a
-        list."""
+        """Predicts as ``infer`` of every learner does; ``frame_ids`` are the numbers of the frames, one for a picture,
+        or a list."""
         return _numbered(super().infer(image, **arguments), frame_ids)
 
 
@@ -55,7 +55,8 @@ class DeepSort(NativeLearner):
         return _numbered(tracks if several else tracks[0], frame_ids)
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
-        """Measures as ``eval`` of every learner does; samples may be pairs of ``ImageWithDetections`` and annotations."""
+        """Measures as ``eval`` of every learner does; samples may be pairs of ``ImageWithDetections`` and
+        annotations."""
         return super().eval(_Apart(dataset) if isinstance(dataset, DatasetIterator) else dataset, **options)
 
 
@@ -109,8 +110,8 @@ class BoxesInSpace(NativeLearner):
 class SingleObject(NativeLearner):
     """A tracker of one object.
 
-    A stream that begins with a single box (``BoundingBox``, ``TrackingAnnotation``) gives a single annotation a frame, as
-    OpenDR does; one that begins with a list gives lists.
+    A stream that begins with a single box (``BoundingBox``, ``TrackingAnnotation``) gives a single annotation a frame,
+    as OpenDR does; one that begins with a list gives lists.
     """
 
     _single = False
@@ -177,8 +178,8 @@ class Vpit(NativeLearner):
         init_box: Any = None,
         **arguments: Any,
     ) -> Any:
-        """Predicts where the object is; ``init_box`` comes with the first scan of a stream, ``frame`` and ``id`` are those
-        of the annotations."""
+        """Predicts where the object is; ``init_box`` comes with the first scan of a stream, ``frame`` and ``id`` are
+        those of the annotations."""
         if isinstance(frame, BoundingBox3DList):
             raise TypeError("frame should be an int; give the box of the first scan by name, as init_box")
         given = {} if init_box is None else {"init_box": init_box}

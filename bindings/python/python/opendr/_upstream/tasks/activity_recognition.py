@@ -23,8 +23,8 @@ MODULES: dict[str, dict[str, Home]] = {
 
 _FIT = "dataset val_dataset epochs steps>max_steps"
 _INIT = (
-    "lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter checkpoint_load_iter temp_path"
-    " device loss weight_decay momentum drop_last pin_memory num_workers seed num_classes"
+    "lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter checkpoint_load_iter"
+    " temp_path device loss weight_decay momentum drop_last pin_memory num_workers seed num_classes"
 )
 
 LEARNERS = {

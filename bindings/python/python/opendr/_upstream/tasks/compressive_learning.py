@@ -11,8 +11,8 @@ MODULES: dict[str, dict[str, Home]] = {
 LEARNERS = {
     "MultilinearCompressiveLearner": Learner(
         init="input_shape compressed_shape backbone n_class pretrained_backbone init_backbone lr_scheduler!scheduler"
-        " optimizer weight_decay n_init_iters iters batch_size checkpoint_after_iter checkpoint_load_iter temp_path device"
-        " test_mode",
+        " optimizer weight_decay n_init_iters iters batch_size checkpoint_after_iter checkpoint_load_iter temp_path"
+        " device test_mode",
         infer="img>image",
         fit="train_set>dataset val_set>val_dataset test_set!test logging_path silent verbose",
         eval="dataset silent verbose",

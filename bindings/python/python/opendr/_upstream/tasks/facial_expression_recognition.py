@@ -35,7 +35,8 @@ LEARNERS = {
         demos="inference",
         differs=(
             "`infer` gives one `Category` with the scores of all emotions; there are no valence and arousal",
-            "it does not train; `eval` takes a data set; `image_processing` has no functions: `opendr.Source` reads cameras",
+            "it does not train; `eval` takes a data set; `image_processing` has no functions: `opendr.Source` reads "
+            "cameras",
         ),
     ),
     "ProgressiveSpatioTemporalBLNLearner": Learner(
@@ -47,8 +48,9 @@ LEARNERS = {
         fit="dataset val_dataset logging_path silent verbose momentum nesterov!nesterov weight_decay"
         " monte_carlo_dropout!dropout mcdo_repeats!dropout train_data_filename!names train_labels_filename!names"
         " val_data_filename!names val_labels_filename!names",
-        eval="val_dataset>dataset val_loader!loader epoch!epoch monte_carlo_dropout!dropout mcdo_repeats!dropout silent verbose"
-        " val_data_filename!names val_labels_filename!names save_score!csv wrong_file!csv result_file!csv show_topk!csv",
+        eval="val_dataset>dataset val_loader!loader epoch!epoch monte_carlo_dropout!dropout mcdo_repeats!dropout silent"
+        " verbose val_data_filename!names val_labels_filename!names save_score!csv wrong_file!csv result_file!csv"
+        " show_topk!csv",
         optimize="do_constant_folding!onnx",
         load="path model_name verbose",
         methods={"network_builder": "give `topology` to the constructor, and fit"},

@@ -20,8 +20,8 @@ LEARNERS = {
         mixin="opendr._upstream.learners.people:FallDetector",
         demos="inference, eval",
         differs=(
-            "without a pose estimator, it finds the persons itself and gives boxes of classes `unknown`, `fallen`, `standing`, "
-            "and poses",
+            "without a pose estimator, it finds the persons itself and gives boxes of classes `unknown`, `fallen`, "
+            "`standing`, and poses",
             "with one, a leg alone does not make a fall when the torso stands",
             "there is no `test_data`; `eval` of an estimator's falls takes URFallDatasetIterator",
         ),

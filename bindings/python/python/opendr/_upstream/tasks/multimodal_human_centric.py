@@ -37,8 +37,8 @@ LEARNERS = {
         eval="dataset silent verbose",
         instead={
             "architecture": "alexnet densenet121 densenet161 densenet169 densenet201 googlenet mnasnet0_5 mnasnet1_0"
-            " mobilenet_v2 resnet18 resnet34 resnet50 resnet101 resnet152 resnext50_32x4d resnext101_32x8d vgg11 vgg11_bn"
-            " vgg13 vgg13_bn vgg16 vgg16_bn vgg19 vgg19_bn wide_resnet50_2 wide_resnet101_2"
+            " mobilenet_v2 resnet18 resnet34 resnet50 resnet101 resnet152 resnext50_32x4d resnext101_32x8d vgg11"
+            " vgg11_bn vgg13 vgg13_bn vgg16 vgg16_bn vgg19 vgg19_bn wide_resnet50_2 wide_resnet101_2"
         },
         folder="",
         demos="gesture_recognition",
@@ -48,8 +48,8 @@ LEARNERS = {
         ),
     ),
     "AudiovisualEmotionLearner": Learner(
-        init="num_class seq_length fusion mod_drop pretr_ef lr lr_steps momentum dampening weight_decay iters batch_size"
-        " n_workers device",
+        init="num_class seq_length fusion mod_drop pretr_ef lr lr_steps momentum dampening weight_decay iters"
+        " batch_size n_workers device",
         infer="audio video",
         fit="dataset val_dataset logging_path silent verbose eval_mode!mode restore_best!restore",
         eval="dataset silent verbose mode!mode",

@@ -132,8 +132,8 @@ LEARNERS = {
     "Seq2SeqNMSLearner": Learner(
         init="lr epochs device temp_path checkpoint_after_iter checkpoint_load_iter log_after variant iou_filtering"
         " dropout app_feats fmod_map_type fmod_map_bin app_input_dim",
-        fit="dataset logging_path logging_flush_secs!flush silent verbose nms_gt_iou max_dt_boxes!live datasets_folder!path"
-        " use_ssd!detector ssd_model!detector lr_step!scheduler",
+        fit="dataset logging_path logging_flush_secs!flush silent verbose nms_gt_iou max_dt_boxes!live"
+        " datasets_folder!path use_ssd!detector ssd_model!detector lr_step!scheduler",
         eval="dataset split verbose max_dt_boxes threshold datasets_folder!path use_ssd!detector ssd_model!detector",
         download="path model_name verbose url",
         methods={"run_nms": ""},

@@ -22,10 +22,11 @@ MODULES: dict[str, dict[str, Home]] = {
 
 LEARNERS = {
     "ObjectTracking2DFairMotLearner": Learner(
-        init="lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter checkpoint_load_iter"
-        " temp_path device threshold scale lr_step head_conv ltrb num_classes reg_offset gpus num_workers mse_loss"
-        " reg_loss dense_wh cat_spec_wh reid_dim norm_wh wh_weight off_weight id_weight num_epochs hm_weight down_ratio"
-        " max_objs track_buffer image_mean image_std frame_rate min_box_area use_pretrained_backbone",
+        init="lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter"
+        " checkpoint_load_iter temp_path device threshold scale lr_step head_conv ltrb num_classes reg_offset gpus"
+        " num_workers mse_loss reg_loss dense_wh cat_spec_wh reid_dim norm_wh wh_weight off_weight id_weight num_epochs"
+        " hm_weight down_ratio max_objs track_buffer image_mean image_std frame_rate min_box_area"
+        " use_pretrained_backbone",
         infer="batch>image frame_ids img_size!size",
         fit="dataset val_dataset val_epochs!training logging_path silent verbose train_split_paths!part"
         " val_split_paths!part resume_optimizer!training nID!training",
@@ -53,7 +54,8 @@ LEARNERS = {
         differs=("an `ImageWithDetections` is one input, a picture and its boxes are two; it does not train",),
     ),
     "SiamRPNLearner": Learner(
-        init="device n_epochs num_workers warmup_epochs lr weight_decay momentum cls_weight loc_weight batch_size temp_path",
+        init="device n_epochs num_workers warmup_epochs lr weight_decay momentum cls_weight loc_weight batch_size"
+        " temp_path",
         infer="img>image init_box",
         fit="dataset log_interval!training n_gpus!training val_dataset logging_path silent verbose",
         mixin="opendr._upstream.learners.tracking:SingleObject",

@@ -47,8 +47,8 @@ LEARNERS = {
         " upscaling_mode regress_vertical_position regression_training_isolation vertical_regressor_type"
         " vertical_regressor_kwargs iters backbone batch_size threshold scale",
         infer="point_cloud frame id draw!draw",
-        fit="dataset steps>max_steps val_dataset refine_weight!weight ground_truth_annotations!truth logging_path silent"
-        " verbose model_dir>output image_shape!shape evaluate!evaluate debug!log load_optimizer!scratch",
+        fit="dataset steps>max_steps val_dataset refine_weight!weight ground_truth_annotations!truth logging_path"
+        " silent verbose model_dir>output image_shape!shape evaluate!evaluate debug!log load_optimizer!scratch",
         eval="dataset ground_truth_annotations!truth logging_path!log silent verbose image_shape!shape count>limit",
         optimize="do_constant_folding!onnx",
         download="model_name path server_url>url",

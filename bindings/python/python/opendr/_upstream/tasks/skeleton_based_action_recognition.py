@@ -22,8 +22,8 @@ MODULES: dict[str, dict[str, Home]] = {
 LEARNERS = {
     "SpatioTemporalGCNLearner": Learner(
         init="lr batch_size optimizer_name lr_schedule checkpoint_after_iter checkpoint_load_iter temp_path device"
-        " num_workers epochs experiment_name device_ind val_batch_size drop_after_epoch start_epoch dataset_name num_class"
-        " num_point num_person in_channels graph_type method_name stbln_symmetric num_frames num_subframes",
+        " num_workers epochs experiment_name device_ind val_batch_size drop_after_epoch start_epoch dataset_name"
+        " num_class num_point num_person in_channels graph_type method_name stbln_symmetric num_frames num_subframes",
         infer="SkeletonSeq_batch>skeleton_sequence",
         fit="dataset val_dataset logging_path silent verbose momentum nesterov!nesterov weight_decay"
         " train_data_filename!names train_labels_filename!names val_data_filename!names val_labels_filename!names"
@@ -50,9 +50,9 @@ LEARNERS = {
         ),
     ),
     "CoSTGCNLearner": Learner(
-        init="lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter checkpoint_load_iter"
-        " temp_path device loss weight_decay momentum drop_last pin_memory num_workers seed num_classes num_point"
-        " num_person in_channels graph_type sequence_len",
+        init="lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter"
+        " checkpoint_load_iter temp_path device loss weight_decay momentum drop_last pin_memory num_workers seed"
+        " num_classes num_point num_person in_channels graph_type sequence_len",
         infer="batch>skeleton_sequence",
         fit="dataset val_dataset epochs steps>max_steps",
         eval="dataset steps>limit",

@@ -12,8 +12,8 @@ MODULES: dict[str, dict[str, Home]] = {
 LEARNERS = {
     "WhisperLearner": Learner(
         init="verbose temperature compression_ratio_threshold logprob_threshold no_speech_threshold"
-        " condition_on_previous_text word_timestamps prepend_punctuations append_punctuations language sample_len best_of"
-        " beam_size patience length_penalty prompt prefix suppress_tokens suppress_blank without_timestamps"
+        " condition_on_previous_text word_timestamps prepend_punctuations append_punctuations language sample_len"
+        " best_of beam_size patience length_penalty prompt prefix suppress_tokens suppress_blank without_timestamps"
         " max_initial_timestamp fp16 device",
         infer="audio initial_prompt",
         eval="dataset save_path_csv!csv",
