@@ -16,7 +16,7 @@ const PORTS: [&std::ffi::CStr; 6] = [c"image", c"detections", c"first", c"count"
 
 /// Makes the calls that `bytes` stand for.
 pub fn run(bytes: &[u8]) {
-    let mut program = Program { bytes, values: [null_mut(); SLOTS], learner: learner() };
+    let mut program = Program { bytes, values: [null_mut(); SLOTS], learner: learner(), network: network() };
     // SAFETY: handles are those of the slots or null.
     unsafe {
         opendr_reset(program.learner);
@@ -33,6 +33,7 @@ struct Program<'a> {
     bytes: &'a [u8],
     values: [*mut opendr_value; SLOTS],
     learner: *mut opendr_learner,
+    network: *mut opendr_network,
 }
 
 impl Program<'_> {
@@ -141,11 +142,52 @@ impl Program<'_> {
                     opendr_json_text(json.as_ptr(), null(), key.as_ptr(), i32::from(self.byte()));
                     opendr_json_number(json.as_ptr(), key.as_ptr(), key.as_ptr(), -1);
                 }
-                _ => {
-                    opendr_reset(self.learner);
-                }
+                _ => match self.byte() % 3 {
+                    0 => self.run_network(),
+                    1 => self.preprocess(),
+                    _ => {
+                        opendr_reset(self.learner);
+                    }
+                },
             }
         }
+    }
+
+    unsafe fn run_network(&mut self) {
+        let name = [null(), c"x".as_ptr(), c"y".as_ptr(), c"".as_ptr()][usize::from(self.byte()) % 4];
+        let shape: Vec<usize> = (0..self.byte() % 10).map(|_| self.size()).collect();
+        let numbers = self.floats();
+        let axes = if self.byte() < 250 { shape.len() } else { usize::MAX };
+        let length = if self.byte() < 250 { numbers.len() } else { usize::MAX };
+        let tensor = opendr_tensor { name, numbers: numbers.as_ptr(), length, shape: shape.as_ptr(), axes };
+        let (given, index, file) = (usize::from(self.byte()) % 3, self.size(), self.text());
+        let mut tensors = null_mut();
+        let mut seen = std::mem::MaybeUninit::uninit();
+        let mut other = null_mut();
+        // SAFETY: as many tensors as are said, as many numbers and axes as are said or impossibly many; variables.
+        unsafe {
+            opendr_network_run(self.network, [tensor, tensor].as_ptr(), given, &mut tensors);
+            opendr_tensors_count(tensors);
+            opendr_tensors_get(tensors, index, seen.as_mut_ptr());
+            opendr_tensors_free(&mut tensors);
+            opendr_network_input(self.network, index, std::mem::MaybeUninit::uninit().as_mut_ptr());
+            opendr_network_output(self.network, index, std::mem::MaybeUninit::uninit().as_mut_ptr());
+            opendr_network_of(self.learner, file.as_ptr(), &mut other);
+            opendr_network_free(&mut other);
+            opendr_set_last_error(file.as_ptr());
+        }
+    }
+
+    unsafe fn preprocess(&mut self) {
+        let image = self.values[self.slot()];
+        let (width, height) = (self.size(), self.size());
+        let (format, layout) = (self.byte().into(), self.byte().into());
+        let (mean, std, pad) = ([self.float(); 3], [self.float(); 3], self.float());
+        let how = opendr_preprocess { width, height, format, layout, mean, std, pad };
+        let mut numbers = vec![0.0f32; usize::from(self.byte()) * 3];
+        let length = if self.byte() < 250 { numbers.len() } else { usize::MAX };
+        // SAFETY: as many numbers as are said, or impossibly many; a handle of the slots or null.
+        unsafe { opendr_image_preprocess(image.cast(), &how, numbers.as_mut_ptr(), length) };
     }
 
     /// A variable whose value is not the one that is read.
@@ -344,4 +386,37 @@ fn learner() -> *mut opendr_learner {
         learner.expose_provenance()
     };
     std::ptr::with_exposed_provenance_mut(*LEARNER.get_or_init(load))
+}
+
+/// A network `x` to `y`, numbers below 0 made 0, of any number of rows of two; opened once.
+fn network() -> *mut opendr_network {
+    static NETWORK: OnceLock<usize> = OnceLock::new();
+    let open = || {
+        let folder = std::env::temp_dir().join(format!("opendr-c-network-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("relu.onnx");
+        std::fs::write(&file, relu()).unwrap();
+        let (path, mut network) = (text(file.as_os_str().as_encoded_bytes()), null_mut());
+        // SAFETY: texts and a variable.
+        unsafe {
+            let opened = opendr_network_open(path.as_ptr(), null(), c"cpu".as_ptr(), &mut network);
+            assert_eq!(opened, opendr_status::OPENDR_OK);
+        }
+        std::fs::remove_dir_all(folder).unwrap();
+        network.expose_provenance()
+    };
+    std::ptr::with_exposed_provenance_mut(*NETWORK.get_or_init(open))
+}
+
+/// The network as ONNX.
+fn relu() -> Vec<u8> {
+    let number = |field: u8, number: u8| vec![field << 3, number];
+    let bytes = |field: u8, bytes: &[u8]| [&[field << 3 | 2, bytes.len() as u8], bytes].concat();
+    let rows = bytes(1, &bytes(2, b"rows"));
+    let shape = [rows, bytes(1, &number(1, 2))].concat();
+    let float = bytes(1, &[number(1, 1), bytes(2, &shape)].concat());
+    let value = |name: &[u8]| [bytes(1, name), bytes(2, &float)].concat();
+    let node = [bytes(1, b"x"), bytes(2, b"y"), bytes(4, b"Relu")].concat();
+    let graph = [bytes(1, &node), bytes(2, b"g"), bytes(11, &value(b"x")), bytes(12, &value(b"y"))].concat();
+    [number(1, 8), bytes(7, &graph), bytes(8, &number(2, 13))].concat()
 }

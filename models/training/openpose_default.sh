@@ -25,11 +25,11 @@ zoo=$output-zoo
 opendr download posenet/mnv1_385 --to "$zoo"
 resume=
 [ -d "$output/checkpoints" ] && resume=--resume
-opendr fit lightweight_open_pose "$all" --output "$output" $resume \
+opendr fit lightweight_open_pose "$all" --out "$output" $resume \
     --teacher movenet/multipose --teacher-threshold 0.2 \
     --backbone "$zoo/posenet/mnv1_385" --freeze true --width 0.75 --extra-blocks 2 \
     --channels 96 --separable true --num-refinement-stages 1 \
     --crop-size 256 --batch-size 16 --epochs 60 \
     --lr 0.002 --lr-schedule cosine --warmup-steps 100 --grad-clip 100 --weight-decay 0 --ema 0.995 \
     --checkpoint-after-iter 200 --log-after 10 --seed 1
-opendr optimize "$output/model" --fp16 --output "$output/fp16"
+opendr optimize "$output/model" --fp16 --out "$output/fp16"

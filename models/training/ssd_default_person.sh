@@ -13,4 +13,4 @@ opendr download centernet/coco_512 --to "$zoo"
 cargo run --release -p opendr-detection --features training --example train_ssd_person -- \
     "${OPENDR_TEST_DATA:-../shared}/data" "$zoo/posenet/mnv1_385" "$zoo/centernet/coco_512" "$output" \
     "${PICTURES:-runs/pictures}" freeze=14 epochs=50 lr=0.002 ema=0.99 batch_size=16 val_after=10
-opendr optimize "$output/model" --fp16 --output "$output/fp16"
+opendr optimize "$output/model" --fp16 --out "$output/fp16"

@@ -34,18 +34,20 @@ class Compiler:
         self.prefix, self.folder = prefix, folder
         self.environment = {**environment, "LD_LIBRARY_PATH": str(prefix / "lib")}
 
-    def pkg_config(self, *arguments):
+    def pkg_config(self, *arguments, package="opendr"):
         path = {"PKG_CONFIG_PATH": str(self.prefix / "lib/pkgconfig")}
-        command = ["pkg-config", *arguments, "opendr"]
+        command = ["pkg-config", *arguments, package]
         return subprocess.run(command, env={**os.environ, **path}, capture_output=True, text=True, check=True).stdout.split()
 
-    def build(self, source, *flags):
+    def build(self, source, *flags, package="opendr", language=None):
+        """The program of a source, as `language`, else as its extension says."""
         source = Path(source)
-        program = self.folder / (source.name + ".out")
-        compiler = ["gcc", "-std=c11"] if source.suffix == ".c" else ["g++", "-std=c++17"]
+        language = language or {".c": "c11"}.get(source.suffix, "c++17")
+        program = self.folder / f"{source.name}.{language}.out"
+        compiler = ["gcc", "-x", "c"] if language == "c11" else ["g++", "-x", "c++"]
         subprocess.run(
-            [*compiler, *STRICT, "-g", "-O1", *self.pkg_config("--cflags"), source, "-o", program, *flags,
-             *self.pkg_config("--libs"), "-lpthread"],
+            [*compiler, f"-std={language}", *STRICT, "-g", "-O1", *self.pkg_config("--cflags", package=package), source,
+             "-x", "none", "-o", program, *flags, *self.pkg_config("--libs", package=package), "-lpthread"],
             check=True,
         )
         return program

@@ -1,4 +1,4 @@
-"""Programs in C: the learner with two ports, OpenDR's own names, errors."""
+"""Programs in C: the learner with two ports, errors."""
 
 import json
 import os
@@ -27,14 +27,6 @@ def counter_model(tmp_path):
 def test_learner_with_two_ports(compiler, counter_model, valgrind):
     done = compiler.run(compiler.build(TESTS / "counter.c"), counter_model, valgrind=valgrind)
     assert json.loads(done.stdout)["boxes"][1]["landmarks"] == [[3.0, 4.0]]
-
-
-def test_program_for_opendr(compiler, shared, tmp_path):
-    seen = tmp_path / "seen.png"
-    done = compiler.run(compiler.build(TESTS / "nanodet_of_opendr.c"), shared / "data/photos/bus.jpg", seen)
-    names = [line.split()[0] for line in done.stdout.decode().splitlines()]
-    assert names.count("0") >= 3 and "5" in names, names
-    assert seen.stat().st_size > 100_000 and done.stderr == b""
 
 
 def test_errors_have_the_numbers_of_the_command(compiler, shared):

@@ -70,7 +70,7 @@ def container(folder):
 def test_every_surface_trains_the_same(data, counter, tmp_path):
     options = {"params": {"epochs": 2, "lr": 0.5}, "val_split": "val"}
     command = [program("OPENDR_BIN"), "fit", "counter", str(data), "--json", "--quiet", "--epochs=2", "--lr=0.5"]
-    command += ["--val-split=val", "--output", str(tmp_path / "command"), "--device=cpu"]
+    command += ["--val-split=val", "--out", str(tmp_path / "command"), "--device=cpu"]
     reports = {"command": json.loads(printed(command)[0])}
     external = ExternalDataset(data, "yolo")
     numbers = counter.fit(external, silent=True, output=tmp_path / "python", val_split="val", epochs=2, lr=0.5)

@@ -5,7 +5,7 @@ import json
 
 def test_a_policy_is_trained_measured_and_filmed(opendr, tmp_path):
     run = tmp_path / "run"
-    arguments = ["ppo", "--env", "CartPole-v1", "--output", run, "--total-timesteps", "20000", "--eval-freq", "5000"]
+    arguments = ["ppo", "--env", "CartPole-v1", "--out", run, "--total-timesteps", "20000", "--eval-freq", "5000"]
     done = opendr.run("fit", *arguments, "--json", "--quiet")
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)
@@ -50,7 +50,7 @@ def test_wrong_use_is_told(opendr, tmp_path):
         (["fit", "ppo"], "--env"),
         (["fit", "ppo", "--env", "CartPole-v9"], "CartPole-v1"),
         (["fit", "ppo", "--env", "UavDepthCorridor-v1", "--env-param", "colour=red"], "max_obstacles"),
-        (["fit", "sac", "--env", "CartPole-v1", "--output", tmp_path / "run"], "Discrete"),
+        (["fit", "sac", "--env", "CartPole-v1", "--out", tmp_path / "run"], "Discrete"),
         (["sim", "view", "CartPole-v1", "--out", tmp_path / "film.txt"], ".gif"),
         (["sim", "view", "CartPole-v1", "--learner", "centernet"], "no policy"),
     ]:

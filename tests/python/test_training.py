@@ -28,7 +28,7 @@ def fit(opendr, *arguments):
 
 def test_a_person_detector_begins_to_learn(opendr, shared, backbone, tmp_path):
     arguments = ["single_shot_detector", shared / "data/coco128/object_detection", "--split", "train"]
-    arguments += ["--output", tmp_path / "run", "--classes", "person", "--backbone-weights", backbone, "--freeze", "14"]
+    arguments += ["--out", tmp_path / "run", "--classes", "person", "--backbone-weights", backbone, "--freeze", "14"]
     arguments += ["--img-size", "192", "--max-steps", "24", "--epochs", "3", "--log-after", "1", "--lr", "0.002"]
     report = fit(opendr, *arguments, "--warmup-steps", "4", "--augment", "false")
     assert report["complete"] and report["scalars"]["steps"] == 24
@@ -39,7 +39,7 @@ def test_a_person_detector_begins_to_learn(opendr, shared, backbone, tmp_path):
 
 
 def test_a_pose_estimator_learns_from_a_teacher(opendr, shared, backbone, tmp_path):
-    arguments = ["lightweight_open_pose", shared / "data/coco128/images/train2017", "--output", tmp_path / "run"]
+    arguments = ["lightweight_open_pose", shared / "data/coco128/images/train2017", "--out", tmp_path / "run"]
     arguments += ["--teacher", "movenet/multipose", "--teacher-threshold", "0.2", "--backbone", backbone, "--freeze", "true"]
     arguments += ["--width", "0.75", "--extra-blocks", "2", "--channels", "32", "--separable", "true", "--crop-size", "128"]
     arguments += ["--num-refinement-stages", "1", "--batch-size", "8", "--epochs", "6", "--lr", "0.002", "--log-after", "1"]

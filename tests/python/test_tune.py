@@ -19,7 +19,7 @@ def trials(output):
 
 def test_a_policy_is_tuned_and_the_study_goes_on(opendr, tmp_path):
     output = tmp_path / "tuned"
-    arguments = [*CART, *SHORT, "--output", output, "--json"]
+    arguments = [*CART, *SHORT, "--out", output, "--json"]
     done = opendr.run(*arguments, "--trials", "2", "--quiet")
     assert done.returncode == 0, done.stderr
     first = json.loads(done.stdout)
@@ -38,7 +38,7 @@ def test_a_policy_is_tuned_and_the_study_goes_on(opendr, tmp_path):
 
 def test_a_killed_search_goes_on(opendr, tmp_path):
     output = tmp_path / "tuned"
-    arguments = [*CART, *SHORT, "--output", output, "--trials", "6", "--json", "--quiet"]
+    arguments = [*CART, *SHORT, "--out", output, "--trials", "6", "--json", "--quiet"]
     for kill in [signal.SIGKILL, signal.SIGINT]:
         began = trials(output) if output.exists() else 0
         process = subprocess.Popen([opendr.binary, *map(str, arguments)], stdout=subprocess.PIPE, env=opendr.environment)
@@ -70,7 +70,7 @@ def test_a_learner_of_data_is_tuned(opendr, tmp_path):
             picture(tmp_path / "data" / split / "blue" / f"{at}.png", (at, 0, 200 + at))
     arguments = ["tune", "image_classifier", tmp_path / "data", "--split", "train", "--val-split", "val"]
     arguments += ["--search", "lr=1e-4..1e-1", "--length", "8", "--points", "4", "--tuning-seeds", "1", "--trials", "3"]
-    done = opendr.run(*arguments, "--batch-size", "8", "--output", tmp_path / "tuned", "--json", "--quiet")
+    done = opendr.run(*arguments, "--batch-size", "8", "--out", tmp_path / "tuned", "--json", "--quiet")
     assert done.returncode == 0, done.stderr
     report = json.loads(done.stdout)
     assert report["complete"] and report["trials"] == 3 and 0.0 <= report["value"] <= 1.0
@@ -88,5 +88,5 @@ def test_wrong_use_is_told(opendr, tmp_path):
         (["ppo", "--env", "CartPole-v1", "--search", "gamma=0.5..7"], "gamma"),
         (["centernet", "data", "--val-split", "val", "--search", "lr"], "does not train"),
     ]:
-        done = opendr.run("tune", *arguments, "--output", tmp_path / "tuned")
+        done = opendr.run("tune", *arguments, "--out", tmp_path / "tuned")
         assert done.returncode not in (0, 101) and word in done.stderr, (arguments, done.stderr)

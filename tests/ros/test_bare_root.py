@@ -3,6 +3,7 @@
 import os
 import shutil
 import subprocess
+from pathlib import Path
 
 import pytest
 from node import Node, opendr
@@ -10,6 +11,7 @@ from patience import wait_until
 from pictures import image_fields, noise
 
 LEARNER = "image_classifier"
+WEIGHTS = Path(__file__).parents[2] / "models/weights"
 CHROOT = "/usr/sbin/chroot"
 SYSTEM = {"libc", "libm", "libgcc_s", "ld-linux-x86-64", "ld-linux-aarch64", "libdl", "libpthread", "librt"}
 
@@ -42,7 +44,8 @@ def test_it_needs_libc_alone(ros2, tmp_path):
         target.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(os.path.realpath(library), target)
     shutil.copy(opendr(), tmp_path / "opendr")
-    alone = {"ROS_DOMAIN_ID": ros2.domain, "OPENDR_CACHE": "/cache", "HOME": "/", "ORT_DYLIB_PATH": ""}
+    shutil.copytree(WEIGHTS / LEARNER, tmp_path / "models" / LEARNER)
+    alone = {"OPENDR_MODELS": "/models", "ROS_DOMAIN_ID": ros2.domain, "OPENDR_CACHE": "/cache", "HOME": "/", "ORT_DYLIB_PATH": ""}
     with Bare(tmp_path, **alone):
         seen = ros2.subscribe(f"/{LEARNER}/category", "vision_msgs/msg/Classification")
         seen.wait_for_publishers()

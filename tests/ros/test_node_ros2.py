@@ -215,7 +215,7 @@ def test_usage_errors_are_told():
 
 def test_the_model_may_be_replaced_while_it_runs(ros2, tmp_path):
     model = tmp_path / "model"
-    subprocess.run([opendr(), "export", CLASSIFIER, "--output", model], env=environment(), capture_output=True, check=True)
+    subprocess.run([opendr(), "export", CLASSIFIER, "--out", model], env=environment(), capture_output=True, check=True)
     words = [CLASSIFIER, "--model", model, "--name", "replaced", "--image", "/replaced_raw"]
     with Node("ros2", *words, ROS_DOMAIN_ID=ros2.domain) as node:
         seen = ros2.subscribe("/replaced/category", "vision_msgs/msg/Classification")

@@ -24,8 +24,8 @@ pub fn install_for_tests(prefix: &Path) -> Result<()> {
 fn install(prefix: &Path, built: &Path) -> Result<()> {
     let prefix = std::path::absolute(prefix).map_err(|error| format!("{}: {error}", prefix.display()))?;
     let place = Place(prefix.clone());
-    for header in ["opendr.h", "opendr_compat.h"] {
-        place.copy(&root().join("bindings/c/include").join(header), &format!("include/{header}"))?;
+    for (file, name) in files_below(&root().join("bindings/c/include"))? {
+        place.copy(&file, &format!("include/{name}"))?;
     }
     place.copy(&built.join("libopendr_c.a"), "lib/libopendr.a")?;
     if cfg!(target_os = "macos") {
@@ -37,25 +37,28 @@ fn install(prefix: &Path, built: &Path) -> Result<()> {
         place.link(&file, "lib/libopendr.so.0")?;
         place.link("libopendr.so.0", "lib/libopendr.so")?;
     }
-    for (file, name) in weights()? {
+    for (file, name) in files_below(&root().join("models/weights"))? {
         place.copy(&file, &format!("share/opendr/models/{name}"))?;
     }
     place.write("lib/pkgconfig/opendr.pc", &pkg_config())?;
+    place.write("lib/pkgconfig/opendr-compat.pc", &compat_pkg_config())?;
     place.write("lib/cmake/OpenDR/OpenDRConfig.cmake", &cmake_config())?;
     place.write("lib/cmake/OpenDR/OpenDRConfigVersion.cmake", &cmake_version())?;
     println!("installed OpenDR {VERSION} under {}", prefix.display());
     Ok(())
 }
 
-/// The weights of our own, each with its path below `models/weights`.
-fn weights() -> Result<Vec<(PathBuf, String)>> {
-    let folder = root().join("models/weights");
+/// The files in a folder and in the folders in it, each with its path below.
+fn files_below(folder: &Path) -> Result<Vec<(PathBuf, String)>> {
     let failed = |error: std::io::Error| format!("{}: {error}", folder.display());
     let mut found = Vec::new();
-    for learner in fs::read_dir(&folder).map_err(failed)? {
-        for file in fs::read_dir(learner.map_err(failed)?.path()).map_err(failed)? {
-            let path = file.map_err(failed)?.path();
-            let name = path.strip_prefix(&folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() {
+            let inner = files_below(&path)?;
+            found.extend(inner.into_iter().map(|(path, below)| (path, format!("{name}/{below}"))));
+        } else {
             found.push((path, name));
         }
     }
@@ -78,9 +81,22 @@ fn pkg_config() -> String {
     )
 }
 
+/// What adds the folder of the headers that have OpenDR's names.
+fn compat_pkg_config() -> String {
+    format!(
+        "prefix=${{pcfiledir}}/../..\n\
+         includedir=${{prefix}}/include\n\n\
+         Name: OpenDR, by the names of OpenDR 3.0\n\
+         Description: The headers of OpenDR 3.0's C API over opendr.h\n\
+         Version: {VERSION}\n\
+         Requires: opendr\n\
+         Cflags: -I${{includedir}}/opendr\n"
+    )
+}
+
 fn cmake_config() -> String {
     format!(
-        "# The targets OpenDR::opendr (shared) and OpenDR::opendr_static.\n\
+        "# The targets OpenDR::opendr (shared) and OpenDR::opendr_static, and OpenDR::opendr_compat with the headers of OpenDR 3.0.\n\
          get_filename_component(_opendr_prefix \"${{CMAKE_CURRENT_LIST_DIR}}/../../..\" ABSOLUTE)\n\
          if(NOT TARGET OpenDR::opendr)\n\
          \x20 add_library(OpenDR::opendr SHARED IMPORTED)\n\
@@ -92,6 +108,10 @@ fn cmake_config() -> String {
          \x20   IMPORTED_LOCATION \"${{_opendr_prefix}}/lib/libopendr.a\"\n\
          \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_opendr_prefix}}/include\"\n\
          \x20   INTERFACE_LINK_LIBRARIES \"{}\")\n\
+         \x20 add_library(OpenDR::opendr_compat INTERFACE IMPORTED)\n\
+         \x20 set_target_properties(OpenDR::opendr_compat PROPERTIES\n\
+         \x20   INTERFACE_INCLUDE_DIRECTORIES \"${{_opendr_prefix}}/include/opendr\"\n\
+         \x20   INTERFACE_LINK_LIBRARIES OpenDR::opendr)\n\
          endif()\n\
          unset(_opendr_prefix)\n",
         SYSTEM_LIBRARIES.join(";")

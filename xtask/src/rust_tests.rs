@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
 use crate::junit::{self, Outcome};
-use crate::shell::{Result, is_installed, output, root, target};
+use crate::shell::{Result, is_installed, output, root};
 
 /// Name of the check.
 const NAME: &str = "tests";
@@ -55,7 +55,8 @@ pub fn run(
         changed.len(),
         start.elapsed().as_secs_f64()
     );
-    let report = target().join("nextest/default/junit.xml");
+    // Nextest keeps its reports in the workspace, wherever cargo builds.
+    let report = root().join("target/nextest/default/junit.xml");
     let mut nextest = cargo(&["nextest", "run", "--no-tests", "pass"]);
     nextest.args(build);
     if changed.is_empty() {

@@ -75,8 +75,10 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
         let sources = tree.map(|tree| tree.of(is_source, &[]));
         let examples = &mut tests(&["test", "--workspace", "--doc", TEST_LEARNER]);
         checks.run("documentation tests", sources, Output::Live, None, examples)?;
-        let suites = suites(&environments, &environment, programs)?;
-        run_beside_each_other(checks, tree, suites)
+        let (suites, of_ros) = suites(&environments, &environment, programs)?;
+        run_beside_each_other(checks, tree, suites)?;
+        // Messages come at their rates there: what computes beside them would be told as a lost message.
+        run_beside_each_other(checks, tree, of_ros)
     })
 }
 
@@ -133,8 +135,12 @@ fn downloads_nothing(mut cargo: Command) -> Command {
     cargo
 }
 
-/// The suites of Python, the longest first.
-fn suites(environments: &Environments, environment: &Environment, programs: u64) -> Result<Vec<Suite>> {
+/// The suites of Python, and those of ROS.
+fn suites(
+    environments: &Environments,
+    environment: &Environment,
+    programs: u64,
+) -> Result<(Vec<Suite>, Vec<Suite>)> {
     let wheel = wheel::build(&environments.package, wheel::For::Tests)?;
     environments.package.install_wheel(&wheel)?;
     let models = wheel::build_models(&environments.package)?;
@@ -167,7 +173,7 @@ fn suites(environments: &Environments, environment: &Environment, programs: u64)
     let mut parity =
         suite("parity of all surfaces", &environments.package, &["tests/parity"], &[programs, module]);
     parity::prepare(&mut parity.command, &prefix)?;
-    let mut suites = vec![
+    let suites = vec![
         suite(
             "tests of recordings beside their tools",
             &environments.references,
@@ -185,12 +191,9 @@ fn suites(environments: &Environments, environment: &Environment, programs: u64)
         parity,
         of_c,
     ];
-    suites.extend(environments.ros.suites(
-        &package,
-        |command| environment.apply(command),
-        &[programs, module],
-    ));
-    Ok(suites)
+    let of_ros =
+        environments.ros.suites(&package, |command| environment.apply(command), &[programs, module]);
+    Ok((suites, of_ros.into()))
 }
 
 /// Runs suites in [`LANES`]; the first free lane takes the next.

@@ -1,5 +1,6 @@
 //! The `opendr` command: it knows types, never learners. A library, so that the Python package has the command too.
 
+mod class_flags;
 mod command;
 mod dataset_flags;
 mod environment_flags;
@@ -16,6 +17,7 @@ mod progress_lines;
 mod recordings;
 mod report;
 mod stdout;
+mod then_flag;
 mod timings;
 mod writer;
 

@@ -174,14 +174,11 @@ pub fn how_many(matches: &ArgMatches, samples: Option<u64>) -> Result<usize> {
     Ok(usize::try_from(worth).unwrap_or(most).clamp(1, most))
 }
 
-/// `count` loaded learners that share the threads.
+/// `count` loaded learners, or pipelines of some, that share the threads.
 ///
 /// # Errors
 /// As `load`.
-pub fn side_by_side(
-    count: usize,
-    load: impl Fn() -> Result<Box<dyn AnyLearner>>,
-) -> Result<Vec<Box<dyn AnyLearner>>> {
+pub fn side_by_side<T>(count: usize, load: impl Fn() -> Result<T>) -> Result<Vec<T>> {
     let threads = (inference::default_threads()? / count).max(1);
     (0..count).map(|_| inference::with_threads(threads, &load)).collect()
 }

@@ -11,7 +11,7 @@
  *   - What a function points to (texts, numbers, pixels) belongs to the handle it was asked of, and lives as long as it.
  *   - What is handed in is copied, or only read during the call; it stays the caller's.
  *   - Texts are UTF-8. Paths are bytes as the system has them.
- *   - Learners and sources may be used by several threads at once; values as long as nobody changes or frees them.
+ *   - Learners, networks and sources may be used by several threads at once; values as long as nobody changes or frees them.
  *   - NULL, handles of another type, and lengths that cannot be are refused. That a pointer leads to as much memory as its
  *     length says, and that a handle is not used after it was freed, is the caller's promise.
  */
@@ -133,11 +133,17 @@ typedef struct opendr_env opendr_env;
 // A learner with its model; threads may use it at once, one call is answered after the other.
 typedef struct opendr_learner opendr_learner;
 
+// A network; threads may run it at once, one run after the other.
+typedef struct opendr_network opendr_network;
+
 // Pictures one after the other; two threads may take from it at once.
 typedef struct opendr_source opendr_source;
 
 // A text that the library made; free it with opendr_string_free().
 typedef struct opendr_string opendr_string;
+
+// The outputs of one run of a network.
+typedef struct opendr_tensors opendr_tensors;
 
 // A datum or target of any type; a pointer to a handle of a data or target type may be cast to it.
 typedef struct opendr_value opendr_value;
@@ -232,6 +238,48 @@ typedef struct opendr_output {
     // What was found, to be freed; set by the call, NULL when it failed.
     struct opendr_value *value;
 } opendr_output;
+
+// A tensor in memory, its last axis fastest.
+typedef struct opendr_tensor {
+    // Name within the network; NULL for an input that is given in its place in the order.
+    const char *name;
+    // The numbers.
+    const float *numbers;
+    // How many there are: the product of the shape.
+    size_t length;
+    // Size of each axis.
+    const size_t *shape;
+    // Number of axes, at most 8.
+    size_t axes;
+} opendr_tensor;
+
+// What a network declares of an input or output; it lives as long as the network.
+typedef struct opendr_tensor_info {
+    // Name within the network.
+    const char *name;
+    // Size of each axis, 0 where any size will do.
+    const size_t *shape;
+    // Number of axes; 0 for a single number, and where the network does not declare them.
+    size_t axes;
+} opendr_tensor_info;
+
+// How a picture becomes the input of a network: scaled, (level - mean) / std by channel, in the order of the axes.
+typedef struct opendr_preprocess {
+    // Pixels of a row of the input.
+    size_t width;
+    // Rows of the input.
+    size_t height;
+    // The channels of the input: OPENDR_GREY, OPENDR_RGB or OPENDR_BGR.
+    int32_t format;
+    // One of opendr_layout.
+    int32_t layout;
+    // Of each channel, in levels of 0 to 255; grey has the first.
+    float mean[3];
+    // Of each channel, in levels of 0 to 255, not 0.
+    float std[3];
+    // The level beside a picture that keeps its aspect ratio and stands in the middle; NaN stretches it instead.
+    float pad;
+} opendr_preprocess;
 
 // A box in space, in the camera frame of KITTI: x right, y down, z ahead.
 typedef struct opendr_bounding_box_3d {
@@ -628,6 +676,60 @@ enum opendr_status opendr_learner_free(struct opendr_learner **learner);
 // The learners that there are, as a JSON list of their names.
 enum opendr_status opendr_learners(struct opendr_string **json);
 
+// Opens a network without its learner. path is an ONNX file (*.onnx) or a model container: a folder, its JSON (OpenDR's
+// too) or a zip.
+//
+// file names the ONNX file within a container, e.g. "encoder.onnx" or "detector/model.onnx"; NULL takes its only one. device
+// is "cpu", "cuda:0", ...; NULL takes the best one there is. A network that takes other numbers than floats is
+// OPENDR_UNSUPPORTED.
+enum opendr_status opendr_network_open(const char *path,
+                                       const char *file,
+                                       const char *device,
+                                       struct opendr_network **network);
+
+// Opens the network of a loaded learner once more, on the learner's device, to run it without what the learner does before
+// and after. file is as for opendr_network_open(); the learner may be freed.
+enum opendr_status opendr_network_of(const struct opendr_learner *learner,
+                                     const char *file,
+                                     struct opendr_network **network);
+
+// Runs a network. Each input is given once, by its name or, where that is NULL, in its place in the order. tensors receives
+// the outputs in the network's order, to be freed.
+enum opendr_status opendr_network_run(const struct opendr_network *network,
+                                      const struct opendr_tensor *inputs,
+                                      size_t input_count,
+                                      struct opendr_tensors **tensors);
+
+// Returns the number of the network's inputs.
+size_t opendr_network_input_count(const struct opendr_network *network);
+
+// Returns the number of the network's outputs.
+size_t opendr_network_output_count(const struct opendr_network *network);
+
+// Writes what the network declares of its input number index, counted from 0.
+enum opendr_status opendr_network_input(const struct opendr_network *network,
+                                        size_t index,
+                                        struct opendr_tensor_info *info);
+
+// Writes what the network declares of its output number index, counted from 0.
+enum opendr_status opendr_network_output(const struct opendr_network *network,
+                                         size_t index,
+                                         struct opendr_tensor_info *info);
+
+// Writes the model.json of the network's container as JSON ("learner", "params", "classes", "inputs", ...), to be freed;
+// "{}" for an ONNX file.
+enum opendr_status opendr_network_manifest(const struct opendr_network *network,
+                                           struct opendr_string **json);
+
+// Frees the network and makes the variable NULL; a NULL in it is freed already.
+enum opendr_status opendr_network_free(struct opendr_network **network);
+
+// Writes the input of a network that is made of a picture: length numbers, width * height * channels.
+enum opendr_status opendr_image_preprocess(const opendr_image *image,
+                                           const struct opendr_preprocess *how,
+                                           float *numbers,
+                                           size_t length);
+
 // Opens a picture, a folder, a pattern ("photos/\*.jpg"), a video, or a camera ("camera:0").
 enum opendr_status opendr_source_open(const char *input, struct opendr_source **source);
 
@@ -646,6 +748,9 @@ enum opendr_status opendr_source_free(struct opendr_source **source);
 // Why the last call of this thread that failed did so; "" when none did. Valid until the next failing call of this
 // thread.
 const char *opendr_last_error(void);
+
+// Makes message what opendr_last_error() returns in this thread: for functions that are written over these.
+void opendr_set_last_error(const char *message);
 
 // The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
 const char *opendr_status_name(int32_t status);
@@ -782,6 +887,18 @@ size_t opendr_whisper_transcription_count(const opendr_whisper_transcription *tr
 enum opendr_status opendr_whisper_transcription_get(const opendr_whisper_transcription *transcription,
                                                     size_t index,
                                                     struct opendr_whisper_segment *segment);
+
+// Returns the number of tensors.
+size_t opendr_tensors_count(const struct opendr_tensors *tensors);
+
+// Writes where tensor number index lies, counted from 0; it lives as long as the tensors. Integers and truth values of a
+// network are rounded to floats.
+enum opendr_status opendr_tensors_get(const struct opendr_tensors *tensors,
+                                      size_t index,
+                                      struct opendr_tensor *tensor);
+
+// Frees the tensors and makes the variable NULL; a NULL in it is freed already.
+enum opendr_status opendr_tensors_free(struct opendr_tensors **tensors);
 
 // The name of the value's type, e.g. "BoundingBoxList"; NULL for what is no value. It lives as long as the value.
 const char *opendr_value_type(const struct opendr_value *value);

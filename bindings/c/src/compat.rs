@@ -1,4 +1,4 @@
-//! What the header with OpenDR's own names (`include/opendr_compat.h`) needs beyond the rest: values out of a model's JSON.
+//! What the headers with OpenDR's own names (`include/opendr`) need beyond the rest: values out of a model's JSON.
 
 use std::cell::RefCell;
 use std::ffi::{CString, c_char};

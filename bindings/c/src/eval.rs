@@ -3,8 +3,8 @@
 use std::ffi::c_char;
 
 use opendr::dataset::{DatasetRef, ExternalDataset};
-use opendr::evaluation::EvalOptions;
-use opendr::{Error, Result, Silent};
+use opendr::evaluation::{EvalOptions, Outcome, Subject};
+use opendr::{Error, Pipeline, Result, Silent};
 
 use crate::handle::Out;
 use crate::learner::{Loaded, opendr_learner};
@@ -15,8 +15,9 @@ use crate::string::{Text, opendr_string};
 /// Measures the learner on a data set on disk.
 ///
 /// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
-/// "split", "limit", "folder", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
-/// the numbers by name; it is to be freed.
+/// "split", "limit", "folder", "skip_broken", "classes" (an object: classes of the data set by classes of the learner), "by_number",
+/// "resamples", and "then", a list of pretrained learners behind this one, such as ["byte_track"], so that the pipeline is
+/// measured; NULL takes the defaults. The outcome is an object of JSON: under "scalars" the numbers by name; it is to be freed.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_eval(
     learner: *const opendr_learner,
@@ -48,12 +49,39 @@ unsafe fn eval(
             optional_text(options_json, "options_json")?.unwrap_or("{}"),
         )
     };
-    let options: EvalOptions = serde_json::from_str(options).map_err(|error| {
+    let refused = |error| {
         Error::invalid_param("options_json is no JSON object of options of opendr_eval").with_source(error)
-    })?;
+    };
+    let mut options: serde_json::Map<String, serde_json::Value> =
+        serde_json::from_str(options).map_err(refused)?;
+    let then = options.remove("then").unwrap_or_else(|| serde_json::Value::Array(Vec::new()));
+    let then: Vec<String> = serde_json::from_value(then).map_err(refused)?;
+    let options: EvalOptions = serde_json::from_value(options.into()).map_err(refused)?;
     let external = ExternalDataset::new(dataset, dataset_type);
     let dataset = DatasetRef::External(&external);
-    let measured = options.run(&mut loaded.lock(), loaded.entry, dataset, &Silent)?;
+    let measured = match then.is_empty() {
+        true => options.run(&mut loaded.lock(), loaded.entry, dataset, &Silent)?,
+        false => eval_pipeline(loaded, &then, &options, dataset)?,
+    };
     out.set(Text::of_json(&measured)?);
     Ok(())
+}
+
+/// Measures the learner with pretrained ones behind it.
+fn eval_pipeline(
+    loaded: &Loaded,
+    then: &[String],
+    options: &EvalOptions,
+    dataset: DatasetRef<'_>,
+) -> Result<Outcome> {
+    let learner = loaded.lock();
+    let first = Pipeline::default().then(loaded.entry, learner.as_ref())?;
+    let add = |pipeline: Pipeline, spec: &String| pipeline.then_named(spec, learner.device(), &Silent);
+    let mut pipelines = [then.iter().try_fold(first, add)?];
+    let [pipeline] = &pipelines;
+    let names: Vec<_> = pipeline.entries().map(|entry| entry.spec.name).collect();
+    let subject = Subject { learner: names.join(" + "), model: None, params: learner.params() };
+    let last = pipeline.entries().last().unwrap_or(loaded.entry);
+    let (ports, classes) = (pipeline.ports().to_vec(), pipeline.classes());
+    options.open(last, dataset)?.run_pipelines(&mut pipelines, &ports, classes, subject, &Silent)
 }

@@ -7,6 +7,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use opendr::{Error, ErrorKind, Result};
 
+use crate::pointer::text;
+
 /// How a call went; the numbers are the exit codes of the command `opendr`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +65,16 @@ thread_local! {
 #[unsafe(no_mangle)]
 pub extern "C" fn opendr_last_error() -> *const c_char {
     LAST_ERROR.try_with(|error| error.borrow().as_ptr()).unwrap_or(c"".as_ptr())
+}
+
+/// Makes message what opendr_last_error() returns in this thread: for functions that are written over these.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn opendr_set_last_error(message: *const c_char) {
+    guard_value((), || {
+        // SAFETY: the rules at the top of opendr.h.
+        remember(unsafe { text(message, "message") }?);
+        Ok(())
+    });
 }
 
 /// The name of a status, e.g. "InvalidInput"; "unknown" for other numbers.
@@ -122,10 +134,14 @@ fn error_of_panic(panic: &(dyn Any + Send)) -> Error {
 }
 
 fn keep(error: &Error) -> opendr_status {
-    let message = CString::new(error.to_string().replace('\0', "\u{fffd}")).unwrap_or_default();
+    remember(&error.to_string());
+    error.kind().into()
+}
+
+fn remember(message: &str) {
+    let message = CString::new(message.replace('\0', "\u{fffd}")).unwrap_or_default();
     // A thread that is ending keeps none.
     LAST_ERROR.try_with(|last| last.replace(message)).ok();
-    error.kind().into()
 }
 
 #[cfg(test)]

@@ -149,6 +149,24 @@ pub fn formats(py: Python<'_>) -> PyResult<Bound<'_, PyList>> {
     PyList::new(py, tables.collect::<PyResult<Vec<_>>>()?)
 }
 
+/// The type of a datum or target, by the class of the toolkit that it is of.
+pub fn type_of(object: &Bound<'_, PyAny>) -> PyResult<ValueType> {
+    for class in object.get_type().mro() {
+        let module: String = class.getattr("__module__")?.extract()?;
+        let name: String = class.getattr("__qualname__")?.extract()?;
+        if let (true, Ok(value_type)) = (module.starts_with("opendr.engine."), name.parse()) {
+            return Ok(value_type);
+        }
+    }
+    let class = object.get_type().name()?.to_string();
+    Err(PyTypeError::new_err(format!("a {class} is no datum or target of opendr.engine; give one")))
+}
+
+/// The types that ports take.
+pub fn types_of_ports(ports: &[Port]) -> Vec<ValueType> {
+    ports.iter().map(|port| port.value_type).collect()
+}
+
 fn problems(skip_broken: bool) -> Problems {
     if skip_broken { Problems::skipping() } else { Problems::strict() }
 }
@@ -169,8 +187,9 @@ pub enum GivenDataset {
 }
 
 impl GivenDataset {
-    /// An `ExternalDataset`, or any data set of Python whose samples go to `ports`.
-    pub fn from_python(object: &Bound<'_, PyAny>, ports: &'static [Port]) -> PyResult<Self> {
+    /// An `ExternalDataset`, or any data set of Python whose samples have data of these types; of the types that they are where none
+    /// are given.
+    pub fn from_python(object: &Bound<'_, PyAny>, types: &[ValueType]) -> PyResult<Self> {
         let external = object.py().import("opendr.engine.datasets")?.getattr("ExternalDataset")?;
         if object.is_instance(&external)? {
             let path: PathBuf = object.getattr("path")?.extract()?;
@@ -178,7 +197,7 @@ impl GivenDataset {
             return Ok(Self::External(ExternalDataset::new(path, dataset_type)));
         }
         let class = object.get_type().name()?.to_string();
-        Ok(Self::Samples(PythonDataset::new(object, ports)?, class))
+        Ok(Self::Samples(PythonDataset::new(object, types.to_vec())?, class))
     }
 
     /// As the toolkit takes it.
@@ -201,13 +220,14 @@ impl GivenDataset {
 /// A `DatasetIterator` of Python: `len`, and `[index]` for a pair of datum and target.
 pub struct PythonDataset {
     object: Py<PyAny>,
-    ports: &'static [Port],
+    /// Of the data of a sample.
+    types: Vec<ValueType>,
     length: usize,
     classes: Classes,
 }
 
 impl PythonDataset {
-    fn new(object: &Bound<'_, PyAny>, ports: &'static [Port]) -> PyResult<Self> {
+    fn new(object: &Bound<'_, PyAny>, types: Vec<ValueType>) -> PyResult<Self> {
         let is_text = object.is_instance_of::<PyString>();
         if is_text || !object.hasattr("__getitem__")? || !object.hasattr("__len__")? {
             let class = object.get_type().name()?.to_string();
@@ -218,7 +238,7 @@ impl PythonDataset {
         let classes =
             object.getattr("classes").ok().and_then(|classes| classes.extract::<Vec<String>>().ok());
         let classes = classes.unwrap_or_default().into_iter().collect();
-        Ok(Self { object: object.clone().unbind(), ports, length: object.len()?, classes })
+        Ok(Self { object: object.clone().unbind(), types, length: object.len()?, classes })
     }
 
     fn read(&self, py: Python<'_>, index: usize) -> PyResult<Sample> {
@@ -233,8 +253,11 @@ impl PythonDataset {
             Ok(several) => several.iter().collect(),
             Err(_) => vec![data],
         };
-        let values =
-            self.ports.iter().zip(&data).map(|(port, datum)| value_from_python(datum, port.value_type));
+        let types = match self.types.is_empty() {
+            true => data.iter().map(type_of).collect::<PyResult<_>>()?,
+            false => self.types.clone(),
+        };
+        let values = types.iter().zip(&data).map(|(value_type, datum)| value_from_python(datum, *value_type));
         let target = if target.is_none() { None } else { Some(target_from_python(&target)?) };
         Ok(Sample { data: values.collect::<PyResult<_>>()?, target })
     }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use opendr::data::Pixels as Samples;
 use opendr::environment::EnvironmentSource;
-use opendr::evaluation::{EvalOptions, Teacher};
+use opendr::evaluation::Teacher;
 use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
@@ -17,10 +17,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::bar::PythonBar;
-use crate::dataset::GivenDataset;
+use crate::dataset::{GivenDataset, types_of_ports};
 use crate::datum::value_from_python;
 use crate::environment::GivenEnvironments;
 use crate::error::ToPython;
+use crate::evaluate::eval_options_from_json;
 use crate::param::{params_from_python, python_from_params};
 use crate::pixels::image_from_python;
 use crate::target::{Payload, payloads};
@@ -107,25 +108,17 @@ impl Handle {
         Ok(Stream { stream: Mutex::new(stream), inputs: Inputs::of(self.entry) })
     }
 
-    /// Measures the learner on a data set; the outcome as JSON and as text.
-    #[pyo3(signature = (dataset, metric=None, metric_params=None, split=None, limit=None, folder=None, skip_broken=false, verbose=true))]
-    #[allow(clippy::too_many_arguments)] // They are the keywords of `eval` in Python.
+    /// Measures the learner on a data set; the outcome as JSON and as text. `options` are JSON.
     fn eval(
         &self,
         py: Python<'_>,
         dataset: &Bound<'_, PyAny>,
-        metric: Option<String>,
-        metric_params: Option<&Bound<'_, PyDict>>,
-        split: Option<String>,
-        limit: Option<usize>,
-        folder: Option<PathBuf>,
-        skip_broken: bool,
+        options: &str,
         verbose: bool,
     ) -> PyResult<(String, String)> {
-        let dataset = GivenDataset::from_python(dataset, self.entry.ports)?;
-        let metric_params = metric_params.map(params_from_python).transpose()?.unwrap_or_default();
-        let name = Some(dataset.name());
-        let options = EvalOptions { metric, metric_params, split, limit, folder, skip_broken, name };
+        let mut options = eval_options_from_json(options).to_python(py)?;
+        let dataset = GivenDataset::from_python(dataset, &types_of_ports(self.entry.ports))?;
+        options.name = Some(dataset.name());
         PythonBar::new(!verbose).run(py, |bar| {
             let outcome = options.run(&mut lock(&self.learner), self.entry, dataset.as_ref(), bar)?;
             Ok((json_of(&outcome)?, outcome.to_string()))
@@ -145,7 +138,7 @@ impl Handle {
     ) -> PyResult<(String, String)> {
         let mut options = options_from_json(options).to_python(py)?;
         opendr::check_fit(self.entry, &options.params).to_python(py)?;
-        let given = |object| GivenDataset::from_python(object, self.entry.ports);
+        let given = |object| GivenDataset::from_python(object, &types_of_ports(self.entry.ports));
         let (dataset, val_dataset) = (given(dataset)?, val_dataset.map(given).transpose()?);
         let teacher = teacher.map(teacher_from_python).transpose()?;
         options.name = Some(dataset.name());
@@ -218,7 +211,7 @@ impl Handle {
         validation: Option<&Bound<'_, PyAny>>,
         verbose: bool,
     ) -> PyResult<(String, String)> {
-        let given = |object| GivenDataset::from_python(object, self.entry.ports);
+        let given = |object| GivenDataset::from_python(object, &types_of_ports(self.entry.ports));
         let (calibration, validation) =
             (calibration.map(given).transpose()?, validation.map(given).transpose()?);
         let options = params_from_python(options)?;
@@ -279,7 +272,7 @@ fn options_from_json(json: &str) -> opendr::Result<FitOptions> {
     serde_json::from_str(json).map_err(|error| Error::invalid_param("no options of fit").with_source(error))
 }
 
-fn json_of(report: &impl serde::Serialize) -> opendr::Result<String> {
+pub fn json_of(report: &impl serde::Serialize) -> opendr::Result<String> {
     serde_json::to_string(report).map_err(|error| Error::internal("no JSON form").with_source(error))
 }
 

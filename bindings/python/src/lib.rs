@@ -12,6 +12,7 @@ mod dataset;
 mod datum;
 mod environment;
 mod error;
+mod evaluate;
 mod handle;
 mod metric;
 mod param;
@@ -58,6 +59,7 @@ fn _opendr(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(dataset::formats, module)?,
         wrap_pyfunction!(dataset::shuffled, module)?,
         wrap_pyfunction!(dataset::split, module)?,
+        wrap_pyfunction!(evaluate::evaluate, module)?,
         wrap_pyfunction!(metric::metrics, module)?,
         wrap_pyfunction!(metric::metric_of, module)?,
         wrap_pyfunction!(plugin::register, module)?,

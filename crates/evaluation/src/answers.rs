@@ -7,13 +7,12 @@ use std::sync::{Mutex, PoisonError};
 
 use opendr_datasets::{Problem, Problems};
 use opendr_engine::dataset::DatasetIterator;
-use opendr_engine::target::{
-    BoundingBox3DList, BoundingBoxList, PoseList, TrackingAnnotation3DList, TrackingAnnotationList,
-};
+use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt, Value, ValueType};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
+use crate::predictor::nothing_of;
 use crate::sample_names::SampleNames;
 
 /// Longer lines are no answer.
@@ -41,6 +40,14 @@ impl Answers {
         Self::Dataset(answers, of_sample)
     }
 
+    /// What class numbers mean, where the answers say it for all of them.
+    pub fn classes(&self) -> Classes {
+        match self {
+            Self::Lines(_) => Classes::default(),
+            Self::Dataset(answers, _) => answers.classes(),
+        }
+    }
+
     /// What is answered to a sample, as `wanted`; nothing found when a file of objects says nothing of it.
     ///
     /// # Errors
@@ -54,18 +61,6 @@ impl Answers {
             },
         };
         answer.or_else(|| nothing_of(wanted)).ok_or_else(|| Error::invalid_input("it is not answered"))
-    }
-}
-
-/// A list of nothing.
-fn nothing_of(wanted: ValueType) -> Option<Value> {
-    match wanted {
-        ValueType::BoundingBoxList => Some(BoundingBoxList::default().into()),
-        ValueType::BoundingBox3DList => Some(BoundingBox3DList::default().into()),
-        ValueType::PoseList => Some(PoseList::default().into()),
-        ValueType::TrackingAnnotationList => Some(TrackingAnnotationList::default().into()),
-        ValueType::TrackingAnnotation3DList => Some(TrackingAnnotation3DList::default().into()),
-        _ => None,
     }
 }
 

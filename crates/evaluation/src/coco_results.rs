@@ -11,7 +11,7 @@ use opendr_engine::{Error, Result, ResultExt};
 use opendr_metrics::MetricEntry;
 use opendr_metrics::coco::files::{CocoFiles, CocoKind};
 
-use crate::Outcome;
+use crate::{ClassReport, Outcome};
 
 /// Bytes that tell what a file is.
 const HEAD: u64 = 4096;
@@ -57,12 +57,17 @@ pub fn score_coco_results(
         learner: results.display().to_string(),
         dataset: annotations.display().to_string(),
         metric: metric.name.to_owned(),
+        metric_params: params.clone(),
+        threshold: None,
+        // Results and annotations share one list of category ids.
+        classes: ClassReport::default(),
         samples: pictures,
         counted: pictures,
         skipped: 0,
         complete: true,
         seconds: begun.elapsed().as_secs_f64(),
         report: found.report(),
+        interval: None,
         worst: Vec::new(),
         evenly: Vec::new(),
         problems: Vec::new(),

@@ -9,19 +9,26 @@ use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{AnyLearner, Entry, Port};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value};
-use opendr_metrics::{AnyMetric, MetricEntry};
+use opendr_engine::target::Classes;
+use opendr_metrics::MetricEntry;
 use serde::{Deserialize, Serialize};
 
-use crate::answering::answer_samples;
+use crate::bootstrap::Groups;
+use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
 use crate::journal::{Answer, Heading, Journal, Line};
+use crate::predictor::predict_samples;
 use crate::shown::{AnsweredSample, Shown};
-use crate::{Answers, ClassMap, Outcome};
+use crate::{Answers, ClassMap, ClassMatching, Outcome, Predictor};
 
 /// The worst samples that are listed, and as many evenly over the data set.
 const SHOWN: usize = 24;
 /// The parameter below which learners drop answers, and what it is made where answers are ranked.
 const THRESHOLD: &str = "threshold";
 const LOW_THRESHOLD: f64 = 0.01;
+/// Resamples for the interval of the headline.
+pub(crate) const RESAMPLES: usize = 200;
+/// What to do about classes that do not match.
+const REMEDY: &str = "Map them with classes (--classes LEARNER=DATASET,...), or compare their numbers with by_number (--by-number)";
 /// The file of the answers.
 const JOURNAL: &str = "predictions.jsonl";
 
@@ -47,6 +54,10 @@ pub struct Evaluation<'a> {
     pub metric: &'static MetricEntry,
     /// The parameters of the metric.
     pub metric_params: ParamMap,
+    /// How classes are matched.
+    pub classes: ClassMatching,
+    /// Number of bootstrap resamples for the interval of the headline; 0 leaves it out.
+    pub resamples: usize,
     /// The folder where every answer is written as it comes, and in the end the report and its pictures; an evaluation
     /// that was broken off goes on from there.
     pub folder: Option<&'a Path>,
@@ -64,6 +75,8 @@ impl<'a> Evaluation<'a> {
             dataset: String::new(),
             metric,
             metric_params: ParamMap::new(),
+            classes: ClassMatching::default(),
+            resamples: RESAMPLES,
             folder: None,
             problems,
             progress: &Silent,
@@ -84,19 +97,51 @@ impl<'a> Evaluation<'a> {
         entry: &Entry,
         dataset: &dyn DatasetIterator,
     ) -> Result<Outcome> {
-        let begun = Instant::now();
-        let mut tally = self.begin(dataset)?;
+        let classes = learners.first().map(|learner| learner.classes()).unwrap_or_default();
         let lowered = self.lower_threshold(learners)?;
-        let done = self
-            .resume(&mut tally)
-            .and_then(|journal| self.answer(learners, entry.ports, &mut tally, journal));
-        self.progress.end();
+        let threshold = learners.first().and_then(|learner| learner.params().remove(THRESHOLD)?.as_float());
+        let outcome = self.run_predictors(learners, entry.ports, classes, dataset, |outcome| {
+            outcome.threshold = threshold;
+            lowered.as_ref().and_then(ParamValue::as_float).unwrap_or(0.0) as f32
+        });
         if let Some(threshold) = &lowered {
             learners.iter_mut().try_for_each(|learner| learner.set(THRESHOLD, threshold.clone()))?;
         }
+        outcome
+    }
+
+    /// Runs predictors that take `ports`, as [`Evaluation::run`] runs learners; `classes` are what their class numbers mean, as far
+    /// as their predictions do not say it. Thresholds stay as they are.
+    ///
+    /// # Errors
+    /// As [`Evaluation::run`].
+    pub fn run_pipelines<P: Predictor>(
+        &self,
+        predictors: &mut [P],
+        ports: &[Port],
+        classes: Classes,
+        dataset: &dyn DatasetIterator,
+    ) -> Result<Outcome> {
+        self.run_predictors(predictors, ports, classes, dataset, |_| 0.0)
+    }
+
+    /// `describe` completes the outcome and returns the confidence below which predictions are not drawn.
+    fn run_predictors<P: Predictor>(
+        &self,
+        predictors: &mut [P],
+        ports: &[Port],
+        classes: Classes,
+        dataset: &dyn DatasetIterator,
+        describe: impl FnOnce(&mut Outcome) -> f32,
+    ) -> Result<Outcome> {
+        let begun = Instant::now();
+        let mut tally = self.begin(dataset, classes)?;
+        let done = self
+            .resume(&mut tally)
+            .and_then(|journal| self.predict(predictors, ports, &mut tally, journal));
+        self.progress.end();
         done?;
-        let least = lowered.and_then(|threshold| threshold.as_float()).unwrap_or(0.0);
-        self.finish(tally, begun, least as f32)
+        self.finish(tally, begun, describe)
     }
 
     /// Where answers are ranked, those of a low score belong into the ranking, too: a threshold that the user left as it
@@ -124,7 +169,7 @@ impl<'a> Evaluation<'a> {
     /// As [`Evaluation::run`].
     pub fn score(&self, answers: &Answers, dataset: &dyn DatasetIterator) -> Result<Outcome> {
         let begun = Instant::now();
-        let mut tally = self.begin(dataset)?;
+        let mut tally = self.begin(dataset, answers.classes())?;
         let done = (0..dataset.len()).take_while(|_| !self.progress.stopped()).try_for_each(|at| {
             let answer = answers.get(at, self.metric.prediction);
             self.progress.advance(1);
@@ -135,17 +180,27 @@ impl<'a> Evaluation<'a> {
         if let Some(folder) = self.folder {
             fs::create_dir_all(folder).context(|| format!("making {}", folder.display()))?;
         }
-        self.finish(tally, begun, 0.0)
+        self.finish(tally, begun, |_| 0.0)
     }
 
-    fn begin<'d>(&self, dataset: &'d dyn DatasetIterator) -> Result<Tally<'d>>
+    fn begin<'d>(&self, dataset: &'d dyn DatasetIterator, learner: Classes) -> Result<Tally<'d>>
     where
         'a: 'd,
     {
+        let AnnotatedClasses { classes, occurring } = annotated_classes(dataset, self.metric.truth);
+        let labels = if self.metric.segments { MapLabels::Segments } else { MapLabels::Classes };
+        let map = ClassMap::new(learner, classes.clone(), &self.classes)?.with_labels(labels);
+        map.check(occurring.as_deref(), REMEDY)?;
+        let (units, in_sequences) = units_of(dataset);
+        let mut groups = Groups::new(self.metric.make(&self.metric_params)?, units);
+        groups.name_classes(&classes);
         self.progress.begin("evaluating", Some(dataset.len() as u64), Unit::Items);
         Ok(Tally {
-            metric: self.metric.make(&self.metric_params)?,
-            classes: ClassMap::to(dataset.classes()),
+            groups,
+            unit: 0,
+            in_sequences,
+            occurring,
+            classes: map,
             shown: Shown::new(SHOWN, dataset.len()),
             next: 0,
             counted: 0,
@@ -154,28 +209,47 @@ impl<'a> Evaluation<'a> {
         })
     }
 
-    /// `least`: the confidence that an answer has in use.
-    fn finish(&self, tally: Tally<'_>, begun: Instant, least: f32) -> Result<Outcome> {
+    fn finish(
+        &self,
+        tally: Tally<'_>,
+        begun: Instant,
+        describe: impl FnOnce(&mut Outcome) -> f32,
+    ) -> Result<Outcome> {
+        tally.classes.check(tally.occurring.as_deref(), REMEDY)?;
+        let complete = tally.next == tally.dataset.len();
+        let report = tally.groups.report()?;
+        let interval = tally.groups.interval(&report, self.resamples, self.progress)?;
         let (worst, evenly) = tally.shown.into_samples();
         let mut outcome = Outcome {
             learner: self.subject.learner.clone(),
             dataset: self.dataset.clone(),
             metric: self.metric.name.to_owned(),
+            metric_params: self.metric_settings(),
+            threshold: None,
+            classes: tally.classes.report(),
             samples: tally.dataset.len(),
             counted: tally.counted,
             skipped: self.problems.count(),
-            complete: tally.next == tally.dataset.len(),
+            complete,
             seconds: begun.elapsed().as_secs_f64(),
-            report: tally.metric.finish(),
+            report,
+            interval,
             worst,
             evenly,
             problems: self.problems.list(),
             written: Vec::new(),
         };
+        let least = describe(&mut outcome);
         if let Some(folder) = self.folder {
             outcome.write(tally.dataset, folder, least)?;
         }
         Ok(outcome)
+    }
+
+    /// Every parameter of the metric as it was used.
+    fn metric_settings(&self) -> ParamMap {
+        let defaults = self.metric.params.iter().map(|field| (field.name.to_owned(), field.default.value()));
+        defaults.chain(self.metric_params.clone()).collect()
     }
 
     /// Counts what the journal tells of.
@@ -194,17 +268,17 @@ impl<'a> Evaluation<'a> {
         Ok(Some(journal))
     }
 
-    /// Infers the samples that are left.
-    fn answer(
+    /// Predicts the samples that are left.
+    fn predict<P: Predictor>(
         &self,
-        learners: &mut [Box<dyn AnyLearner>],
-        ports: &'static [Port],
+        predictors: &mut [P],
+        ports: &[Port],
         tally: &mut Tally<'_>,
         mut journal: Option<Journal>,
     ) -> Result<()> {
         let (dataset, first) = (tally.dataset, tally.next);
         let wanted = self.metric.prediction;
-        answer_samples(learners, ports, dataset, first, wanted, self.progress, |line| {
+        predict_samples(predictors, ports, dataset, first, wanted, self.progress, |line| {
             if let Some(journal) = &mut journal {
                 journal.write(&line)?;
             }
@@ -215,7 +289,12 @@ impl<'a> Evaluation<'a> {
 
 /// What was counted so far.
 struct Tally<'a> {
-    metric: Box<dyn AnyMetric>,
+    groups: Groups,
+    /// The sample or sequence that is counted.
+    unit: usize,
+    in_sequences: bool,
+    /// Classes of the data set that are annotated.
+    occurring: Option<Vec<usize>>,
     classes: ClassMap,
     shown: Shown,
     /// The sample that comes next.
@@ -238,8 +317,9 @@ impl Tally<'_> {
         }
         let ends = at + 1 == dataset.len() || dataset.sequence(at) != dataset.sequence(at + 1);
         if dataset.sequence(at).is_some() && ends {
-            self.metric.end_sequence();
+            self.groups.of(self.unit).end_sequence();
         }
+        self.unit += usize::from(!self.in_sequences || ends);
         Ok(())
     }
 
@@ -249,15 +329,24 @@ impl Tally<'_> {
             Answer::Prediction(prediction) => *prediction,
             Answer::Error(problem) => return Err(problem),
         };
-        self.classes.apply(&mut prediction);
-        let counted = dataset.target(at).and_then(|truth| {
+        let mapped = self.classes.apply(&mut prediction);
+        let counted = mapped.and_then(|()| dataset.target(at)).and_then(|truth| {
             let truth =
                 truth.ok_or_else(|| Error::invalid_input("the sample has no annotation to compare with"))?;
-            self.metric.update(at, (&prediction).into(), (&truth).into())
+            self.groups.of(self.unit).update(at, (&prediction).into(), (&truth).into())
         });
         match counted {
             Ok(score) => Ok((score, prediction)),
             Err(error) => Err(Problem::of(&error, dataset, at)),
         }
     }
+}
+
+/// The number of independent samples: sequences where samples are frames of some; and whether they are.
+fn units_of(dataset: &dyn DatasetIterator) -> (usize, bool) {
+    if dataset.is_empty() || dataset.sequence(0).is_none() {
+        return (dataset.len(), false);
+    }
+    let begins = |at: &usize| *at == 0 || dataset.sequence(*at) != dataset.sequence(at - 1);
+    ((0..dataset.len()).filter(begins).count(), true)
 }

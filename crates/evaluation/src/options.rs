@@ -1,16 +1,19 @@
 //! What a surface may say about an evaluation, in JSON.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use opendr_datasets::Problems;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef, Subset};
-use opendr_engine::learner::{AnyLearner, Entry};
+use opendr_engine::learner::{AnyLearner, Entry, Port};
 use opendr_engine::params::ParamMap;
+use opendr_engine::target::Classes;
 use opendr_engine::{Progress, Result};
 use opendr_metrics::{MetricEntry, find};
 use serde::Deserialize;
 
-use crate::{Evaluation, Outcome, Subject, metric_of, open_for};
+use crate::evaluation::RESAMPLES;
+use crate::{ClassMatching, Evaluation, Outcome, Predictor, Subject, metric_of, open_for};
 
 /// Everything that can be chosen; all of it may be left out.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -28,6 +31,12 @@ pub struct EvalOptions {
     pub folder: Option<PathBuf>,
     /// Whether what is broken is left out and listed.
     pub skip_broken: bool,
+    /// Classes of the data set by classes of the learner, where their names do not match.
+    pub classes: BTreeMap<String, String>,
+    /// Whether class numbers are compared, whatever the names are.
+    pub by_number: bool,
+    /// Number of bootstrap resamples for the interval of the headline, by default 200; 0 leaves it out.
+    pub resamples: Option<usize>,
     /// What the outcome calls the data set; by default its path.
     pub name: Option<String>,
 }
@@ -55,12 +64,28 @@ impl EvalOptions {
         })
     }
 
+    /// How classes are matched.
+    pub fn class_matching(&self) -> ClassMatching {
+        ClassMatching { pairs: self.classes.clone(), by_number: self.by_number }
+    }
+
     /// Opens the data set that a learner is measured on.
     ///
     /// # Errors
     /// As [`EvalOptions::metric_for`] and [`open_for`].
     pub fn open<'a>(&'a self, entry: &Entry, dataset: DatasetRef<'a>) -> Result<EvalJob<'a>> {
-        let metric = self.metric_for(entry)?;
+        self.open_by(self.metric_for(entry)?, dataset)
+    }
+
+    /// Opens the data set as `metric` compares it.
+    ///
+    /// # Errors
+    /// As [`open_for`].
+    pub fn open_by<'a>(
+        &'a self,
+        metric: &'static MetricEntry,
+        dataset: DatasetRef<'a>,
+    ) -> Result<EvalJob<'a>> {
         let problems = if self.skip_broken { Problems::skipping() } else { Problems::strict() };
         let (name, dataset): (_, Box<dyn DatasetIterator + 'a>) = match dataset {
             DatasetRef::External(external) => {
@@ -102,13 +127,34 @@ impl EvalJob<'_> {
         subject: Subject,
         progress: &dyn Progress,
     ) -> Result<Outcome> {
-        let evaluation = Evaluation {
+        self.evaluation(subject, progress).run(learners, entry, &self.dataset)
+    }
+
+    /// Measures learners behind each other that take `ports`, as many samples at once as there are of them; `classes` are what the
+    /// class numbers of their predictions mean, as far as these do not say it.
+    ///
+    /// # Errors
+    /// As [`Evaluation::run`].
+    pub fn run_pipelines<P: Predictor>(
+        &self,
+        pipelines: &mut [P],
+        ports: &[Port],
+        classes: Classes,
+        subject: Subject,
+        progress: &dyn Progress,
+    ) -> Result<Outcome> {
+        self.evaluation(subject, progress).run_pipelines(pipelines, ports, classes, &self.dataset)
+    }
+
+    fn evaluation<'e>(&'e self, subject: Subject, progress: &'e dyn Progress) -> Evaluation<'e> {
+        Evaluation {
             dataset: self.name.clone(),
             metric_params: self.options.metric_params.clone(),
+            classes: self.options.class_matching(),
+            resamples: self.options.resamples.unwrap_or(RESAMPLES),
             folder: self.options.folder.as_deref(),
             progress,
             ..Evaluation::new(subject, self.metric, &self.problems)
-        };
-        evaluation.run(learners, entry, &self.dataset)
+        }
     }
 }

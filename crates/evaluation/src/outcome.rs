@@ -6,12 +6,14 @@ use std::path::{Path, PathBuf};
 
 use opendr_datasets::Problem;
 use opendr_engine::dataset::DatasetIterator;
+use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_metrics::{Report, Table};
 use opendr_runlog::svg_from_figure;
 use serde::Serialize;
 
 use crate::shown::{AnsweredSample, sheet};
+use crate::{ClassReport, Interval};
 
 /// Rows of a table that are printed; all of them are in the JSON.
 const ROWS: usize = 40;
@@ -25,6 +27,14 @@ pub struct Outcome {
     pub dataset: String,
     /// By what.
     pub metric: String,
+    /// Every parameter of the metric.
+    pub metric_params: ParamMap,
+    /// The threshold below which the learner dropped predictions, where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub threshold: Option<f64>,
+    /// Which classes were compared with which.
+    #[serde(skip_serializing_if = "ClassReport::is_empty")]
+    pub classes: ClassReport,
     /// Samples of the data set.
     pub samples: usize,
     /// Samples that were answered and counted.
@@ -38,6 +48,9 @@ pub struct Outcome {
     /// The numbers, tables and figures.
     #[serde(flatten)]
     pub report: Report,
+    /// An interval for the headline.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub interval: Option<Interval>,
     /// The samples that were answered worst, worst first.
     pub worst: Vec<AnsweredSample>,
     /// Samples evenly over the data set.
@@ -102,14 +115,39 @@ impl fmt::Display for Outcome {
         if self.skipped > 0 {
             writeln!(f, "{} left out as broken", self.skipped)?;
         }
+        self.write_comparison(f)?;
         let scalars = &self.report.statistics.scalars;
         let width = scalars.keys().map(String::len).max().unwrap_or(0);
         let main = scalars.get_key_value(&self.report.headline);
         let rest = scalars.iter().filter(|(key, _)| **key != self.report.headline);
         for (key, value) in main.into_iter().chain(rest) {
-            writeln!(f, "  {key:width$}  {}", number(*value))?;
+            write!(f, "  {key:width$}  {}", number(*value))?;
+            match self.interval.filter(|_| *key == self.report.headline) {
+                Some(Interval { low, high, level, resamples, units }) => writeln!(
+                    f,
+                    "  [{}, {}]: {:.0} % of {resamples} resamples of {units} {}",
+                    number(low),
+                    number(high),
+                    level * 100.0,
+                    if units == *samples { "samples" } else { "sequences" }
+                )?,
+                None => writeln!(f)?,
+            }
         }
         self.report.tables.iter().try_for_each(|table| write_table(table, f))
+    }
+}
+
+impl Outcome {
+    /// What was compared: threshold, parameters of the metric, classes.
+    fn write_comparison(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let threshold = self.threshold.map(|threshold| format!("threshold {threshold}"));
+        let params = self.metric_params.iter().map(|(name, value)| format!("{name} {value}"));
+        let settings: Vec<_> = threshold.into_iter().chain(params).collect();
+        if !settings.is_empty() {
+            writeln!(f, "settings: {}", settings.join(", "))?;
+        }
+        if self.classes.is_empty() { Ok(()) } else { write!(f, "{}", self.classes) }
     }
 }
 

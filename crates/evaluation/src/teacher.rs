@@ -6,13 +6,18 @@ use std::path::Path;
 use opendr_datasets::Problems;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{AnyLearner, AnyStream, Entry};
-use opendr_engine::target::{Classes, Name};
+use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, ResultExt, Unit, Value, ValueType};
 
-use crate::answering::answer_samples;
 use crate::journal::{Answer, Heading, Journal, Line};
-use crate::{ClassMap, Subject, Taught};
+use crate::predictor::predict_samples;
+use crate::{ClassMap, ClassMatching, Subject, Taught};
 
+/// What to do about classes that do not match.
+const REMEDY: &str = "Map them with teacher_map (--teacher-map TEACHER=CLASS,...), or take their numbers as they are with \
+                      teacher_by_number (--teacher-by-number)";
+/// The label of pixels from which nothing is learned.
+const IGNORED: u32 = 255;
 /// The file of the teacher's answers.
 const JOURNAL: &str = "teacher.jsonl";
 
@@ -74,6 +79,8 @@ pub struct Lesson<'a> {
     pub threshold: f32,
     /// The classes of the annotations; when empty those of the data set, or else the teacher's.
     pub classes: Classes,
+    /// How the teacher's classes are matched with these.
+    pub class_matching: ClassMatching,
     /// Whether samples in which nothing was found are kept, as examples of nothing.
     pub keep_empty: bool,
     /// Where every answer is written as it comes; a lesson that was broken off goes on from there.
@@ -99,19 +106,20 @@ impl Lesson<'_> {
         fs::create_dir_all(self.folder).context(|| format!("making {}", self.folder.display()))?;
         let known = [self.classes.clone(), samples.classes(), teacher.classes.clone()];
         let classes = known.into_iter().find(|classes| !classes.is_empty()).unwrap_or_default();
-        let mut labels = Labels {
-            lesson: self,
-            of_teacher: teacher.classes.clone(),
-            map: ClassMap::to(classes.clone()),
-            next: 0,
-            kept: Vec::new(),
-        };
+        let map = ClassMap::new(teacher.classes.clone(), classes.clone(), &self.class_matching)?;
+        map.check(None, REMEDY)?;
+        let map = map.with_no_class(IGNORED);
+        let mut labels = Labels { lesson: self, map, next: 0, kept: Vec::new() };
         let what = format!("asking {}", teacher.subject.learner);
         self.progress.begin(&what, Some(samples.len() as u64), Unit::Items);
         let done = self.ask(&mut teacher, samples.as_ref(), &mut labels);
         self.progress.end();
         done?;
-        let Labels { next, kept, .. } = labels;
+        let Labels { next, kept, map, .. } = labels;
+        let matched = map.report();
+        if !matched.is_empty() {
+            self.progress.note(matched.to_string().trim_end());
+        }
         Ok(Taught::new(samples, kept, classes, next))
     }
 
@@ -127,7 +135,7 @@ impl Lesson<'_> {
             labels.add(line)
         })?;
         let (streams, ports, first) = (&mut teacher.streams, teacher.entry.ports, labels.next);
-        answer_samples(streams, ports, samples, first, self.wanted, self.progress, |line| {
+        predict_samples(streams, ports, samples, first, self.wanted, self.progress, |line| {
             journal.write(&line)?;
             labels.add(line)
         })
@@ -137,7 +145,6 @@ impl Lesson<'_> {
 /// The annotations so far.
 struct Labels<'a> {
     lesson: &'a Lesson<'a>,
-    of_teacher: Classes,
     map: ClassMap,
     next: usize,
     kept: Vec<(usize, Value)>,
@@ -148,7 +155,7 @@ impl Labels<'_> {
         self.next = line.at + 1;
         match line.answer {
             Answer::Prediction(answer) => {
-                let label = self.label(*answer);
+                let label = self.label(*answer)?;
                 self.kept.extend(label.map(|label| (line.at, label)));
                 Ok(())
             }
@@ -156,30 +163,32 @@ impl Labels<'_> {
         }
     }
 
-    /// What is left of an answer; `None` when nothing is to be learned from it.
-    fn label(&self, mut answer: Value) -> Option<Value> {
+    /// What is left of a prediction; `None` when nothing is to be learned from it.
+    fn label(&mut self, mut answer: Value) -> Result<Option<Value>> {
         let sure = |confidence: f32| confidence >= self.lesson.threshold;
         match &mut answer {
             Value::BoundingBoxList(list) => list.boxes.retain(|found| sure(found.confidence)),
             Value::BoundingBox3DList(list) => list.boxes.retain(|found| sure(found.confidence)),
             Value::PoseList(list) => list.poses.retain(|pose| sure(pose.confidence)),
             Value::Category(category) => {
-                let known = category.description.clone().map(Name::Label);
-                let name = known.unwrap_or(Name::Index(category.class));
-                category.class = self.map.index(&name, &self.of_teacher)?;
                 category.probabilities.clear();
-                return category.confidence.is_none_or(sure).then_some(answer);
+                if !category.confidence.is_none_or(sure) {
+                    return Ok(None);
+                }
             }
             _ => {}
         }
-        self.map.apply(&mut answer);
+        self.map.apply(&mut answer)?;
+        if matches!(&answer, Value::Category(category) if self.map.is_beyond(category.class)) {
+            return Ok(None);
+        }
         let is_empty = match &answer {
             Value::BoundingBoxList(list) => list.boxes.is_empty(),
             Value::BoundingBox3DList(list) => list.boxes.is_empty(),
             Value::PoseList(list) => list.poses.is_empty(),
             _ => false,
         };
-        (self.lesson.keep_empty || !is_empty).then_some(answer)
+        Ok((self.lesson.keep_empty || !is_empty).then_some(answer))
     }
 }
 

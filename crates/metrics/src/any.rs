@@ -3,12 +3,19 @@
 use std::any::Any;
 
 use opendr_engine::params::{Field, ParamMap, Params};
+use opendr_engine::target::Classes;
 use opendr_engine::{Datum, Error, Result, ValueRef, ValueType};
 
 use crate::{Metric, Report};
 
 /// A [`Metric`] of any type.
 pub trait AnyMetric: Send {
+    /// As [`Metric::name_classes`].
+    fn name_classes(&mut self, classes: &Classes);
+
+    /// Returns a copy that has counted the same.
+    fn boxed_clone(&self) -> Box<dyn AnyMetric>;
+
     /// As [`Metric::update`].
     ///
     /// # Errors
@@ -34,6 +41,14 @@ pub trait AnyMetric: Send {
 struct Typed<M>(M);
 
 impl<M: Metric> AnyMetric for Typed<M> {
+    fn name_classes(&mut self, classes: &Classes) {
+        self.0.name_classes(classes);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn AnyMetric> {
+        Box::new(Self(self.0.clone()))
+    }
+
     fn update(&mut self, at: usize, prediction: ValueRef<'_>, truth: ValueRef<'_>) -> Result<f64> {
         let refused = |what: &str, wanted: ValueType, got: ValueRef<'_>| {
             let (wanted, got) = (wanted.name(), got.value_type().name());
@@ -81,6 +96,8 @@ pub struct MetricEntry {
     pub params: &'static [Field],
     /// As [`Metric::RANKS`].
     pub ranks: bool,
+    /// As [`Metric::SEGMENTS`].
+    pub segments: bool,
     /// What learners answer.
     pub prediction: ValueType,
     /// What they should answer.
@@ -98,6 +115,7 @@ impl MetricEntry {
             errors: M::ERRORS,
             params: M::Params::FIELDS,
             ranks: M::RANKS,
+            segments: M::SEGMENTS,
             prediction: M::Prediction::TYPE,
             truth: M::Truth::TYPE,
             make: |params| Ok(Box::new(Typed(M::new(&M::Params::from_map(params)?)?))),

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use opendr_engine::params::Params;
-use opendr_engine::target::{Category, Name};
+use opendr_engine::target::{Category, Classes, Name};
 use opendr_engine::{Datum, Error, Result, ValueRef};
 
 use crate::average::{mean, ratio};
@@ -38,6 +38,8 @@ pub struct Classification {
     params: ClassificationParams,
     /// What classes are called.
     names: BTreeMap<i64, Arc<str>>,
+    /// The place of each class of the data set in the order of their names; empty where it names none.
+    order: Vec<usize>,
     /// Samples by (truth, answer).
     pairs: BTreeMap<(i64, i64), u64>,
     /// Samples by the rank of their class among the scores.
@@ -52,12 +54,13 @@ impl Classification {
     }
 
     /// Counts for top-k where the true class ranks among the scores of all classes, beginning with class 0. Of equal
-    /// scores the higher class number ranks first, as in scikit-learn's `top_k_accuracy_score`.
+    /// scores the higher class number ranks first, or where classes are named, the later name: as in scikit-learn's
+    /// `top_k_accuracy_score` of numbers and of names.
     ///
     /// # Errors
     /// `InvalidInput` when `truth` has no score, a score is NaN or there are more than 2^20.
     pub fn add_scores(&mut self, truth: i64, scores: &[f32]) -> Result<()> {
-        let rank = rank_of_class(truth, scores)?;
+        let rank = rank_of_class(truth, scores, &self.order)?;
         self.add_rank(rank);
         Ok(())
     }
@@ -194,12 +197,21 @@ impl Metric for Classification {
         Ok(Self { params: params.clone(), ..Self::default() })
     }
 
+    fn name_classes(&mut self, classes: &Classes) {
+        let names: Vec<_> = classes.iter().collect();
+        let mut sorted: Vec<_> = (0..names.len()).collect();
+        sorted.sort_by_key(|class| names[*class]);
+        self.order = vec![0; names.len()];
+        sorted.iter().enumerate().for_each(|(place, class)| self.order[*class] = place);
+        self.names.extend((0..).zip(names).map(|(class, name)| (class, Arc::from(name))));
+    }
+
     fn update(&mut self, _at: usize, prediction: &Category, truth: &Category) -> Result<f64> {
         let correct = prediction.class == truth.class;
         let scores = &prediction.probabilities;
         let rank = match scores.is_empty() {
             true => None,
-            false => Some(rank_of_class(truth.class, scores)?),
+            false => Some(rank_of_class(truth.class, scores, &self.order)?),
         };
         let own = usize::try_from(prediction.class).ok().and_then(|class| scores.get(class));
         if let Some(confidence) = prediction.confidence.or(own.copied()) {
@@ -281,7 +293,7 @@ impl Metric for Classification {
 }
 
 /// How many classes rank before class `truth`; see [`Classification::add_scores`].
-fn rank_of_class(truth: i64, scores: &[f32]) -> Result<usize> {
+fn rank_of_class(truth: i64, scores: &[f32], order: &[usize]) -> Result<usize> {
     let class =
         usize::try_from(truth).ok().filter(|class| *class < scores.len() && scores.len() <= MAX_SCORES);
     let Some(class) = class else {
@@ -294,7 +306,9 @@ fn rank_of_class(truth: i64, scores: &[f32]) -> Result<usize> {
         return Err(Error::invalid_input(format!("score of class {place} is NaN; give numbers")));
     }
     let own = scores[class];
-    let before = |(other, score): &(usize, &f32)| **score > own || (**score == own && *other > class);
+    // Classes that the data set does not name stand behind those that it does.
+    let place = |class: usize| order.get(class).copied().unwrap_or(class);
+    let before = |(other, score): &(usize, &f32)| **score > own || (**score == own && place(*other) > place(class));
     Ok(scores.iter().enumerate().filter(before).count())
 }
 

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use opendr_engine::params::Params;
+use opendr_engine::target::Classes;
 use opendr_engine::{Datum, Result, ValueRef};
 
 use crate::Report;
@@ -11,7 +12,7 @@ use crate::Report;
 ///
 /// Cores that work on plain numbers stand beside it, as methods of the same type or as functions of the same file; this
 /// trait is what `eval` and every surface drive.
-pub trait Metric: Send + Sized + 'static {
+pub trait Metric: Clone + Send + Sized + 'static {
     /// The name, as users write it, e.g. `"coco_detection"`.
     const NAME: &'static str;
     /// In one line, with the reference implementation that it equals.
@@ -31,11 +32,19 @@ pub trait Metric: Send + Sized + 'static {
     /// Whether answers are ranked by their scores, so that a learner's threshold would cut the ranking off.
     const RANKS: bool = false;
 
+    /// Whether labels of maps are those of segments: [`LABEL_DIVISOR`](crate::LABEL_DIVISOR) times the class plus the number of the
+    /// object.
+    const SEGMENTS: bool = false;
+
     /// An accumulator that has counted nothing.
     ///
     /// # Errors
     /// `InvalidParam` for parameters that do not go together.
     fn new(params: &Self::Params) -> Result<Self>;
+
+    /// Names the classes of the data set, before anything is counted. What depends on an order of classes (ties of scores) is
+    /// then settled by their names, so that no numbering changes an outcome.
+    fn name_classes(&mut self, _classes: &Classes) {}
 
     /// Counts the answer to sample number `at` of the data set, and tells how good it is: 0 (worst) to 1.
     ///

@@ -26,7 +26,7 @@ const IOU_UNITS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
 pub const LABEL_DIVISOR: u32 = 1000;
 
 /// The label of a pixel of no class, whatever [`PanopticParams::ignore`] is.
-const VOID_LABEL: u32 = u32::MAX;
+const VOID_LABEL: u32 = Heatmap::NO_CLASS;
 
 /// What [`Panoptic`] is set by.
 #[derive(Debug, Clone, Params)]
@@ -190,6 +190,7 @@ impl Metric for Panoptic {
         ("sq_<kind>", "The same of segments."),
         ("rq_<kind>", "The same of recognition."),
     ];
+    const SEGMENTS: bool = true;
     type Params = PanopticParams;
     type Prediction = Heatmap;
     type Truth = Heatmap;

@@ -1,7 +1,5 @@
 //! Semantic segmentation: intersection over union and accuracies of classes from one confusion matrix.
 
-use std::borrow::Cow;
-
 use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Error, Result};
@@ -164,7 +162,7 @@ pub struct Segmentation {
 
 impl Segmentation {
     /// Counts the pixels of one picture and gives its scores. Pixels whose truth is the ignored label do not count; an
-    /// answer of the ignored label is a miss that burdens no other class.
+    /// answer of the ignored label, or of [`Heatmap::NO_CLASS`], is a miss that burdens no other class.
     ///
     /// # Errors
     /// `InvalidInput` when the maps differ in size or a label is above 1023 and not the ignored one.
@@ -178,10 +176,11 @@ impl Segmentation {
         let ignore = self.params.ignore;
         // A label that is not counted stands for class 0, which there always is.
         let none = ignore.unwrap_or(0);
-        let highest = |labels: &[u32]| {
-            labels.iter().fold(0, |highest, label| highest.max(if *label == none { 0 } else { *label }))
+        let highest = |labels: &[u32], uncounted: u32| {
+            let counted = labels.iter().filter(|label| ![none, uncounted].contains(label));
+            counted.max().copied().unwrap_or(0)
         };
-        let highest = highest(truth).max(highest(predicted)) as usize;
+        let highest = highest(truth, none).max(highest(predicted, Heatmap::NO_CLASS)) as usize;
         if highest >= MAX_CLASSES {
             return Err(Error::invalid_input(format!(
                 "label {highest} is no class number below {MAX_CLASSES} and not the ignored label {ignore:?}"
@@ -215,33 +214,6 @@ impl Segmentation {
     }
 }
 
-/// Labels and their shape; of scores `[classes, ...]` the class of the highest, the first of equal ones.
-fn labels_of(map: &Heatmap) -> Result<(Cow<'_, [u32]>, &[usize])> {
-    let scores = match map.values() {
-        HeatmapValues::Labels(labels) => return Ok((Cow::Borrowed(labels), map.shape())),
-        HeatmapValues::Scores(scores) => scores,
-    };
-    let Some((_, shape)) = map.shape().split_first().filter(|_| !scores.is_empty()) else {
-        return Err(Error::invalid_input(
-            "a map without scores has no labels; give [classes, height, width]",
-        ));
-    };
-    if let Some(place) = scores.iter().position(|score| score.is_nan()) {
-        return Err(Error::invalid_input(format!("score {place} of the map is NaN; give numbers")));
-    }
-    let mut classes = scores.chunks(shape.iter().product());
-    let mut best = classes.next().unwrap_or_default().to_vec();
-    let mut labels = vec![0; best.len()];
-    for (class, scores) in (1..).zip(classes) {
-        for ((label, best), score) in labels.iter_mut().zip(&mut best).zip(scores) {
-            if *score > *best {
-                (*label, *best) = (class, *score);
-            }
-        }
-    }
-    Ok((Cow::Owned(labels), shape))
-}
-
 /// A prediction may be scores `[classes, height, width]`: the highest is the answer.
 impl Metric for Segmentation {
     const NAME: &'static str = "segmentation";
@@ -265,7 +237,7 @@ impl Metric for Segmentation {
         let HeatmapValues::Labels(wanted) = truth.values() else {
             return Err(Error::invalid_input("the truth of segmentation is a map of labels, not of scores"));
         };
-        let (given, shape) = labels_of(prediction)?;
+        let (given, shape) = prediction.class_labels()?;
         if shape != truth.shape() {
             let wanted = truth.shape();
             return Err(Error::invalid_input(format!(

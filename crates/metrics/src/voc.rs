@@ -31,14 +31,14 @@ pub struct VocParams {
 ///
 /// An object whose [`Segment`](opendr_engine::target::Segment) is a crowd is difficult: neither finding nor missing it
 /// counts. Boxes are `[left, top, width, height]`; VOC's corners, which both belong to the box, are one pixel less apart.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Voc {
     params: VocParams,
     names: Classes,
     classes: BTreeMap<ClassKey, Class>,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 struct Class {
     /// Objects that are not difficult.
     truths: u64,

@@ -22,7 +22,7 @@ pub enum Source {
         files: Places,
     },
     /// Files of `models/weights/`, weights of our own: in the data package `opendr-rs-models`, wherever it lies on this machine
-    /// ([`ZooOptions::models`]), else got with the installed pip.
+    /// ([`ZooOptions::models`](crate::ZooOptions::models)), else got with the installed pip.
     ModelsPackage {
         /// Where each file is below the package's weights.
         files: Places,

@@ -11,11 +11,13 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{ActingStream, Progress, Result, Statistics};
+use opendr::{ActingStream, Pipeline, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
-use crate::{dataset_flags, environment_flags, learner_flags, loading, named_value, stdout};
+use crate::{
+    class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, stdout, then_flag,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -23,6 +25,8 @@ Examples:
   opendr eval LEARNER VOC2012/ --limit 500 --json              one object of JSON
   opendr eval LEARNER/VARIANT labelled/ --format yolo --skip-broken
   opendr eval LEARNER coco/ --metric-param use_classes=false
+  opendr eval nanodet MOT17/train/ --then byte_track           a pipeline, by the metric of its last learner
+  opendr eval LEARNER mine/ --classes lorry=truck,tram=train   classes that the two sides call differently
   opendr eval ppo --env CartPole-v1 --episodes 500             a policy, in an environment
 
 An evaluation with --out that was broken off goes on from there when it is called again.";
@@ -34,6 +38,15 @@ pub fn grammar() -> Command {
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
         .args(metric_flags())
+        .args(class_flags::flags())
+        .arg(then_flag::flag())
+        .arg(
+            Arg::new("resamples")
+                .long("resamples")
+                .value_parser(value_parser!(usize))
+                .value_name("N")
+                .help("Bootstrap resamples for the interval of the main number; 0 leaves it out [default: 200]"),
+        )
         .arg(
             Arg::new("limit")
                 .long("limit")
@@ -81,20 +94,30 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         limit: matches.get_one("limit").copied(),
         folder: matches.get_one("out").cloned(),
         skip_broken: dataset_flags::skip_broken(matches),
+        classes: class_flags::pairs("classes", matches)?,
+        by_number: matches.get_flag("by-number"),
+        resamples: matches.get_one("resamples").copied(),
         ..EvalOptions::default()
     };
-    options.metric_params = metric_params(options.metric_for(entry)?, matches)?;
+    let last = then_flag::last(entry, matches)?;
+    options.metric_params = metric_params(options.metric_for(last)?, matches)?;
     let external = dataset_flags::external(matches);
-    let job = options.open(entry, DatasetRef::External(&external))?;
+    let job = options.open(last, DatasetRef::External(&external))?;
     let params = learner_flags::params(entry, matches)?;
-    let subject = Subject {
-        learner: spec.to_owned(),
-        model: matches.get_one::<PathBuf>("model").map(|path| path.display().to_string()),
-        params: params.clone(),
-    };
+    let (learner, all_params) = then_flag::describe(spec, &params, matches)?;
+    let model = matches.get_one::<PathBuf>("model").map(|path| path.display().to_string());
+    let subject = Subject { learner, model, params: all_params };
     let count = loading::how_many(matches, Some(job.dataset.len() as u64))?;
-    let mut learners = loading::side_by_side(count, || loading::load(spec, &params, matches, &bar))?;
-    let outcome = job.run(&mut learners, entry, subject, &bar)?;
+    let load = || loading::load(spec, &params, matches, &bar);
+    let outcome = if then_flag::is_given(matches) {
+        let pipeline = || then_flag::pipeline(entry, load()?.as_ref(), matches, &bar);
+        let mut pipelines = loading::side_by_side(count, pipeline)?;
+        let ports = pipelines.first().map(|pipeline| pipeline.ports().to_vec()).unwrap_or_default();
+        let classes = pipelines.first().map(Pipeline::classes).unwrap_or_default();
+        job.run_pipelines(&mut pipelines, &ports, classes, subject, &bar)?
+    } else {
+        job.run(&mut loading::side_by_side(count, load)?, entry, subject, &bar)?
+    };
     tell(&outcome, matches, &job.problems, &bar)
 }
 

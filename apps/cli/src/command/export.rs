@@ -12,9 +12,9 @@ use crate::{loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr export runs/mine/model --output detector.onnx    the network alone
-  opendr export runs/mine/model --output detector.zip     the container in one file
-  opendr export LEARNER/VARIANT --output detector         ... as a folder, of a pretrained model";
+  opendr export runs/mine/model --out detector.onnx    the network alone
+  opendr export runs/mine/model --out detector.zip     the container in one file
+  opendr export LEARNER/VARIANT --out detector         ... as a folder, of a pretrained model";
 
 pub fn grammar() -> Command {
     Command::new("export")
@@ -26,8 +26,8 @@ pub fn grammar() -> Command {
                 .help("A pretrained model, or a container of your own"),
         )
         .arg(
-            Arg::new("output")
-                .long("output")
+            Arg::new("out")
+                .long("out").alias("output")
                 .short('o')
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
@@ -46,7 +46,7 @@ pub fn grammar() -> Command {
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let source = matches.get_one::<String>("source").map_or("", String::as_str);
-    let mut output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
+    let mut output = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     if matches.get_flag("zip") && output.extension().is_none_or(|extension| extension != "zip") {
         output.as_mut_os_string().push(".zip");
     }

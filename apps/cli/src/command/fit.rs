@@ -10,18 +10,18 @@ use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
-use crate::{dataset_flags, environment_flags, learner_flags, loading, stdout};
+use crate::{class_flags, dataset_flags, environment_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
   opendr fit LEARNER coco/ --val-split val2017                 train, and measure after each epoch
-  opendr fit LEARNER train/ --val val/ --output runs/mine      --epochs 50 and all others: see LEARNER --help
-  opendr fit LEARNER train/ --output runs/mine --resume        go on after Ctrl-C or a power cut
+  opendr fit LEARNER train/ --val val/ --out runs/mine      --epochs 50 and all others: see LEARNER --help
+  opendr fit LEARNER train/ --out runs/mine --resume        go on after Ctrl-C or a power cut
   opendr fit LEARNER/VARIANT labelled/                         from a pretrained model
   opendr fit LEARNER photos/ --teacher nanodet                 learn from the answers of another learner
   opendr fit ppo --env CartPole-v1                             a policy learns by acting; see ppo --help
 
-Without --output everything goes to runs/LEARNER-DATE; --resume without it takes the last of these. The trained model lies in
+Without --out everything goes to runs/LEARNER-DATE; --resume without it takes the last of these. The trained model lies in
 the output folder under model/: opendr infer LEARNER --model OUTPUT/model street.jpg";
 
 /// The folder of curves in the output folder.
@@ -74,8 +74,8 @@ fn val_flags() -> [Arg; 3] {
 
 fn output_flags() -> [Arg; 4] {
     [
-        Arg::new("output")
-            .long("output")
+        Arg::new("out")
+            .long("out").alias("output")
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
@@ -93,7 +93,7 @@ fn output_flags() -> [Arg; 4] {
     ]
 }
 
-fn teacher_flags() -> [Arg; 4] {
+fn teacher_flags() -> [Arg; 6] {
     [
         Arg::new("teacher")
             .long("teacher")
@@ -111,6 +111,17 @@ fn teacher_flags() -> [Arg; 4] {
             .value_name("NAME,...")
             .requires("teacher")
             .help("Learn these classes only [default: those of DATASET, or the teacher's]"),
+        Arg::new("teacher-map")
+            .long("teacher-map")
+            .value_delimiter(',')
+            .value_name("TEACHER=CLASS,...")
+            .requires("teacher")
+            .help("Which class of the teacher is which of these, where their names do not match"),
+        Arg::new("teacher-by-number")
+            .long("teacher-by-number")
+            .action(ArgAction::SetTrue)
+            .requires("teacher")
+            .help("Take the numbers of the teacher's classes as they are, whatever their names are"),
         Arg::new("keep-empty")
             .long("keep-empty")
             .action(ArgAction::SetTrue)
@@ -157,11 +168,13 @@ fn options(name: &str, params: ParamMap, matches: &ArgMatches) -> Result<FitOpti
         split: dataset_flags::split(matches),
         val_split: word(matches, "val-split"),
         limit: matches.get_one("limit").copied(),
-        output: matches.get_one("output").cloned(),
+        output: matches.get_one("out").cloned(),
         logging_path: matches.get_one("logging-path").cloned(),
         resume: matches.get_flag("resume"),
         teacher_threshold: matches.get_one("teacher-threshold").copied(),
         teacher_classes: matches.get_many("teacher-classes").into_iter().flatten().cloned().collect(),
+        teacher_map: class_flags::pairs("teacher-map", matches)?,
+        teacher_by_number: matches.get_flag("teacher-by-number"),
         keep_empty: matches.get_flag("keep-empty"),
         skip_broken: dataset_flags::skip_broken(matches),
         ..FitOptions::default()
@@ -194,7 +207,7 @@ fn tell(fitted: &Fitted, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
     }
     if !fitted.complete {
         let output = fitted.output.display();
-        bar.note(&format!("go on with the same command and --output {output} --resume"));
+        bar.note(&format!("go on with the same command and --out {output} --resume"));
     }
     Ok(if fitted.skipped == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }

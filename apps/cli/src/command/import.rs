@@ -12,11 +12,11 @@ use crate::{learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr import whisper model.safetensors tokenizer.json --output small     as transformers saved it
-  opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --output small   as Optimum did
-  opendr import whisper model.bin tokenizer.json --output small             as CTranslate2 did
-  opendr import LEARNER detector.tflite --classes names.txt --output mine
-  opendr import LEARNER net.param net.bin --output mine                     of ncnn
+  opendr import whisper model.safetensors tokenizer.json --out small     as transformers saved it
+  opendr import whisper encoder_model.onnx decoder_model.onnx tokenizer.json --out small   as Optimum did
+  opendr import whisper model.bin tokenizer.json --out small             as CTranslate2 did
+  opendr import LEARNER detector.tflite --classes names.txt --out mine
+  opendr import LEARNER net.param net.bin --out mine                     of ncnn
   opendr infer whisper talk.wav --model small                               then run it";
 
 pub fn grammar() -> Command {
@@ -32,8 +32,8 @@ pub fn grammar() -> Command {
                 .help("The model first, then what belongs to it: weights, a tokeniser"),
         )
         .arg(
-            Arg::new("output")
-                .long("output")
+            Arg::new("out")
+                .long("out").alias("output")
                 .short('o')
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
@@ -70,7 +70,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let entry = loading::entry(name)?;
     let params = learner_flags::params(entry, matches)?;
     let files: Vec<&PathBuf> = matches.get_many("files").into_iter().flatten().collect();
-    let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
+    let output = matches.get_one::<PathBuf>("out").cloned().unwrap_or_default();
     let options = ImportOptions {
         image_size: matches.get_one::<(usize, usize)>("image-size").copied(),
         outputs: matches.get_many("outputs").into_iter().flatten().cloned().collect(),

@@ -15,10 +15,10 @@ use crate::{dataset_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
 Examples:
-  opendr optimize nanodet --fp16 --output half                          half the size
-  opendr optimize nanodet --int8 --calibration photos/ --output small   a quarter of the size, and faster
+  opendr optimize nanodet --fp16 --out half                          half the size
+  opendr optimize nanodet --int8 --calibration photos/ --out small   a quarter of the size, and faster
   opendr optimize runs/mine/model --int8 --calibration coco/ --calibration-split train2017 \\
-    --validation coco/ --validation-split val2017 --output small        ... with the accuracy before and after
+    --validation coco/ --validation-split val2017 --out small        ... with the accuracy before and after
 
 What is written is a model as any other: opendr infer LEARNER --model small street.jpg";
 
@@ -51,8 +51,8 @@ pub fn grammar() -> Command {
         ))
         .args(data_flags("validation", "Measure on this data set before and after"))
         .arg(
-            Arg::new("output")
-                .long("output")
+            Arg::new("out")
+                .long("out").alias("output")
                 .short('o')
                 .required(true)
                 .value_parser(value_parser!(PathBuf))
@@ -100,7 +100,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let calibration = seen.as_ref().map(|seen| opening(false).to_train(seen.into(), part("calibration")));
     let validation = measured.as_ref().map(|data| opening(true).to_measure(data.into(), part("validation")));
     let (calibration, validation) = (calibration.transpose()?, validation.transpose()?);
-    let output = matches.get_one::<PathBuf>("output").map_or(Path::new(""), PathBuf::as_path);
+    let output = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);
     let report = OptimizeJob {
         entry,
         model: &path,

@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::dataset::ExternalDataset;
 use opendr::datasets::{self, OpenOptions, Problems};
-use opendr::evaluation::{self, Answers, Evaluation, Lines, Subject};
+use opendr::evaluation::{self, Answers, ClassMatching, Evaluation, Lines, Subject};
 use opendr::metrics::{self, MetricEntry};
 use opendr::{Error, Result, inference};
 
 use crate::command::eval;
 use crate::exit::Outcome;
 use crate::progress_bar::Bar;
-use crate::{dataset_flags, loading};
+use crate::{class_flags, dataset_flags, loading};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -40,6 +40,7 @@ pub fn grammar() -> Command {
                 .help("The format of the answers; by default the data set's"),
         )
         .args(eval::metric_flags())
+        .args(class_flags::flags())
         .args([loading::threads(), loading::quiet()])
         .after_help(EXAMPLES)
 }
@@ -74,6 +75,10 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let evaluation = Evaluation {
         dataset: external.path().display().to_string(),
         metric_params: eval::metric_params(metric, matches)?,
+        classes: ClassMatching {
+            pairs: class_flags::pairs("classes", matches)?,
+            by_number: matches.get_flag("by-number"),
+        },
         folder: matches.get_one::<PathBuf>("out").map(PathBuf::as_path),
         progress: &bar,
         ..Evaluation::new(subject, metric, &problems)

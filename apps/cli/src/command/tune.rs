@@ -19,7 +19,7 @@ const EXAMPLES: &str = "\
 Examples:
   opendr tune ppo --env CartPole-v1 --search learning_rate=1e-5..1e-2 --search n_steps=32,64,128,256 --length 50000
   opendr tune image_classifier digits/ --val-split test --search lr --search width=8,16,32 --length 500
-  opendr tune ppo --env CartPole-v1 --search gamma --output runs/tuned --trials 100     go on in the same folder
+  opendr tune ppo --env CartPole-v1 --search gamma --out runs/tuned --trials 100     go on in the same folder
   opendr tune byte_track MOT17/ --split train --search new_threshold --search track_buffer=10..60    nothing is trained
   opendr tune nanodet coco/ --split val2017 --answers --search iou_threshold
 
@@ -82,8 +82,8 @@ fn search_flags() -> [Arg; 10] {
             .value_parser(value_parser!(f64))
             .value_name("SECONDS")
             .help("Begin nothing after this time"),
-        Arg::new("output")
-            .long("output")
+        Arg::new("out")
+            .long("out").alias("output")
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")
@@ -97,7 +97,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let entry = loading::entry(spec)?;
     let bar = Bar::new(matches.get_flag("quiet"));
     let options = options(entry, matches)?;
-    let output = match matches.get_one::<PathBuf>("output") {
+    let output = match matches.get_one::<PathBuf>("out") {
         Some(output) => output.clone(),
         None => FitOptions::default().output_folder(&format!("tune-{}", entry.spec.name))?,
     };

@@ -60,8 +60,10 @@ fn a_bare_network_becomes_a_container_that_its_learner_takes() {
     let place = Place::new();
     place.write("1.csv", series());
     place.write("names.txt", "healthy\n\n ill \n");
-    place.run(["export", LEARNER, "--output", "net.onnx"]).ends_with(0);
-    let import = ["import", LEARNER, "net.onnx", "--output", "mine", "--recurrent-unit", "64"];
+    place.run(["export", LEARNER, "--out", "net.onnx"]).ends_with(0);
+    // The word of older releases.
+    place.run(["export", LEARNER, "--output", "old.onnx"]).ends_with(0);
+    let import = ["import", LEARNER, "net.onnx", "--out", "mine", "--recurrent-unit", "64"];
     place.run(import.into_iter().chain(["--classes", "names.txt"])).ends_with(0);
     let answer = |more: &[&str]| {
         let line = ["infer", LEARNER, "1.csv", "--json"].into_iter().chain(more.iter().copied());
@@ -71,12 +73,12 @@ fn a_bare_network_becomes_a_container_that_its_learner_takes() {
     assert_eq!(own["confidence"], wanted["confidence"]);
     assert!(["healthy", "ill"].iter().any(|name| own.to_string().contains(name)), "{own}");
     // What another learner does not take replaces nothing.
-    let refused = place.run(["import", "matchboxnet", "net.onnx", "--output", "mine"]);
+    let refused = place.run(["import", "matchboxnet", "net.onnx", "--out", "mine"]);
     assert!(refused.stderr.contains("matchboxnet does not take this model"), "{}", refused.stderr);
     refused.ends_with(17);
     assert_eq!(answer(&["--model", "mine"]), own);
     place.write("notes.txt", "no model");
-    let unknown = place.run(["import", LEARNER, "notes.txt", "--output", "other"]).ends_with(18);
+    let unknown = place.run(["import", LEARNER, "notes.txt", "--out", "other"]).ends_with(18);
     assert!(unknown.stderr.contains("no known format"), "{}", unknown.stderr);
     assert!(!place.path("other").exists());
 }

@@ -35,7 +35,7 @@ fn report(done: Done) -> Value {
 #[test]
 fn a_learner_is_trained_and_measured() {
     let Some(place) = place() else { return };
-    let done = fit(&place, &["--epochs", "3", "--lr=2", "--output", "run", "--val-split", "val"]);
+    let done = fit(&place, &["--epochs", "3", "--lr=2", "--out", "run", "--val-split", "val"]);
     assert!(done.stderr.contains("training on the part \"train\" of data"), "{}", done.stderr);
     let fitted = report(done);
     assert_eq!(fitted["curves"], json!({"loss": [3.0, 3.0, 3.0], "val_boxes": [2.5]}));
@@ -53,10 +53,10 @@ fn a_learner_is_trained_and_measured() {
 #[test]
 fn a_training_is_resumed_and_never_written_over() {
     let Some(place) = place() else { return };
-    report(fit(&place, &["--output", "run"]));
-    let refused = fit(&place, &["--output", "run"]).ends_with(11);
+    report(fit(&place, &["--out", "run"]));
+    let refused = fit(&place, &["--out", "run"]).ends_with(11);
     assert!(refused.stderr.contains("run is not empty: resume"), "{}", refused.stderr);
-    let resumed = report(fit(&place, &["--output", "run", "--resume", "--epochs", "2"]));
+    let resumed = report(fit(&place, &["--out", "run", "--resume", "--epochs", "2"]));
     assert_eq!(resumed["curves"]["loss"], json!([1.5, 1.5]));
     let nothing = fit(&place, &["--resume"]).ends_with(13);
     assert!(nothing.stderr.contains("there is no run of counter in runs to resume"), "{}", nothing.stderr);
@@ -68,9 +68,9 @@ fn a_training_is_resumed_and_never_written_over() {
 #[test]
 fn a_model_is_exported() {
     let Some(place) = place() else { return };
-    report(fit(&place, &["--output", "run"]));
+    report(fit(&place, &["--out", "run"]));
     let export = |source: &str, output: &str, flags: &[&str]| {
-        place.run(["export", source, "--output", output].iter().chain(flags))
+        place.run(["export", source, "--out", output].iter().chain(flags))
     };
     assert_eq!(export("run/model", "mine", &["--zip"]).ends_with(0).stdout, "mine.zip\n");
     export("mine.zip", "folder", &[]).ends_with(0);
@@ -83,14 +83,14 @@ fn a_model_is_exported() {
     assert!(export("run/model", "a.onnx", &[]).ends_with(13).stderr.contains("names no ONNX file"));
     assert!(export("nonsense", "a.onnx", &[]).ends_with(13).stderr.contains("no learner \"nonsense\""));
     assert!(export("run/model", "data", &[]).ends_with(11).stderr.contains("is no model"));
-    let from = report(fit(&place, &["--output", "again", "--model", "folder"]));
+    let from = report(fit(&place, &["--out", "again", "--model", "folder"]));
     assert_eq!(from["complete"], true);
 }
 
 #[test]
 fn the_bare_network_is_exported() {
     let Some((place, _)) = Place::with_data() else { return };
-    place.run(["export", "yunet/320", "--output", "yunet.onnx", "-q"]).ends_with(0);
+    place.run(["export", "yunet/320", "--out", "yunet.onnx", "-q"]).ends_with(0);
     assert!(fs::metadata(place.path("yunet.onnx")).unwrap().len() > 100_000);
 }
 
@@ -98,7 +98,7 @@ fn the_bare_network_is_exported() {
 fn a_model_is_made_smaller() {
     let Some((place, data)) = Place::with_data() else { return };
     let done =
-        place.run(["optimize", "yunet/320", "--fp16", "--output", "half", "--json", "-q"]).ends_with(0);
+        place.run(["optimize", "yunet/320", "--fp16", "--out", "half", "--json", "-q"]).ends_with(0);
     let report: Value = serde_json::from_str(&done.stdout).unwrap();
     let [before, after] = [0, 1].map(|at| report["bytes"][at].as_f64().unwrap());
     assert!(report["precision"] == "fp16" && after < 0.6 * before, "{report}");
@@ -110,7 +110,7 @@ fn a_model_is_made_smaller() {
     };
     let before = faces(&[]);
     assert!(before >= 2 && faces(&["--model", "half"]) == before, "{before}");
-    let refused = place.run(["optimize", "yunet/320", "--output", "small"]).ends_with(2);
+    let refused = place.run(["optimize", "yunet/320", "--out", "small"]).ends_with(2);
     assert!(refused.stderr.contains("--int8"), "{}", refused.stderr);
 }
 

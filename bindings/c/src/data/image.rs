@@ -53,14 +53,15 @@ use opendr_layout::*;
 use opendr_pixel_format::*;
 use opendr_samples::*;
 
-const FORMATS: [(opendr_pixel_format, PixelFormat); 5] = [
+pub(crate) const FORMATS: [(opendr_pixel_format, PixelFormat); 5] = [
     (OPENDR_GREY, PixelFormat::Grey),
     (OPENDR_RGB, PixelFormat::Rgb),
     (OPENDR_BGR, PixelFormat::Bgr),
     (OPENDR_RGBA, PixelFormat::Rgba),
     (OPENDR_BGRA, PixelFormat::Bgra),
 ];
-const LAYOUTS: [(opendr_layout, Layout); 2] = [(OPENDR_HWC, Layout::Hwc), (OPENDR_CHW, Layout::Chw)];
+pub(crate) const LAYOUTS: [(opendr_layout, Layout); 2] =
+    [(OPENDR_HWC, Layout::Hwc), (OPENDR_CHW, Layout::Chw)];
 
 /// Pixels in memory.
 #[repr(C)]
@@ -225,7 +226,11 @@ impl opendr_pixels {
     }
 }
 
-fn from_number<C, R: Copy>(
+/// What stands for a number of C's in a table.
+///
+/// # Errors
+/// `InvalidInput` when nothing does.
+pub(crate) fn from_number<C, R: Copy>(
     table: &[(C, R)],
     number: i32,
     number_of: impl Fn(&C) -> i32,

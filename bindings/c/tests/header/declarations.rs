@@ -18,7 +18,7 @@ const RULES: &str = "\
  *   - What a function points to (texts, numbers, pixels) belongs to the handle it was asked of, and lives as long as it.
  *   - What is handed in is copied, or only read during the call; it stays the caller's.
  *   - Texts are UTF-8. Paths are bytes as the system has them.
- *   - Learners and sources may be used by several threads at once; values as long as nobody changes or frees them.
+ *   - Learners, networks and sources may be used by several threads at once; values as long as nobody changes or frees them.
  *   - NULL, handles of another type, and lengths that cannot be are refused. That a pointer leads to as much memory as its
  *     length says, and that a handle is not used after it was freed, is the caller's promise.
  */

@@ -4,3 +4,20 @@
 
 mod corpus;
 mod misuse;
+mod network;
+
+use std::ffi::CStr;
+
+use opendr_c::{opendr_last_error, opendr_status};
+
+fn last_error() -> String {
+    // SAFETY: valid until the next failing call of this thread.
+    unsafe { CStr::from_ptr(opendr_last_error()) }.to_str().unwrap().to_owned()
+}
+
+/// A call that must fail so, with these words in its message.
+#[track_caller]
+fn refused(status: opendr_status, wanted: opendr_status, words: &str) {
+    assert_eq!(status, wanted, "{}", last_error());
+    assert!(last_error().contains(words), "{:?} lacks {words:?}", last_error());
+}

@@ -6,17 +6,7 @@ use std::ptr::{NonNull, null, null_mut};
 use opendr_c::opendr_status::*;
 use opendr_c::*;
 
-fn last_error() -> String {
-    // SAFETY: valid until the next failing call of this thread.
-    unsafe { CStr::from_ptr(opendr_last_error()) }.to_str().unwrap().to_owned()
-}
-
-/// A call that must fail so, with these words in its message.
-#[track_caller]
-fn refused(status: opendr_status, wanted: opendr_status, words: &str) {
-    assert_eq!(status, wanted, "{}", last_error());
-    assert!(last_error().contains(words), "{:?} lacks {words:?}", last_error());
-}
+use crate::{last_error, refused};
 
 fn image() -> *mut opendr_image {
     let bytes = [1u8, 2, 3, 4, 5, 6];
@@ -26,7 +16,7 @@ fn image() -> *mut opendr_image {
     image
 }
 
-fn pixels(bytes: &[u8], width: usize, height: usize) -> opendr_pixels {
+pub fn pixels(bytes: &[u8], width: usize, height: usize) -> opendr_pixels {
     let (samples, format) = (opendr_samples::OPENDR_U8 as i32, opendr_pixel_format::OPENDR_RGB as i32);
     let (data, size) = (bytes.as_ptr().cast(), bytes.len());
     opendr_pixels { data, size, width, height, row_stride: 0, samples, format, layout: 0 }
@@ -76,6 +66,15 @@ fn null_is_refused_everywhere() {
             opendr_save(null(), null()),
             opendr_learner_free(null_mut()),
             opendr_learners(null_mut()),
+            opendr_network_open(null(), null(), null(), null_mut()),
+            opendr_network_of(null(), null(), null_mut()),
+            opendr_network_run(null(), null(), 0, null_mut()),
+            opendr_network_input(null(), 0, null_mut()),
+            opendr_network_output(null(), 0, null_mut()),
+            opendr_network_manifest(null(), null_mut()),
+            opendr_network_free(null_mut()),
+            opendr_tensors_get(null(), 0, null_mut()),
+            opendr_tensors_free(null_mut()),
         ];
         refusals.extend([
             opendr_image_open(null(), null_mut()),
@@ -83,6 +82,7 @@ fn null_is_refused_everywhere() {
             opendr_image_create(null(), null_mut()),
             opendr_image_read(null(), null_mut()),
             opendr_image_save(null(), null()),
+            opendr_image_preprocess(null(), null(), null_mut(), 0),
             opendr_array_create(null(), null(), 0, null(), 0, null_mut()),
             opendr_array_read(null(), null_mut(), null_mut(), null_mut(), 0),
             opendr_audio_create(null(), 0, 0, 0, null_mut()),
@@ -144,6 +144,9 @@ fn null_is_refused_everywhere() {
         ];
         assert!(texts.iter().all(|text| text.is_null()));
         assert_eq!(opendr_bounding_box_list_count(null()), 0);
+        assert_eq!(opendr_network_input_count(null()), 0);
+        assert_eq!(opendr_network_output_count(null()), 0);
+        assert_eq!(opendr_tensors_count(null()), 0);
         assert_eq!(*opendr_json_text(null(), null(), null(), 0), 0);
         assert_eq!(opendr_json_number(null(), null(), null(), 0), 0.0);
     }
@@ -159,6 +162,12 @@ fn handles_of_another_kind_are_refused() {
         let mut variable = image.cast::<opendr_source>();
         refused(opendr_source_free(&mut variable), OPENDR_INVALID_INPUT, "opendr_source");
         assert!(!variable.is_null());
+        let mut variable = image.cast::<opendr_network>();
+        refused(opendr_network_free(&mut variable), OPENDR_INVALID_INPUT, "opendr_network");
+        assert_eq!(opendr_network_input_count(variable), 0);
+        let mut variable = image.cast::<opendr_tensors>();
+        refused(opendr_tensors_free(&mut variable), OPENDR_INVALID_INPUT, "opendr_tensors");
+        assert_eq!(opendr_tensors_count(variable), 0);
         let boxes = image.cast::<opendr_bounding_box_list>();
         assert_eq!(opendr_bounding_box_list_count(boxes), 0);
         assert!(last_error().contains("takes a BoundingBoxList, not a Image"), "{}", last_error());

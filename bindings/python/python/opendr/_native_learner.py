@@ -361,6 +361,9 @@ class NativeLearner(NativeBase, Learner):
         limit: Optional[int] = None,
         folder: Optional[PathLike] = None,
         skip_broken: bool = False,
+        classes: Optional[Mapping[str, str]] = None,
+        by_number: bool = False,
+        resamples: int = 200,
         verbose: bool = False,
         **metric_params: Any,
     ) -> dict[str, Any]:
@@ -375,6 +378,9 @@ class NativeLearner(NativeBase, Learner):
             folder: Folder for the answers, ``report.json``, figures and a sheet of the worst samples; an evaluation that
                 was broken off goes on from there.
             skip_broken: Whether what is broken is left out and listed, instead of ending it.
+            classes: Classes of the data set by classes of the learner, where their names do not match.
+            by_number: Whether numbers of classes are compared, whatever their names are.
+            resamples: Bootstrap resamples for the interval of the main number; 0 leaves it out.
             verbose: Whether to show progress and print the outcome.
             metric_params: Parameters of the metric.
 
@@ -386,9 +392,18 @@ class NativeLearner(NativeBase, Learner):
             FileNotFoundError: Nothing is loaded, or the data set is not there.
             ValueError: Data set, learner and metric do not fit together, or a sample is broken.
         """
-        place = None if folder is None else os.fspath(folder)
-        options = (split, limit, place, skip_broken, verbose)
-        report, text = self._handle.eval(dataset, metric, metric_params, *options)
+        options = {
+            "metric": metric,
+            "metric_params": metric_params,
+            "split": split,
+            "limit": limit,
+            "folder": None if folder is None else os.fspath(folder),
+            "skip_broken": skip_broken,
+            "classes": dict(classes or {}),
+            "by_number": by_number,
+            "resamples": resamples,
+        }
+        report, text = self._handle.eval(dataset, json.dumps(options), verbose)
         if verbose:
             print(text, end="")
         outcome = json.loads(report)
@@ -410,6 +425,8 @@ class NativeLearner(NativeBase, Learner):
         teacher: Union[None, str, Learner] = None,
         teacher_threshold: Optional[float] = None,
         teacher_classes: Sequence[str] = (),
+        teacher_map: Optional[Mapping[str, str]] = None,
+        teacher_by_number: bool = False,
         keep_empty: bool = False,
         skip_broken: bool = False,
         **fit_params: Any,
@@ -435,6 +452,8 @@ class NativeLearner(NativeBase, Learner):
                 answers are learned from; ``dataset`` may then be without annotations, or a folder of pictures.
             teacher_threshold: The teacher's answers below this score are dropped; 0.5 by default.
             teacher_classes: What is learned from the teacher; by default the classes of the data set, or the teacher's.
+            teacher_map: Classes to learn by classes of the teacher, where their names do not match.
+            teacher_by_number: Whether numbers of the teacher's classes are taken as they are, whatever their names are.
             keep_empty: Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
             skip_broken: Whether what is broken is left out and listed, instead of ending it.
             fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
@@ -460,6 +479,8 @@ class NativeLearner(NativeBase, Learner):
             "teacher": teacher if isinstance(teacher, str) else None,
             "teacher_threshold": teacher_threshold,
             "teacher_classes": list(teacher_classes),
+            "teacher_map": dict(teacher_map or {}),
+            "teacher_by_number": teacher_by_number,
             "keep_empty": keep_empty,
             "skip_broken": skip_broken,
         }

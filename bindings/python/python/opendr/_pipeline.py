@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import queue
 import threading
-from collections.abc import Iterable, Iterator
-from typing import Any, Union
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, Optional, Union
 
 from opendr._registered import learner as learner_by_name
 from opendr.engine._ports import outputs_of, ports_of
+from opendr.engine.datasets import Dataset
 from opendr.engine.learners import BaseLearner
 
 #: Items that wait before a learner; more would only hold memory and age.
@@ -78,6 +80,59 @@ class Pipeline:
             stop.set()
             for thread in threads:
                 thread.join()
+
+    def eval(
+        self,
+        dataset: Dataset,
+        *,
+        metric: Optional[str] = None,
+        split: Optional[str] = None,
+        limit: Optional[int] = None,
+        folder: Union[None, str, os.PathLike[str]] = None,
+        skip_broken: bool = False,
+        classes: Optional[Mapping[str, str]] = None,
+        by_number: bool = False,
+        resamples: int = 200,
+        verbose: bool = False,
+        **metric_params: Any,
+    ) -> dict[str, Any]:
+        """Measures the pipeline on a data set, by default by the metric of the last learner's task. Arguments and result are those of
+        ``eval`` of a learner.
+
+        Raises:
+            FileNotFoundError: The data set is not there.
+            ValueError: Data set, pipeline and metric do not fit together, or a sample is broken.
+        """
+        from opendr import _opendr
+        from opendr.metrics import evaluate_function
+
+        last = self._stages[-1].learner
+        options = {
+            "metric": metric or _opendr.metric_of(_task(last)),
+            "metric_params": metric_params,
+            "split": split,
+            "limit": limit,
+            "folder": None if folder is None else os.fspath(folder),
+            "skip_broken": skip_broken,
+            "classes": dict(classes or {}),
+            "by_number": by_number,
+            "resamples": resamples,
+        }
+        return evaluate_function(
+            self.infer,
+            dataset,
+            options,
+            reset=self.reset,
+            types=self._types(),
+            classes=getattr(last, "classes", ()),
+            name=" + ".join(_name(stage.learner) for stage in self._stages),
+            verbose=verbose,
+        )
+
+    def _types(self) -> list[str]:
+        """The types of data that the pipeline takes, in the order of ``inputs``."""
+        types = {port["name"]: port["type"] for stage in self._stages for port in stage.ports if port["name"] in stage.given}
+        return [types[name] for name in self.inputs]
 
     def reset(self) -> None:
         """Forgets what all learners have seen."""
@@ -152,6 +207,16 @@ class _Stage:
         answer = self.learner.infer(**inputs)
         answers = answer if isinstance(answer, tuple) else (answer,)
         return {output["name"]: one for output, one in zip(self.outputs, answers)}
+
+
+def _name(learner: BaseLearner) -> str:
+    entry = getattr(learner, "_entry", None)
+    return str(entry["name"] if entry else getattr(learner, "name", type(learner).__name__))
+
+
+def _task(learner: BaseLearner) -> str:
+    entry = getattr(learner, "_entry", None)
+    return str(entry["task"] if entry else getattr(learner, "task", ""))
 
 
 def _serve(stage: _Stage, source: queue.Queue[Any], to: queue.Queue[Any], stop: threading.Event) -> None:

@@ -13,13 +13,14 @@ Numbers equal those of the reference tools that docs/metrics.md names.
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Callable, Optional
 
 from opendr import _opendr
 from opendr.engine.target import BaseTarget
 
 if TYPE_CHECKING:
-    from opendr.engine.datasets import DatasetIterator
+    from opendr.engine.datasets import Dataset, DatasetIterator
 
 __all__ = ["Metric", "evaluate", "names", "tables"]
 
@@ -88,17 +89,49 @@ class Metric:
 def evaluate(infer: Callable[..., Any], dataset: DatasetIterator, metric: str, **params: Any) -> dict[str, Any]:
     """Measures any function on a data set.
 
+    Classes are matched by name where predictions and data set name them (``classes`` of the data set and of lists of targets).
+
     Args:
-        infer: From the data of a sample to a target.
+        infer: From the data of a sample to a target, or to a ``dict`` or tuple of targets with one of the metric's type.
         dataset: Pairs of datum and target; a tuple of data for a function of several.
         metric: One of ``names()``.
         params: Parameters of the metric.
 
     Returns:
         As :meth:`Metric.result`.
+
+    Raises:
+        ValueError: Predictions, data set and metric do not fit together.
     """
-    counted = Metric(metric, **params)
-    for at in range(len(dataset)):
-        data, truth = dataset[at]
-        counted.update(infer(*data) if isinstance(data, tuple) else infer(data), truth, at=at)
-    return counted.result()
+    return evaluate_function(infer, dataset, {"metric": metric, "metric_params": params})
+
+
+def evaluate_function(
+    infer: Callable[..., Any],
+    dataset: Dataset,
+    options: dict[str, Any],
+    reset: Optional[Callable[[], Any]] = None,
+    types: Sequence[str] = (),
+    classes: Sequence[str] = (),
+    name: str = "",
+    verbose: bool = False,
+) -> dict[str, Any]:
+    """As :func:`evaluate`, with the options of an evaluation by name.
+
+    Args:
+        infer: From the data of a sample to targets.
+        dataset: What to measure on.
+        options: ``metric``, ``metric_params``, ``split``, ``limit``, ``folder``, ``skip_broken``, ``classes``, ``by_number``,
+            ``resamples``.
+        reset: What makes ``infer`` forget, before a sequence.
+        types: The types of data that ``infer`` takes, by default those of the first sample.
+        classes: What class numbers of predictions mean.
+        name: What the report calls what is measured.
+        verbose: Whether to show progress and print the outcome.
+    """
+    given = (list(types), list(classes), name, json.dumps(options), verbose)
+    report, text = _opendr.evaluate(infer, reset, dataset, *given)
+    if verbose:
+        print(text, end="")
+    outcome = json.loads(report)
+    return {**outcome.get("scalars", {}), "report": outcome}

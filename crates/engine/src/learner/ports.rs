@@ -63,7 +63,7 @@ impl<'a> Ports<'a> {
     /// The data of a sample as the ports of a learner: each port takes the first datum of its type that none before it took, and
     /// is left out where there is none; what is given once a stream is not in samples. Where no type fits, they are in
     /// the order of the ports, so that the learner says what it wants.
-    pub fn of_sample(table: &'static [Port], data: &'a [Value]) -> Self {
+    pub fn of_sample(table: &'a [Port], data: &'a [Value]) -> Self {
         let mut is_taken: SmallVec<[bool; 4]> = data.iter().map(|_| false).collect();
         let mut ports = Self::default();
         for port in table.iter().filter(|port| !port.init) {

@@ -1,5 +1,6 @@
 //! A class or a score for every place: segmentation, heat maps.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -63,6 +64,9 @@ struct HeatmapJson {
 }
 
 impl Heatmap {
+    /// Label of a pixel of a prediction whose class the data set does not have.
+    pub const NO_CLASS: u32 = u32::MAX;
+
     /// A map over `values`, last axis fastest.
     ///
     /// # Errors
@@ -103,6 +107,37 @@ impl Heatmap {
     /// Size of each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape
+    }
+
+    /// Returns the class of every place and the shape of that map; of scores `[classes, ...]` the class of the highest, the first of
+    /// equal ones.
+    ///
+    /// # Errors
+    /// `InvalidInput` for scores without an axis of classes, and for NaN.
+    pub fn class_labels(&self) -> Result<(Cow<'_, [u32]>, &[usize])> {
+        let scores = match &self.values {
+            HeatmapValues::Labels(labels) => return Ok((Cow::Borrowed(labels), &self.shape)),
+            HeatmapValues::Scores(scores) => scores,
+        };
+        let Some((_, shape)) = self.shape.split_first().filter(|_| !scores.is_empty()) else {
+            return Err(Error::invalid_input(
+                "a map without scores has no labels; give [classes, height, width]",
+            ));
+        };
+        if let Some(place) = scores.iter().position(|score| score.is_nan()) {
+            return Err(Error::invalid_input(format!("score {place} of the map is NaN; give numbers")));
+        }
+        let mut classes = scores.chunks(shape.iter().product());
+        let mut best = classes.next().unwrap_or_default().to_vec();
+        let mut labels = vec![0; best.len()];
+        for (class, scores) in (1..).zip(classes) {
+            for ((label, best), score) in labels.iter_mut().zip(&mut best).zip(scores) {
+                if *score > *best {
+                    (*label, *best) = (class, *score);
+                }
+            }
+        }
+        Ok((Cow::Owned(labels), shape))
     }
 
     /// Makes it a map of class numbers of `shape` and gives its elements to be written: its memory is used again

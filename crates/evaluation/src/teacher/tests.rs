@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use opendr_engine::data::Vector;
 use opendr_engine::dataset::{Dataset, Sample};
 use opendr_engine::learner::{Output, Outputs, Port, Ports, Spec};
-use opendr_engine::target::{BoundingBox, BoundingBoxList};
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Name};
 use opendr_engine::{Silent, Task};
 
 use super::*;
@@ -98,6 +98,7 @@ impl School {
             wanted: ValueType::BoundingBoxList,
             threshold: 0.5,
             classes: Classes::default(),
+            class_matching: ClassMatching::default(),
             keep_empty: false,
             folder: &self.folder,
             problems,

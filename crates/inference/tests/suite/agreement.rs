@@ -28,9 +28,12 @@ enum Agreement {
     /// optimisations on and off differs from itself as it does from us (Cityscapes on a cup of coffee: 12 % of the
     /// labels). Pictures of what the net was trained on are what can be held to 99 %.
     Labels(&'static [&'static str]),
+    /// As `Labels`, for 98 %: a net of which ONNX Runtime with graph optimisations on and off gives other labels to 0.7 % of the very
+    /// pictures on which it does so least (to 1.8 % of [`PHOTOS`], to 3.4 % of the cat).
+    RoundedLabels(&'static [&'static str]),
 }
 
-use Agreement::{Close, Labels, Mask, Ranked};
+use Agreement::{Close, Labels, Mask, Ranked, RoundedLabels};
 
 const PHOTOS: [&str; 8] = [
     "data/photos/astronaut.png",
@@ -45,6 +48,8 @@ const PHOTOS: [&str; 8] = [
 
 const STREET: [&str; 1] = ["models/semantic_segmentation/sample/cityscapes_segmentation.bmp"];
 
+const PERSONS: [&str; 1] = ["data/photos/zidane.jpg"];
+
 /// A bird, persons, a bus, a cat, motorcycles.
 const PASCAL: [&str; 8] = [
     "models/semantic_segmentation/sample/bird_segmentation.bmp",
@@ -58,7 +63,7 @@ const PASCAL: [&str; 8] = [
 ];
 
 /// Every model of the test data, the values it wants, and how its outputs have to agree.
-const MODELS: [(&str, Scale, Agreement); 26] = [
+const MODELS: [(&str, Scale, Agreement); 34] = [
     ("classification/mobilenet_v2_1.0_224_qdq.onnx", Scale::Raw, Labels(&PHOTOS)),
     ("classification/resnet8_cifar10.onnx", Scale::Raw, Close),
     ("classification/vww_person_96.onnx", Scale::Unit, Close),
@@ -71,6 +76,14 @@ const MODELS: [(&str, Scale, Agreement); 26] = [
     ("facial_expression/emotion_7cls_gray64.onnx", Scale::Signed, Close),
     ("facial_landmarks/face_mesh_468_192.onnx", Scale::Unit, Close),
     ("facial_landmarks/iris_64.onnx", Scale::Unit, Close),
+    ("found/FastestDet.onnx", Scale::Unit, Close),
+    ("found/ch_ppocr_mobile_v2.0_cls_infer.onnx", Scale::Signed, Close),
+    ("found/deeplabv3_mnv2_ade20k_uint8.onnx", Scale::Raw, RoundedLabels(&PERSONS)),
+    ("found/en_PP-OCRv3_det_infer.onnx", Scale::ImageNet, Close),
+    ("found/en_number_mobile_v2.0_rec_infer.onnx", Scale::Signed, Close),
+    ("found/person-reidentification-retail-0288.onnx", Scale::Raw, Close),
+    ("found/road_segmentation_adas_0001.onnx", Scale::Raw, Close),
+    ("found/yolox_nano.onnx", Scale::Raw, Close),
     ("grasp/grconvnet3_cornell_rgbd_ch16_224.onnx", Scale::Centred, Close),
     ("hand/hand_landmark_lite_224.onnx", Scale::Unit, Close),
     ("hand/palm_detection_lite_192.onnx", Scale::Unit, Close),
@@ -147,7 +160,7 @@ impl Compared {
     fn label_difference(&self) -> f64 {
         let labels = |output: &Output| -> Vec<usize> {
             match self.info.element_type {
-                ElementType::I64 => output.values.iter().map(|&label| label as usize).collect(),
+                ElementType::I32 | ElementType::I64 => output.values.iter().map(|&label| label as usize).collect(),
                 _ => output.values.chunks(*output.shape.last().unwrap()).map(position_of_largest).collect(),
             }
         };
@@ -200,6 +213,7 @@ fn run(session: &Session, inputs: &[TensorView<'_>]) -> Vec<Output> {
 fn numbers(tensor: &TensorView<'_>) -> Vec<f64> {
     match tensor.data() {
         TensorData::F32(data) => data.iter().map(|&value| f64::from(value)).collect(),
+        TensorData::I32(data) => data.iter().map(|&value| f64::from(value)).collect(),
         TensorData::I64(data) => data.iter().map(|&value| value as f64).collect(),
         TensorData::U8(data) => data.iter().map(|&value| f64::from(value)).collect(),
         TensorData::I8(data) => data.iter().map(|&value| f64::from(value)).collect(),
@@ -249,6 +263,7 @@ fn disagreements(file: &str, agreement: Agreement, outputs: &[Compared]) -> Vec<
         let name = output.info.name.as_str();
         match agreement {
             Labels(_) => judge(output, output.label_difference(), 0.01),
+            RoundedLabels(_) => judge(output, output.label_difference(), 0.02),
             Ranked { output: ranked, score } if ranked == name => {
                 judge(
                     output,
@@ -293,7 +308,10 @@ fn both_runtimes_agree_on_every_model() {
     assert_eq!(models_in(&root.join("models")), MODELS.map(|(file, ..)| file), "one row for each model");
     let mut wrong = Vec::new();
     for (file, scale, agreement) in MODELS {
-        let pictures: &[&str] = if let Labels(pictures) = agreement { pictures } else { &PHOTOS };
+        let pictures: &[&str] = match agreement {
+            Labels(pictures) | RoundedLabels(pictures) => pictures,
+            _ => &PHOTOS,
+        };
         let pictures: Vec<_> = pictures.iter().map(|picture| read(&root.join(picture))).collect();
         let model = std::fs::read(root.join("models").join(file)).unwrap();
         let outputs = compare(&onnx_runtime, &model, scale, &pictures);

@@ -13,7 +13,7 @@ use super::summary::{ClassOutcome, Outcome};
 ///
 /// A picture is matched when it is added; what stays is 32 bytes a detection. Accumulators of several threads merge to
 /// the same outcome however pictures were spread over them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Accumulator<K> {
     protocol: Protocol,
     classes: BTreeMap<K, Class>,
@@ -24,7 +24,7 @@ pub struct Accumulator<K> {
 }
 
 /// What is kept of a class.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 struct Class {
     /// Objects that count, in each range of area.
     truths: [u64; AREAS],

@@ -27,7 +27,7 @@ pub struct CocoDetectionParams {
 ///
 /// An object's area and whether it is a crowd stand in its [`Segment`](opendr_engine::target::Segment); without, it is
 /// as big as its box.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct CocoDetection {
     pictures: Pictures,
 }

@@ -26,7 +26,7 @@ pub struct CocoKeypointsParams {
 /// Poses of any skeleton are compared by the names of COCO's 17 joints. A joint that a truth lacks was not annotated;
 /// one that an answer lacks is at (0, 0), as in COCO's result files. Box, area and crowd of a truth are those of its
 /// [`Pose::region`], else those of the box around its joints.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct CocoKeypoints {
     accumulator: Accumulator<()>,
 }

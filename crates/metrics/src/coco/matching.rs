@@ -34,7 +34,7 @@ pub(super) struct Verdict {
 const ALL_THRESHOLDS: u16 = (1 << THRESHOLDS) - 1;
 
 /// Work memory of [`Matching::verdicts`].
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Matching {
     /// Numbers of the objects, those that count first.
     order: Vec<usize>,

@@ -8,7 +8,7 @@ use super::matching::{Detection, Truth};
 use crate::class_key::ClassKey;
 
 /// An accumulator over lists of boxes, with or without masks.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Pictures {
     pub accumulator: Accumulator<ClassKey>,
     /// Labels of the data set.

@@ -16,7 +16,7 @@ use crate::{Metric, Report};
 ///
 /// Every box needs an outline or a mask. Where all are outlines, nothing tells the size of the picture, and they are
 /// filled on a canvas that holds them all; pycocotools cuts them off at the picture's edge.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct CocoSegmentation {
     pictures: Pictures,
 }

@@ -87,7 +87,7 @@ fn maps_that_do_not_fit_are_refused() {
         |answer: &Heatmap, truth: &Heatmap| segmentation.update(0, answer, truth).unwrap_err().to_string();
     assert!(refused(&map(&[0]), &map(&[0, 0])).contains("cannot answer one of [1, 2]"));
     assert!(refused(&map(&[0]), &map(&[1024])).contains("label 1024 is no class number below 1024"));
-    assert!(refused(&map(&[u32::MAX]), &map(&[0])).contains("4294967295"));
+    assert!(refused(&map(&[u32::MAX - 1]), &map(&[0])).contains("4294967294"));
     let scores = Heatmap::from_scores(vec![f32::NAN; 2], &[2, 1, 1]).unwrap();
     assert!(refused(&scores, &map(&[0])).contains("NaN"));
     assert!(refused(&map(&[0]), &scores).contains("map of labels"));
@@ -100,7 +100,7 @@ fn maps_that_do_not_fit_are_refused() {
 #[test]
 fn highest_score_is_the_answer() {
     let scores = Heatmap::from_scores(vec![0.5, 0.0, 0.5, 0.25, 0.0, 1.0], &[3, 1, 2]).unwrap();
-    let (labels, shape) = labels_of(&scores).unwrap();
+    let (labels, shape) = scores.class_labels().unwrap();
     assert_eq!((&labels[..], shape), (&[0, 2][..], &[1, 2][..]));
     let mut segmentation = Segmentation::default();
     assert_eq!(segmentation.update(0, &scores, &map(&[0, 2])).unwrap(), 1.0);

@@ -181,6 +181,7 @@ impl Preparation<'_> {
             wanted: wanted(self.entry).ok_or_else(|| Error::internal("a learner without outputs"))?,
             threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
             classes: self.options.teacher_classes.iter().cloned().collect(),
+            class_matching: self.options.class_matching(),
             keep_empty: self.options.keep_empty,
             folder: self.output,
             problems: self.problems,

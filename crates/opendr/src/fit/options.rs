@@ -1,9 +1,11 @@
 //! What a surface may say about a training, in JSON.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use opendr_datasets::Problems;
 use opendr_engine::params::ParamMap;
+use opendr_evaluation::ClassMatching;
 use serde::Deserialize;
 
 /// Everything that can be chosen; all of it may be left out.
@@ -34,6 +36,10 @@ pub struct FitOptions {
     pub teacher_threshold: Option<f32>,
     /// What is learned from the teacher; by default the classes of the data set, or where it has none the teacher's.
     pub teacher_classes: Vec<String>,
+    /// Classes of the data set by classes of the teacher, where their names do not match.
+    pub teacher_map: BTreeMap<String, String>,
+    /// Whether numbers of the teacher's classes are taken as they are, whatever the names are.
+    pub teacher_by_number: bool,
     /// Whether pictures in which the teacher finds nothing are kept, as examples of nothing.
     pub keep_empty: bool,
     /// Whether what is broken is left out and listed.
@@ -43,6 +49,10 @@ pub struct FitOptions {
 }
 
 impl FitOptions {
+    pub(super) fn class_matching(&self) -> ClassMatching {
+        ClassMatching { pairs: self.teacher_map.clone(), by_number: self.teacher_by_number }
+    }
+
     pub(super) fn problems(&self) -> Problems {
         if self.skip_broken { Problems::skipping() } else { Problems::strict() }
     }

@@ -1,8 +1,8 @@
 //! A learner that looks at each box of a picture as a picture of its own.
 
 use opendr_engine::data::{Image, PixelFormat};
-use opendr_engine::learner::{AnyLearner, Entry, Ports};
-use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, Name, Pose, PoseList};
+use opendr_engine::learner::{AnyStream, Entry, Ports};
+use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, Classes, Name, Pose, PoseList};
 use opendr_engine::{Error, Result, Value, ValueType};
 
 /// What the answers to single boxes can be put together to.
@@ -28,22 +28,23 @@ pub(super) fn check(entry: &Entry) -> Result<()> {
     )))
 }
 
-/// Shows `learner` each of `boxes` and puts its answers together, in the pixels of the whole picture. A category becomes
+/// Shows `stream` each of `boxes` and puts its answers together, in the pixels of the whole picture. A category becomes
 /// the name of its box, and its score the box's. Boxes are strangers to each other: the learner forgets one before the next.
 ///
 /// # Errors
 /// Those of the learner.
 pub(super) fn infer(
     entry: &Entry,
-    learner: &mut dyn AnyLearner,
+    stream: &mut dyn AnyStream,
+    classes: &Classes,
     image: &Image,
     boxes: &BoundingBoxList,
 ) -> Result<Value> {
     let (mut found, mut persons) = (Vec::new(), Vec::new());
     for place in &boxes.boxes {
         let Some((crop, corner)) = crop(image, place)? else { continue };
-        learner.reset();
-        match learner.infer(&Ports::one(&crop))?.into_iter().next() {
+        stream.reset();
+        match stream.infer(&Ports::one(&crop))?.into_iter().next() {
             Some((_, Value::Category(category))) => found.push(named(place, category)),
             Some((_, Value::BoundingBoxList(list))) => {
                 found.extend(list.boxes.into_iter().map(|inner| moved_box(inner, corner)));
@@ -57,8 +58,7 @@ pub(super) fn infer(
         let poses = persons.into_iter().flat_map(|(list, corner)| moved_poses(list, corner)).collect();
         return Ok(PoseList { header, poses, ..Default::default() }.into());
     }
-    let classes = learner.classes();
-    Ok(BoundingBoxList { header, boxes: found, classes, ..Default::default() }.into())
+    Ok(BoundingBoxList { header, boxes: found, classes: classes.clone(), ..Default::default() }.into())
 }
 
 /// The pixels of a box and its left-top corner; `None` where it lies outside the picture.

@@ -11,9 +11,11 @@ use std::collections::BTreeMap;
 
 use opendr_engine::learner::{AnyLearner, Entry, Output, Outputs, Port, Ports};
 use opendr_engine::params::ParamMap;
+use opendr_engine::target::Classes;
 use opendr_engine::{Device, Error, Progress, Result, Silent, Value, ValueType, assembly_line};
 
 use crate::{learner_with, registry};
+use opendr_evaluation::Predictor;
 use stage::Stage;
 use wiring::{Wire, wires};
 
@@ -62,22 +64,27 @@ impl Pipeline {
     /// # Errors
     /// As [`Pipeline::open`].
     pub fn open_with(specs: &str, device: Device, progress: &dyn Progress) -> Result<Self> {
-        let mut pipeline = Self::default();
-        for text in specs.split('+').map(str::trim) {
-            let (spec, each) =
-                text.strip_prefix(EACH).map_or((text, false), |spec| (spec.trim_start(), true));
-            let entry = registry().find(spec.split('/').next().unwrap_or(spec))?;
-            let learner = learner_with(spec, &ParamMap::new(), device, progress)?;
-            pipeline = if each { pipeline.then_each(entry, learner) } else { pipeline.then(entry, learner) }?;
-        }
-        Ok(pipeline)
+        let named = |pipeline: Self, spec: &str| pipeline.then_named(spec, device, progress);
+        specs.split('+').try_fold(Self::default(), named)
     }
 
-    /// Adds a loaded learner of `entry` at the end.
+    /// Adds the learner that `spec` names at the end, with its pretrained model: `"yunet/320"`, `"each facial_emotion"`.
     ///
     /// # Errors
-    /// `InvalidParam` for one that takes nothing of what those before it answer.
-    pub fn then(mut self, entry: &'static Entry, learner: Box<dyn AnyLearner>) -> Result<Self> {
+    /// As [`Pipeline::open`].
+    pub fn then_named(self, spec: &str, device: Device, progress: &dyn Progress) -> Result<Self> {
+        let text = spec.trim();
+        let (spec, each) = text.strip_prefix(EACH).map_or((text, false), |spec| (spec.trim_start(), true));
+        let entry = registry().find(spec.split('/').next().unwrap_or(spec))?;
+        let learner = learner_with(spec, &ParamMap::new(), device, progress)?;
+        if each { self.then_each(entry, learner.as_ref()) } else { self.then(entry, learner.as_ref()) }
+    }
+
+    /// Adds a stream of a loaded learner of `entry` at the end.
+    ///
+    /// # Errors
+    /// `InvalidParam` for one that takes nothing of what those before it answer; `NotFound` for one without a model.
+    pub fn then(mut self, entry: &'static Entry, learner: &dyn AnyLearner) -> Result<Self> {
         let answered = self.stages.iter().map(|stage| stage.outputs()).collect::<Vec<_>>();
         let wires = wires(entry.ports, &answered, &mut self.ports);
         let feeds = |wire: &Wire| !matches!(wire, Wire::Input);
@@ -96,16 +103,17 @@ impl Pipeline {
             _ => Ok(None),
         });
         let adapters = adapters.collect::<Result<_>>()?;
-        self.stages.push(Stage { entry, learner, wires, adapters, boxes: None });
+        let (stream, classes) = (learner.stream()?, learner.classes());
+        self.stages.push(Stage { entry, stream, classes, wires, adapters, boxes: None });
         Ok(self)
     }
 
-    /// Adds a loaded learner of pictures at the end that looks at each of the boxes found before it.
+    /// Adds a stream of a loaded learner of pictures at the end that looks at each of the boxes found before it.
     ///
     /// # Errors
     /// `InvalidParam` where none before it finds boxes, and for a learner that takes more than a picture, or answers what
     /// has no place in one.
-    pub fn then_each(mut self, entry: &'static Entry, learner: Box<dyn AnyLearner>) -> Result<Self> {
+    pub fn then_each(mut self, entry: &'static Entry, learner: &dyn AnyLearner) -> Result<Self> {
         const BOXES: Port = Port {
             name: ValueType::BoundingBoxList.port(),
             doc: "",
@@ -120,7 +128,8 @@ impl Pipeline {
             return Err(self.feeds_not(entry, &[BOXES]));
         }
         let wires = wires(entry.ports, &[], &mut self.ports);
-        self.stages.push(Stage { entry, learner, wires, adapters: Vec::new(), boxes });
+        let (stream, classes) = (learner.stream()?, learner.classes());
+        self.stages.push(Stage { entry, stream, classes, wires, adapters: Vec::new(), boxes });
         Ok(self)
     }
 
@@ -149,6 +158,11 @@ impl Pipeline {
             by_type.insert(output.value_type.name(), output);
         }
         by_type.into_values().collect()
+    }
+
+    /// What the class numbers of the last learner mean; targets that carry class names of their own say more.
+    pub fn classes(&self) -> Classes {
+        self.stages.last().map(|stage| stage.classes.clone()).unwrap_or_default()
     }
 
     /// The learners, in order.
@@ -200,6 +214,16 @@ impl Pipeline {
             }
         };
         assembly_line(&mut self.stages, begun, work, |(_, item, answers)| each(item, answers.map(merged)))
+    }
+}
+
+impl Predictor for Pipeline {
+    fn reset(&mut self) {
+        Self::reset(self);
+    }
+
+    fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
+        Self::infer(self, ports)
     }
 }
 

@@ -1,6 +1,7 @@
 //! One learner of a pipeline, and what goes into it.
 
-use opendr_engine::learner::{AnyLearner, Entry, Output, Outputs, Ports};
+use opendr_engine::learner::{AnyStream, Entry, Output, Outputs, Ports};
+use opendr_engine::target::Classes;
 use opendr_engine::{Result, Value, ValueRef, ValueType};
 
 use super::adapter::Adapter;
@@ -10,7 +11,9 @@ use super::wiring::Wire;
 /// A learner in its place.
 pub(super) struct Stage {
     pub entry: &'static Entry,
-    pub learner: Box<dyn AnyLearner>,
+    pub stream: Box<dyn AnyStream>,
+    /// What the class numbers of its predictions mean.
+    pub classes: Classes,
     pub wires: Vec<Wire>,
     /// One for each port whose answer is of another type.
     pub adapters: Vec<Option<Box<dyn Adapter>>>,
@@ -33,7 +36,7 @@ impl Stage {
 
     /// Forgets the stream.
     pub fn reset(&mut self) {
-        self.learner.reset();
+        self.stream.reset();
         self.adapters.iter_mut().flatten().for_each(|adapter| adapter.reset());
     }
 
@@ -50,7 +53,7 @@ impl Stage {
                 return Ok(Outputs::default());
             };
             let image = given.required(port.name)?;
-            let value = each_box::infer(self.entry, &mut *self.learner, image, boxes)?;
+            let value = each_box::infer(self.entry, &mut *self.stream, &self.classes, image, boxes)?;
             return Ok([(value.as_value_ref().value_type().port(), value)].into_iter().collect());
         }
         let mut adapted = Vec::new();
@@ -75,6 +78,6 @@ impl Stage {
                 None => return Ok(Outputs::default()),
             }
         }
-        self.learner.infer(&ports)
+        self.stream.infer(&ports)
     }
 }

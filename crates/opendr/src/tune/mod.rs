@@ -231,7 +231,7 @@ impl TuneData<'_> {
             Self::Answers { split, metric, .. } => (split, metric),
         };
         let [split, metric] = [split, metric].map(|name| name.map(str::to_owned));
-        EvalOptions { split, metric, ..EvalOptions::default() }
+        EvalOptions { split, metric, resamples: Some(0), ..EvalOptions::default() }
     }
 }
 

@@ -35,7 +35,7 @@ fn poses_become_the_skeletons_that_a_network_looks_at() {
     for action in ["spatio_temporal_gcn", "co_st_gcn"] {
         let Some((pose, poses)) = learner(&models, "movenet/multipose") else { return };
         let Some((entry, actions)) = learner(&models, action) else { return };
-        let mut pipeline = Pipeline::default().then(pose, poses).unwrap().then(entry, actions).unwrap();
+        let mut pipeline = Pipeline::default().then(pose, poses.as_ref()).unwrap().then(entry, actions.as_ref()).unwrap();
         assert_eq!(pipeline.ports().iter().map(|port| port.name).collect::<Vec<_>>(), ["image"]);
 
         // By hand: the same network over a buffer of its own.
@@ -85,8 +85,8 @@ fn each_box_is_a_picture_of_its_own() {
     let Some((detector, faces)) = learner(&models, "yunet") else { return };
     let Some((entry, mut emotions)) = learner(&models, "facial_emotion") else { return };
     emotions.set("picture", "face".into()).unwrap();
-    let pipeline = Pipeline::default().then(detector, faces).unwrap();
-    let mut pipeline = pipeline.then_each(entry, emotions).unwrap();
+    let pipeline = Pipeline::default().then(detector, faces.as_ref()).unwrap();
+    let mut pipeline = pipeline.then_each(entry, emotions.as_ref()).unwrap();
     let astronaut = picture(&models, "astronaut.png");
     let outputs = answers(&mut pipeline, &astronaut);
     let Some(Value::BoundingBoxList(list)) = outputs.first() else { panic!("{outputs}") };
@@ -106,7 +106,7 @@ fn each_box_is_a_picture_of_its_own() {
     // Poses lie in the whole picture.
     let Some((detector, persons)) = learner(&models, "centernet") else { return };
     let Some((entry, poses)) = learner(&models, "movenet") else { return };
-    let mut pipeline = Pipeline::default().then(detector, persons).unwrap().then_each(entry, poses).unwrap();
+    let mut pipeline = Pipeline::default().then(detector, persons.as_ref()).unwrap().then_each(entry, poses.as_ref()).unwrap();
     let outputs = answers(&mut pipeline, &picture(&models, "zidane.jpg"));
     let (Some(Value::PoseList(poses)), Some(Value::BoundingBoxList(boxes))) =
         (outputs.get("poses"), outputs.get("boxes"))
@@ -128,6 +128,6 @@ fn each_box_is_a_picture_of_its_own() {
     assert!(count >= 17 && right == count, "{right} of {count}");
 
     let Some((alone, emotions)) = learner(&models, "facial_emotion") else { return };
-    let error = Pipeline::default().then_each(alone, emotions).err().unwrap();
+    let error = Pipeline::default().then_each(alone, emotions.as_ref()).err().unwrap();
     assert_eq!(error.kind(), ErrorKind::InvalidParam, "{error}");
 }

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
+use std::sync::OnceLock;
 
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -14,6 +15,10 @@ use crate::codec::{finding, jpeg};
 
 /// Bytes that tell the format.
 const HEAD: u64 = 64;
+/// Samples of the largest picture that is read where nobody says otherwise: 89 megapixels of RGB.
+const MAX_SAMPLES: u64 = 1 << 28;
+/// The variable of the environment that raises or lowers it.
+const VARIABLE: &str = "OPENDR_MAX_SAMPLES";
 
 /// Reads picture files within bounds.
 ///
@@ -28,9 +33,11 @@ pub struct Decoder {
 }
 
 impl Default for Decoder {
-    /// Up to 2^28 samples: 89 megapixels of RGB.
+    /// Up to as many samples as `OPENDR_MAX_SAMPLES` says, by default 2^28: 89 megapixels of RGB.
     fn default() -> Self {
-        Self { max_samples: 1 << 28 }
+        static LIMIT: OnceLock<u64> = OnceLock::new();
+        let set = || std::env::var(VARIABLE).ok()?.trim().parse().ok();
+        Self { max_samples: *LIMIT.get_or_init(|| set().unwrap_or(MAX_SAMPLES)) }
     }
 }
 
@@ -90,7 +97,8 @@ impl Decoder {
         file.take(limit).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > limit {
             return Err(Error::invalid_input(format!(
-                "over {limit} bytes, too large for a picture; raise `Decoder::max_samples` if it is one"
+                "over {limit} bytes, too large for a picture; if it is one, set {VARIABLE} above {}",
+                self.max_samples
             )));
         }
         Ok(bytes)
@@ -124,7 +132,7 @@ pub(super) fn check_size(width: u32, height: u32, channels: u8, max_samples: u64
     }
     Err(Error::invalid_input(format!(
         "the header claims {width}x{height} pixels of {channels} channels, {samples} samples, over the limit of \
-         {max_samples}; raise `Decoder::max_samples` if the file can be trusted"
+         {max_samples}; make it smaller or, if the file can be trusted, set {VARIABLE} to {samples} or more"
     )))
 }
 

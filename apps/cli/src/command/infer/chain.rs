@@ -1,14 +1,11 @@
 //! `--then`: learners one behind the other, each on a thread of its own.
 
 use clap::ArgMatches;
-use opendr::learner::{AnyLearner, Entry};
-use opendr::params::ParamMap;
-use opendr::{Error, Pipeline, Progress, Result};
+use opendr::{Error, Pipeline, Result};
 
 use super::{Answer, Job, Stream, of_item};
 use crate::inputs::Next;
 use crate::timings::Timings;
-use crate::{loading, named_value};
 
 /// Refuses flags that belong to a single learner.
 ///
@@ -26,33 +23,6 @@ pub fn check(matches: &ArgMatches, recorded: bool) -> Result<()> {
         ));
     }
     Ok(())
-}
-
-/// The word before a learner that looks at each box found before it.
-const EACH: &str = "each";
-
-/// The learner of the command with those of `--then` behind it.
-///
-/// # Errors
-/// As for the first learner, and as [`Pipeline::then`].
-pub fn pipeline(
-    entry: &'static Entry,
-    first: Box<dyn AnyLearner>,
-    matches: &ArgMatches,
-    progress: &dyn Progress,
-) -> Result<Pipeline> {
-    let mut pipeline = Pipeline::default().then(entry, first)?;
-    for text in matches.get_many::<String>("then").into_iter().flatten() {
-        let mut words = text.split_whitespace().peekable();
-        let each = words.next_if_eq(&EACH).is_some();
-        let spec = words.next().ok_or_else(|| Error::invalid_param("--then names no learner"))?;
-        let entry = loading::entry(spec)?;
-        let params = words.map(|word| named_value::parse("then", word, entry.spec.class, entry.params));
-        let params = params.collect::<Result<ParamMap>>()?;
-        let learner = loading::load_pretrained(spec, &params, matches, progress)?;
-        pipeline = if each { pipeline.then_each(entry, learner) } else { pipeline.then(entry, learner) }?;
-    }
-    Ok(pipeline)
 }
 
 /// Answers items in their order.

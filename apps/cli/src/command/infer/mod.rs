@@ -18,7 +18,7 @@ use crate::recordings::RecordingSink;
 use crate::report::{Json, Report};
 use crate::timings::Timings;
 use crate::writer::{Failures, Writer};
-use crate::{learner_flags, loading, recordings};
+use crate::{learner_flags, loading, recordings, then_flag};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -59,11 +59,7 @@ pub fn grammar() -> Command {
             ),
             switch("show-timings").help("Tell how long each stage took"),
             switch("sequence").help("The pictures follow each other in time, as frames of one video do"),
-            Arg::new("then")
-                .long("then")
-                .action(ArgAction::Append)
-                .value_name("[each] LEARNER[/VARIANT] [NAME=VALUE]...")
-                .help("A learner behind it, which takes what those before it answer (after the word each: each box that they found, one by one); again for one more"),
+            then_flag::flag(),
             Arg::new("limit")
                 .long("limit")
                 .value_parser(value_parser!(u64).range(1..))
@@ -89,7 +85,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let port = entry.ports.first().ok_or_else(|| Error::internal("the learner takes nothing"))?;
     let out = matches.get_one::<PathBuf>("out");
     let sink = RecordingSink::new(entry, matches, &inputs)?;
-    if matches.contains_id("then") {
+    if then_flag::is_given(matches) {
         chain::check(matches, sink.is_some())?;
     }
     if out.is_some() && sink.is_none() && port.value_type != ValueType::Image {
@@ -108,7 +104,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     };
     let params = learner_flags::params(entry, matches)?;
     let load = || loading::load(spec, &params, matches, &bar);
-    let chained = matches.contains_id("then");
+    let chained = then_flag::is_given(matches);
     let job = Job {
         entry,
         port: port.name,
@@ -120,7 +116,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let mut learners = loading::side_by_side(count, load)?;
     let mut team = match learners.pop() {
         Some(first) if chained => {
-            Team::Chain(chain::pipeline(entry, first, matches, &bar)?, Stream::default())
+            Team::Chain(then_flag::pipeline(entry, first.as_ref(), matches, &bar)?, Stream::default())
         }
         first => {
             let learners = learners.into_iter().chain(first);

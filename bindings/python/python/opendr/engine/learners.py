@@ -214,20 +214,22 @@ class Learner(BaseLearner):
             opendr.Unsupported: The learner has no task, or its task no metric.
         """
         from opendr import _opendr
-        from opendr.engine.datasets import DatasetIterator, ExternalDataset
-        from opendr.metrics import evaluate
+        from opendr.engine._ports import ports_of
+        from opendr.metrics import evaluate_function
 
         task = getattr(self, "task", None)
         if task is None:
             self._cannot("eval")
-        metric = _opendr.metric_of(task)
-        if isinstance(dataset, ExternalDataset):
-            truth = next(table["truth"] for table in _opendr.metrics() if table["name"] == metric)
-            dataset = dataset.open(target=truth)
-        if not isinstance(dataset, DatasetIterator):
-            raise TypeError(f"dataset should be a DatasetIterator or an ExternalDataset, not {type(dataset).__name__}")
-        self.reset()
-        return evaluate(self.infer, dataset, metric)
+        ports = ports_of(type(self).infer, [])
+        return evaluate_function(
+            self.infer,
+            dataset,
+            {"metric": _opendr.metric_of(task)},
+            reset=self.reset,
+            types=[port["type"] for port in ports],
+            classes=getattr(self, "classes", ()),
+            name=getattr(self, "name", type(self).__name__),
+        )
 
 
 class LearnerRL(BaseLearner):

@@ -150,7 +150,14 @@ fn take(
         if job.progress.stopped() {
             break;
         }
-        let sample = dataset.get(index)?;
+        let sample = match dataset.get(index) {
+            Err(error) if job.skip_broken => {
+                job.progress.note(&format!("{error}: left out"));
+                job.progress.advance(1);
+                continue;
+            }
+            sample => sample?,
+        };
         let (Some(Value::Image(image)), Some(Value::Category(category))) =
             (sample.data.first(), &sample.target)
         else {

@@ -1,0 +1,156 @@
+//! Names of the same class in the published data sets of the field.
+
+/// Names of the same class in COCO, COCO panoptic, Pascal VOC, KITTI, Cityscapes, CamVid, ADE20K, Open Images, AffectNet and
+/// RAVDESS. A name may stand in several lines; those that come first are preferred.
+const SYNONYMS: &[&[&str]] = &[
+    &["airplane", "aeroplane"],
+    &["rider", "cyclist", "bicyclist"],
+    &["bicycle", "bike", "cyclist", "bicyclist"],
+    &["building", "building-other-merged"],
+    &["car", "automobile"],
+    &["cell phone", "mobile phone"],
+    &["couch", "sofa"],
+    &["cow", "cattle"],
+    &["dining table", "table"],
+    &["donut", "doughnut"],
+    &["fence", "fence-merged"],
+    &["grass", "grass-merged"],
+    &["hair drier", "hair dryer"],
+    &["motorcycle", "motorbike", "motorcyclescooter", "minibike"],
+    &["person", "pedestrian", "people", "human"],
+    &["pole", "column pole"],
+    &["potted plant", "houseplant"],
+    &["refrigerator", "fridge"],
+    &["remote", "remote control"],
+    &["sidewalk", "pavement", "pavement-merged"],
+    &["sky", "sky-other-merged"],
+    &["sports ball", "ball"],
+    &["traffic light", "traffic signal"],
+    &["traffic sign", "sign symbol"],
+    &["train", "tram"],
+    &["truck", "lorry"],
+    &["tv", "tv monitor", "television", "television receiver"],
+    &["vegetation", "tree", "tree-merged"],
+    &["wall", "wall-other-merged"],
+    &["anger", "angry"],
+    &["disgust", "disgusted"],
+    &["fear", "fearful"],
+    &["happiness", "happy"],
+    &["neutral", "neutrality"],
+    &["sadness", "sad"],
+    &["surprise", "surprised"],
+];
+
+/// A published grouping of finer classes: it applies to data sets that have all of its classes.
+struct Grouping {
+    /// Each class with the finer ones that belong to it.
+    groups: &'static [(&'static str, &'static [&'static str])],
+}
+
+/// SegNet's grouping of CamVid's 32 classes into 11 (V. Badrinarayanan, A. Kendall, R. Cipolla, arXiv 1511.00561), with the names
+/// that Cityscapes has for the same classes.
+const GROUPINGS: &[Grouping] = &[Grouping {
+    groups: &[
+        ("sky", &[]),
+        ("building", &["wall", "bridge", "tunnel", "archway"]),
+        ("pole", &["traffic cone"]),
+        ("road", &["LaneMkgsDriv", "LaneMkgsNonDriv"]),
+        ("pavement", &["ParkingBlock", "RoadShoulder"]),
+        ("tree", &["VegetationMisc", "terrain"]),
+        ("SignSymbol", &["Misc_Text", "traffic light"]),
+        ("fence", &[]),
+        ("car", &["SUVPickupTruck", "Truck_Bus", "OtherMoving", "truck", "bus", "train"]),
+        ("pedestrian", &["child", "CartLuggagePram", "animal"]),
+        ("bicyclist", &["MotorcycleScooter", "motorcycle"]),
+    ],
+}];
+
+/// Letters and digits in lower case: names are compared without case, spaces, hyphens and underscores.
+pub(super) fn plain(label: &str) -> String {
+    label.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+}
+
+/// A name, and where it lists several (ADE20K's "car, auto, automobile"), each of them, in plain form.
+pub(super) fn spellings(label: &str) -> impl Iterator<Item = String> + '_ {
+    let parts = label.split(',').filter(move |part| part.len() < label.len());
+    std::iter::once(label).chain(parts).map(plain).filter(|name| !name.is_empty())
+}
+
+/// How a class was found in the data set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MatchedBy {
+    /// By a pair that the user gave.
+    Pair,
+    /// By its name.
+    Name,
+    /// By another name of the same class.
+    Synonym,
+    /// As a part of a class, by a published grouping.
+    Grouping,
+}
+
+/// Returns the first of `classes` that `label` names, given in the order of the data set.
+pub(super) fn find<'a>(label: &str, classes: impl Iterator<Item = &'a str>) -> Option<(usize, MatchedBy)> {
+    let known: Vec<Vec<String>> = classes.map(|class| spellings(class).collect()).collect();
+    let named = |wanted: &str| known.iter().position(|spellings| spellings.iter().any(|name| name == wanted));
+    let own: Vec<String> = spellings(label).collect();
+    if let Some(index) = own.iter().find_map(|name| named(name)) {
+        return Some((index, MatchedBy::Name));
+    }
+    for name in &own {
+        let lines = SYNONYMS.iter().filter(|words| words.iter().any(|word| plain(word) == *name));
+        if let Some(index) = lines.flat_map(|words| words.iter()).find_map(|word| named(&plain(word))) {
+            return Some((index, MatchedBy::Synonym));
+        }
+    }
+    for Grouping { groups } in GROUPINGS {
+        if groups.iter().any(|(class, _)| named(&plain(class)).is_none()) {
+            continue;
+        }
+        let group = groups.iter().find(|(_, finer)| finer.iter().any(|word| own.contains(&plain(word))));
+        if let Some(index) = group.and_then(|(class, _)| named(&plain(class))) {
+            return Some((index, MatchedBy::Grouping));
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CAMVID: [&str; 11] = [
+        "Sky", "Building", "Pole", "Road", "Pavement", "Tree", "SignSymbol", "Fence", "Car", "Pedestrian", "Bicyclist",
+    ];
+
+    fn found(label: &str, classes: &[&'static str]) -> Option<(&'static str, MatchedBy)> {
+        find(label, classes.iter().copied()).map(|(index, by)| (classes[index], by))
+    }
+
+    #[test]
+    fn by_name_before_synonym_before_grouping() {
+        let classes = ["aeroplane", "Traffic_Light", "pedestrian", "car, auto, automobile", "rider", "bicycle"];
+        let cases = [
+            ("traffic light", Some(("Traffic_Light", MatchedBy::Name))),
+            ("Automobile", Some(("car, auto, automobile", MatchedBy::Name))),
+            ("airplane", Some(("aeroplane", MatchedBy::Synonym))),
+            ("Cyclist", Some(("rider", MatchedBy::Synonym))),
+            ("bike", Some(("bicycle", MatchedBy::Synonym))),
+            ("truck", None),
+            ("", None),
+            (",", None),
+        ];
+        for (label, wanted) in cases {
+            assert_eq!(found(label, &classes), wanted, "{label}");
+        }
+    }
+
+    #[test]
+    fn groupings_hold_for_their_own_data_set() {
+        assert_eq!(found("truck", &CAMVID), Some(("Car", MatchedBy::Grouping)));
+        assert_eq!(found("wall", &CAMVID), Some(("Building", MatchedBy::Grouping)));
+        assert_eq!(found("sidewalk", &CAMVID), Some(("Pavement", MatchedBy::Synonym)));
+        assert_eq!(found("truck", &CAMVID[1..]), None);
+    }
+}
