@@ -96,7 +96,7 @@ HEADER = '''"""Learners of the task {task}. Made by bindings/python/stubs.py; do
 # pyright: reportIncompatibleMethodOverride=false
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray

@@ -17,5 +17,5 @@ clouds = PointCloudsDatasetIterator(os.path.join(root, "velodyne"))
 found = learner.infer(clouds[1])
 assert type(found).__name__ == "BoundingBox3DList"
 assert len(learner.infer([clouds[0], PointCloud(clouds[1].data)])) == 2
-results = learner.eval(KittiDataset(root), verbose=False, count=1)
-assert results["report"]["samples"] == 1
+results = learner.eval(KittiDataset(root), verbose=False, count=2)
+assert results["report"]["samples"] == 2
