@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes what is made of the registries: the type stubs of the learners' modules, and the pages docs/learners.md,
-docs/metrics.md and docs/datasets.md.
+"""Writes what is made of the registries: the type stubs of the learners' modules, the pages docs/learners.md,
+docs/metrics.md and docs/datasets.md, and of the table of OpenDR's names the end of docs/python.md.
 
     bindings/python/stubs.py [--check]
 
@@ -9,15 +9,19 @@ With --check nothing is written: the exit code tells whether the files are those
 
 import difflib
 import inspect
+import re
 import sys
 import textwrap
 from pathlib import Path
 
+import opendr
 from opendr import _opendr
-from opendr._native_learner import OF_SEVERAL_PARTS, NativeLearner
-from opendr._native_learner_rl import NativeLearnerRL
+from opendr._native_learner import OF_SEVERAL_PARTS
 from opendr._reference import document
 from opendr._registered import _DRAWING
+from opendr._upstream.modules import TASKS, names_of, rows
+from opendr._upstream.rows import HERE, Absent
+from opendr._upstream.rows import arguments as arguments_of
 from opendr.engine.learners import BaseLearner
 
 STUBS = Path(__file__).parent / "python/opendr"
@@ -56,14 +60,44 @@ What is broken (a file that is cut off or missing, a class that there is none of
 with file and line or key. The first ends the work; with `--skip-broken` it is left out, counted and listed.
 `opendr data check` lists everything.
 """
+UPSTREAM_MARK = "## Names, arguments and demos of OpenDR 3.0\n"
+UPSTREAM_TEXT = """
+Made by `bindings/python/stubs.py` from the table in `opendr/_upstream`, which the package itself works by; do not edit
+what follows. It has {names} names in {modules} module paths: {here} are here, {missing} say what to use instead of
+them. Module paths of OpenDR (`opendr.perception.object_detection_2d.ssd.ssd_learner`) lead to the classes here. Their
+arguments by place are in OpenDR's order, for the constructor, `infer`, `fit`, `eval`, `optimize`, `download`, `load`
+and `save`; ours are given by name.
+"""
+DEMOS_TEXT = """
+Programs in `projects/python/perception` of OpenDR were followed line by line. They want `device="cpu"` where there is no
+CUDA device, and data that they do not download. In all of them `fit` and `eval` give numbers by name and one
+`"report"`, `optimize` writes a smaller model and wants `output`, and one picture gives one prediction.
+"""
+MISSING_TEXT = """These can be imported; their use raises `opendr.Unsupported`.
+"""
+IDLE_TEXT = """These are taken, with a `UserWarning`, beside those that [learners.md](learners.md) lists.
+"""
 TYPES = {"float": "float", "int": "int", "bool": "bool", "text": "str", "list": "list[Any]"}
 #: What stands for a datum in `infer`, besides an object of its class.
 ALSO = {"Audio": ["Timeseries"], "Image": ["NDArray[Any]", "str", "os.PathLike[str]"]}
+#: What signatures name, and where it is.
+HOMES = {"Dataset": "opendr.engine.datasets", "Learner": "opendr.engine.learners", "PathLike": "opendr._native_learner"}
+#: Learners whose parent says itself what `infer` gives.
+OWN_INFER = {
+    "FallDetectorLearner",
+    "ObjectTracking2DDeepSortLearner",
+    "ObjectTracking3DVpitLearner",
+    "SiamRPNLearner",
+}
 HEADER = '''"""Learners of the task {task}. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 '''
@@ -92,16 +126,23 @@ def is_target(kind):
 
 
 def arguments(entry):
-    """The constructor's arguments: OpenDR's own by place, the learner's by name."""
-    own = {field["name"]: field for field in (*entry["fit_params"], *entry["params"])}
-    base = [
-        f"{name}: {param_type(own[name])} = ..." if name in own
-        else f"{name}: {getattr(parameter.annotation, '__name__', parameter.annotation)} = ..."
-        for name, parameter in BaseLearner.__signature__.parameters.items()
-    ]
-    fields = keywords(own.values(), names(base))
-    idle = [f"{name}: Any = ..." for name, _ in entry["without_effect"] if name not in {*own, *names(base)}]
-    return ["self", *base, "*", *fields, *idle]
+    """The constructor's arguments: OpenDR's own by place, all others by name."""
+    fields = (*entry["fit_params"], *entry["params"])
+    own = {name: field for field in fields for name in (field["name"], *field["aliases"])}
+    base = {name: parameter.annotation for name, parameter in BaseLearner.__signature__.parameters.items()}
+
+    def shown(name):
+        kind = param_type(own[name]) if name in own else getattr(base.get(name), "__name__", "Any")
+        return f"{name}: {kind} = ..."
+
+    places = [argument.name for argument in made(entry)._places]
+    rest = [name for name in (*base, *own, *dict(entry["without_effect"])) if name not in places]
+    return ["self", *map(shown, places), *["*"] * bool(rest), *map(shown, dict.fromkeys(rest))]
+
+
+def made(entry):
+    """The class of a learner."""
+    return opendr.learners()[entry["name"]]
 
 
 def keywords(fields, without=()):
@@ -120,12 +161,22 @@ def call(name, parameters, result, overloaded=False, note=""):
 
 
 def infer(entry):
+    """`infer`; nothing where the parent's own says more."""
+    if "infer" in vars(parent(entry)) and entry["class_name"] in OWN_INFER:
+        return ""
     ports, outputs = entry["ports"], entry["outputs"]
     result = outputs[0]["type"] if len(outputs) == 1 else f"{entry['class_name']}Outputs"
-    live = [f"{name}: {param_type(field)} = ..." for field in entry["params"] if field["live"]
-            for name in (field["name"], *field["aliases"])]
-    live += [f"{name}: Any = ..." for name, _ in entry["without_effect"]]
-    keywords = ["*", *live] if live else []
+    live = {name: param_type(field) for field in entry["params"] if field["live"]
+            for name in (field["name"], *field["aliases"])}
+    live.update({name: "Any" for name, _ in entry["without_effect"]})
+    # An object with run_nms, too.
+    live.update(dict.fromkeys({"custom_nms"} & live.keys(), "Any"))
+    taken = {port["name"] for port in ports}
+    places = {argument.name: live.pop(argument.ours or argument.name, "Any")
+              for argument in arguments_of(made(entry)._row.infer) if argument.ours not in taken}
+    places = [f"{name}: {kind} = ..." for name, kind in places.items()]
+    live = [f"{name}: {kind} = ..." for name, kind in live.items()]
+    keywords = [*places, *(["*", *live] if live else [])]
     rest = [
         f"{port['name']}: Optional[{input_type(port)}] = ..." if port["optional"] or port["init"]
         else f"{port['name']}: {input_type(port)}"
@@ -143,23 +194,60 @@ def infer(entry):
     ))
 
 
-def fit(entry):
-    """`fit` with the parameters of the training; nothing for a learner that does not train."""
-    if not entry["fit"] and not entry["fit_in"]:
-        return ""
-    shown = ["self"]
-    for name, parameter in list(inspect.signature(parent(entry).fit).parameters.items())[1:]:
-        if parameter.kind == parameter.VAR_KEYWORD:
-            continue
-        if parameter.kind == parameter.KEYWORD_ONLY and "*" not in shown:
-            shown.append("*")
-        shown.append(f"{name}: {parameter.annotation}" + (" = ..." if parameter.default is not parameter.empty else ""))
-    shown += keywords(entry["fit_params"], names(shown))
-    return call("fit", shown, "dict[str, Any]", note="  # type: ignore[override]")
+def method(entry, name, result, more=()):
+    """A method with OpenDR's arguments by place, and ours by name."""
+    ours = dict(list(inspect.signature(getattr(parent(entry), name)).parameters.items())[1:])
+    fields = {key: field for field in more for key in (field["name"], *field["aliases"])}
+
+    def shown(key, known):
+        if key in fields:
+            return f"{key}: {param_type(fields[key])} = ..."
+        parameter = ours.get(known)
+        if parameter is None:
+            return f"{key}: Any = ..."
+        return f"{key}: {parameter.annotation}" + (" = ..." if parameter.default is not parameter.empty else "")
+
+    row = arguments_of(getattr(made(entry)._row, name))
+    renamed = {argument.ours for argument in row if argument.ours not in (None, argument.name)}
+    usual = [key for key, parameter in ours.items() if parameter.kind == parameter.POSITIONAL_OR_KEYWORD]
+    places = {argument.name: argument.ours or argument.name for argument in row} or {key: key for key in usual}
+    taken = {*places, *places.values()} - renamed
+    others = [key for key, parameter in ours.items() if parameter.kind == parameter.VAR_KEYWORD]
+    stars = [f"**{key}: Any" for key in others if name != "fit"]
+    rest = [key for key in ours if key not in {*taken, *others}]
+    rest += [key for key in fields if key not in {*taken, *rest}]
+    # What has two names may be given under either.
+    given = [shown(key, known) for key, known in places.items()]
+    given = [optional(text) if known in renamed else text for text, known in zip(given, places.values())]
+    left = [*(["*"] if rest else []), *(optional(shown(key, key)) for key in rest), *stars]
+    first = next((index for index, text in enumerate(given) if text.endswith("= ...")), len(given))
+    given = [text if index < first else optional(text) for index, text in enumerate(given)]
+    head = "    @classmethod\n" if name == "download" else ""
+    return head + call(name, ["cls" if head else "self", *given, *left], result)
+
+
+def optional(argument):
+    return argument if argument.endswith("= ...") else f"{argument} = ..."
+
+
+def methods(entry):
+    """The methods whose arguments are the learner's own."""
+    row = made(entry)._row
+    text = ""
+    if entry["fit"] or entry["fit_in"] or row.fit:
+        text += method(entry, "fit", "dict[str, Any]", entry["fit_params"])
+    results = {"eval": "dict[str, Any]", "optimize": "dict[str, Any]", "load": "bool", "download": "str"}
+    for name, result in results.items():
+        if getattr(row, name):
+            text += method(entry, name, result)
+    for name, instead in row.methods.items():
+        if instead:
+            text += call(name, ["self", "*args: Any", "**kwargs: Any"], "NoReturn")
+    return text
 
 
 def parent(entry):
-    return NativeLearnerRL if entry["fit_in"] else NativeLearner
+    return made(entry).__mro__[1]
 
 
 def learner(entry):
@@ -172,25 +260,33 @@ def learner(entry):
     # What every learner has is of the base's type: a narrower one would not do for what is written there.
     own = [field for field in entry["params"] if field["name"] not in BaseLearner.__signature__.parameters]
     text += "".join(f"    {field['name']}: {param_type(field)}\n" for field in own)
-    return text + call("__init__", arguments(entry), "None") + infer(entry) + fit(entry)
+    return text + call("__init__", arguments(entry), "None") + infer(entry) + methods(entry)
 
 
-def module(task, entries):
+def module(package, task, entries):
     kinds = {row["type"] for entry in entries for row in (*entry["ports"], *entry["outputs"])}
     kinds |= {kind for of in kinds for kind in ALSO.get(of, ()) if kind.isidentifier() and kind != "str"}
-    functions = sorted({name for kind in kinds for name in _DRAWING.get(kind, ())})
-    imports = "".join(f"from opendr._drawing import {name} as {name}\n" for name in functions)
-    trains = any(entry["fit"] for entry in entries)
-    parents = {parent(entry).__name__ for entry in entries}
-    wanted = sorted(parents - {"NativeLearnerRL"}) + ["PathLike"] * any(entry["fit"] or entry["fit_in"] for entry in entries)
-    imports += f"from opendr._native_learner import {', '.join(wanted)}\n" if wanted else ""
-    imports += "from opendr._native_learner_rl import NativeLearnerRL\n" if "NativeLearnerRL" in parents else ""
-    for home, wanted in (("data", False), ("target", True)):
-        found = ", ".join(sorted(kind for kind in kinds if is_target(kind) == wanted))
-        imports += f"from opendr.engine.{home} import {found}\n" if found else ""
-    if trains:
-        imports += "from opendr.engine.datasets import Dataset\nfrom opendr.engine.learners import Learner\n"
-    return HEADER.format(task=task) + imports + "\n" + "\n".join(learner(entry) for entry in entries)
+    own = {entry["class_name"] for entry in entries}
+    homes = {name: "opendr._drawing" for kind in kinds for name in _DRAWING.get(kind, ())}
+    others = {name: home for name, home in names_of(f"opendr.{package}.{task}").items() if name not in {*homes, *own}}
+    homes.update({name: home for name, home in others.items() if home != HERE and not isinstance(home, Absent)})
+    by_home = sorted(homes.items(), key=lambda it: it[::-1])
+    imports = "".join(f"from {home} import {name} as {name}\n" for name, home in by_home)
+    text = "\n".join(learner(entry) for entry in entries)
+    text += "".join(f"\n{absent(name, home)}" for name, home in sorted(others.items()) if isinstance(home, Absent))
+    parents = {(parent(entry).__module__, parent(entry).__name__) for entry in entries}
+    wanted = parents | {(module, name) for name, module in HOMES.items() if re.search(rf"\b{name}\b", text)}
+    wanted |= {(f"opendr.engine.{'target' if is_target(kind) else 'data'}", kind) for kind in kinds}
+    for home in sorted({module for module, _ in wanted}):
+        imports += f"from {home} import {', '.join(sorted(name for module, name in wanted if module == home))}\n"
+    return HEADER.format(task=task) + imports + "\n" + text
+
+
+def absent(name, home):
+    if not name[0].isupper():
+        return call(name, ["*args: Any", "**kwargs: Any"], "NoReturn").removeprefix("    ")
+    text = f'class {name}:\n    """Not here yet: {home.use}."""\n\n'
+    return text + call("__init__", ["self", "*args: Any", "**kwargs: Any"], "NoReturn")
 
 
 def by_task():
@@ -263,11 +359,46 @@ def datasets_page():
     return text
 
 
+def table_of_opendr(page):
+    """docs/python.md with its end made anew."""
+    text, demos, idle, missing = page[: page.index(UPSTREAM_MARK)] + UPSTREAM_MARK, "", "", ""
+    names = {}
+    for task in TASKS:
+        for path, found in rows(task).MODULES.items():
+            for name, home in found.items():
+                names.setdefault((task, name), (path, home))
+        for name, row in sorted(getattr(rows(task), "LEARNERS", {}).items()):
+            demos += f"| `{name}` | {row.demos} | {cell('; '.join(row.differs))} |\n"
+            idle += idle_arguments(name, row)
+    for (task, name), (path, home) in sorted(names.items(), key=lambda item: item[0][::-1]):
+        if isinstance(home, Absent):
+            module = ".".join(filter(None, (task, path)))
+            missing += f"| `{name}` | `opendr.{module}` | {cell(home.use)} |\n"
+    count = sum(isinstance(home, Absent) for _, home in names.values())
+    modules = {".".join(filter(None, (task, path))) for task in TASKS for path in rows(task).MODULES}
+    text += UPSTREAM_TEXT.format(names=len(names), modules=len(modules), here=len(names) - count, missing=count)
+    text += f"\n### Demos\n{DEMOS_TEXT}\n| learner | demos | what remained different |\n|---|---|---|\n{demos}"
+    text += f"\n### Not here yet\n\n{MISSING_TEXT}\n| name | module | instead |\n|---|---|---|\n{missing}"
+    text += f"\n### Arguments without effect\n\n{IDLE_TEXT}\n| learner | arguments | why |\n|---|---|---|\n{idle}"
+    return text
+
+
+def idle_arguments(name, row):
+    """Rows of arguments that the table says to have no effect, by their reasons."""
+    reasons = {}
+    for method in ("init", "infer", "fit", "eval", "optimize", "download", "load", "save"):
+        for argument in arguments_of(getattr(row, method)):
+            if argument.ours is None:
+                place = argument.name if method == "init" else f"{method}({argument.name})"
+                reasons.setdefault(argument.reason, []).append(f"`{place}`")
+    return "".join(f"| `{name}` | {', '.join(places)} | {cell(reason)} |\n" for reason, places in reasons.items())
+
+
 def stubs():
     files, listed = {}, {}
     for task, entries in by_task().items():
         package = entries[0]["package"]
-        files[f"{package}/{task}.pyi"] = module(task, entries)
+        files[f"{package}/{task}.pyi"] = module(package, task, entries)
         listed.setdefault(package, []).append(f"from opendr.{package} import {task} as {task}\n")
     for package, lines in listed.items():
         files[f"{package}/__init__.pyi"] = f'"""{package.title()}: a module a task."""\n\n{"".join(sorted(lines))}'
@@ -277,6 +408,7 @@ def stubs():
 def main():
     stale = False
     pages = {"learners.md": page(), "metrics.md": metrics_page(), "datasets.md": datasets_page()}
+    pages["python.md"] = table_of_opendr((DOCS / "python.md").read_text())
     files = {**{DOCS / name: text for name, text in pages.items()}, **{STUBS / name: text for name, text in stubs().items()}}
     for path, text in files.items():
         there = path.read_text() if path.is_file() else ""

@@ -4,7 +4,8 @@ use crate::shell::{Result, command, root, step, target};
 use crate::test::TEST_LEARNER;
 use crate::wheel;
 
-/// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md` and the C headers; tests fail when these are stale.
+/// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md`, OpenDR's table in `docs/python.md` and the C
+/// headers; tests fail when these are stale.
 pub fn run() -> Result<()> {
     let mut messages = command("cargo");
     messages.args(["test", "-p", "opendr-message-generator", "--test", "messages"]).env("OPENDR_UPDATE", "1");

@@ -33,7 +33,9 @@ def test_class(entry):
     assert cls.__module__ == f"opendr.{entry['package']}.{entry['task']}"
     assert getattr(__import__(cls.__module__, fromlist=[cls.__name__]), cls.__name__) is cls
     parameters = inspect.signature(cls).parameters
-    assert list(parameters)[: len(BaseLearner.__signature__.parameters)] == list(BaseLearner.__signature__.parameters)
+    # OpenDR's own order where it has the class; tests/test_upstream.py.
+    if not cls._row.init:
+        assert list(parameters)[: len(BaseLearner.__signature__.parameters)] == list(BaseLearner.__signature__.parameters)
     for field in entry["params"]:
         assert parameters[field["name"]].default == pytest.approx(field["default"])
         assert field["name"] in cls.__doc__
@@ -81,9 +83,10 @@ def test_life_cycle(entry, zoo, photo, tmp_path):
     given = inputs(entry, photo)
     learner = cls(device="cpu")
     assert not learner.is_ready and learner.classes == []
-    with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
-        learner.infer(**given)
-    folder = learner.download(str(tmp_path / "models"), verbose=False)
+    if not cls._row.ready:
+        with pytest.raises(FileNotFoundError, match=r"download\(\).*load\(\).*fit\(\)"):
+            learner.infer(**given)
+    folder = learner.download(path=str(tmp_path / "models"), verbose=False)
     assert learner.load(folder) is True and learner.is_ready
     answer = json_of(entry, learner.infer(**given))
     assert learner.save(str(tmp_path / "saved")) is True
@@ -98,7 +101,7 @@ def test_life_cycle(entry, zoo, photo, tmp_path):
     with pytest.raises(refused[0], match=refused[1]):
         learner.fit(None)
     with pytest.raises(NotImplementedError, match=entry["class_name"]):
-        learner.optimize("cpu")
+        learner.optimize(target_device="cpu")
     with pytest.raises(ValueError, match="output"):
         learner.optimize()
 

@@ -74,7 +74,7 @@ def test_swapped_bytes_and_unaligned_memory(nanodet, photo):
 def test_wrong_number_of_inputs(nanodet, photo):
     with pytest.raises(ValueError, match='"image".*missing'):
         nanodet.infer()
-    with pytest.raises(TypeError, match="takes 1 inputs"):
+    with pytest.raises(TypeError, match="threshold should be a float"):
         nanodet.infer(photo, photo)
     with pytest.raises(TypeError, match="twice"):
         nanodet.infer(photo, image=photo)

@@ -12,7 +12,10 @@ Modules and classes are those of OpenDR: ``opendr.engine.data``, ``opendr.engine
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
+
+from opendr._upstream import Finder
 
 if TYPE_CHECKING:
     from opendr._errors import (
@@ -53,6 +56,9 @@ __all__ = [
     "learners",
     "register",
 ]
+
+# After all others: what is a file stays one.
+sys.meta_path.append(Finder)
 
 #: Where the names come from, imported when they are first asked for: `import opendr` alone costs nothing.
 _HOMES = {

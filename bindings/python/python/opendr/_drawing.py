@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
@@ -23,17 +24,19 @@ ClassNames = Union[Sequence[str], Mapping[int, str]]
 
 def draw_bounding_boxes(
     img: Picture,
-    boxes: Union[BoundingBoxList, TrackingAnnotationList],
+    bounding_boxes: Union[BoundingBoxList, TrackingAnnotationList],
     class_names: Optional[ClassNames] = None,
     show: bool = False,
+    line_thickness: Optional[int] = None,
 ) -> Picture:
     """Draws boxes with their class, score, landmarks and outline.
 
     Args:
         img: OpenCV's picture, drawn on in place, or an :class:`Image`.
-        boxes: The boxes.
+        bounding_boxes: The boxes.
         class_names: What class indices mean, by index; the boxes' own names when left out.
         show: Opens a window and waits for a key; without OpenCV or a display, writes a file and prints its path.
+        line_thickness: No effect: lines and letters follow the picture's size.
 
     Returns:
         ``img`` itself for OpenCV's picture, else a new :class:`Image`.
@@ -42,9 +45,12 @@ def draw_bounding_boxes(
         TypeError: Something is of another type.
         ValueError: The picture cannot be drawn on.
     """
-    if not isinstance(boxes, (BoundingBoxList, TrackingAnnotationList)):
-        raise TypeError(f"boxes should be a BoundingBoxList, not {boxes!r:.200}")
-    drawn = _drawn(img, boxes, class_names)
+    if not isinstance(bounding_boxes, (BoundingBoxList, TrackingAnnotationList)):
+        raise TypeError(f"bounding_boxes should be a BoundingBoxList, not {bounding_boxes!r:.200}")
+    if line_thickness is not None:
+        text = "draw_bounding_boxes: line_thickness has no effect: lines and letters follow the picture's size"
+        warnings.warn(text, UserWarning, stacklevel=2)
+    drawn = _drawn(img, bounding_boxes, class_names)
     if show:
         show_picture(drawn if isinstance(drawn, Image) else _image_from_opencv(drawn))
     return drawn

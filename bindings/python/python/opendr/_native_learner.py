@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import warnings
@@ -10,7 +11,11 @@ from typing import Any, ClassVar, NoReturn, Optional, Union
 
 from opendr import _opendr
 from opendr._errors import InternalError, InvalidInput, Unsupported
+from opendr._upstream.arguments import by_name, methods, value_here
+from opendr._upstream.rows import Argument, arguments
+from opendr._upstream.rows import Learner as Row
 from opendr.engine import data, target
+from opendr.engine._parameters import Parameter, parameters
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import BaseLearner, Learner
 
@@ -30,10 +35,18 @@ class NativeBase(BaseLearner):
     """
 
     _entry: ClassVar[Table]
+    #: OpenDR's row of this learner.
+    _row: ClassVar[Row] = Row()
+    #: The arguments of the constructor, by place.
+    _places: ClassVar[Sequence[Argument]] = ()
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
-        known = self._known(kwargs, stacklevel=3)
-        super().__init__(*args, **{name: value for name, value in known.items() if value is not None})
+        given = by_name(type(self).__name__, self._places, args, kwargs, stacklevel=3)
+        idle = dict(self._entry["without_effect"])
+        #: OpenDR's arguments without effect; some name the folder that OpenDR's programs load from.
+        self._idle = {name: value for name, value in given.items() if name in idle}
+        known = self._known(given, stacklevel=3)
+        super().__init__(**{name: value for name, value in known.items() if value is not None})
         params = {field["name"]: getattr(self, field["name"]) for field in self._entry["params"]}
         self._handle = _opendr.Handle(self._entry["name"], params, self.device)
 
@@ -232,8 +245,9 @@ class NativeBase(BaseLearner):
 
     def _fit_params(self, given: dict[str, Any]) -> dict[str, Any]:
         """The parameters of the training: those of this call over those of the constructor."""
-        names = [field["name"] for field in self._entry["fit_params"]]
-        params = {name: getattr(self, name) for name in names}
+        names, known = [field["name"] for field in self._entry["fit_params"]], parameters(type(self))
+        # What was set, even where the attribute says what the loaded model has.
+        params = {name: Parameter.__get__(known[name], self) for name in names}
         for name, value in self._known(given, stacklevel=4).items():
             if name not in names:
                 raise TypeError(f"fit has no argument {name!r}; parameters of the training: {', '.join(names)}")
@@ -244,18 +258,37 @@ class NativeBase(BaseLearner):
         """Arguments under the names they have here; those without effect are left out, with a warning."""
         fields = [*self._entry["params"], *self._entry["fit_params"]]
         renamed = {alias: field["name"] for field in fields for alias in field["aliases"]}
-        idle = dict(self._entry["without_effect"])
+        choices = {field["name"]: field["choices"] for field in fields}
+        owner, idle = type(self).__name__, dict(self._entry["without_effect"])
         known: dict[str, Any] = {}
         for given, value in arguments.items():
             name = renamed.get(given, given)
             if given in idle:
-                place = f"{type(self).__name__}: {given} has no effect: {idle[given]}"
-                warnings.warn(place, UserWarning, stacklevel=stacklevel)
-            elif name in known:
-                raise TypeError(f"{type(self).__name__} got {name} twice (also as {given}); give it once")
-            else:
-                known[name] = value
+                warnings.warn(f"{owner}: {given} has no effect: {idle[given]}", UserWarning, stacklevel=stacklevel)
+                continue
+            if name in known:
+                raise TypeError(f"{owner} got {name} twice (also as {given}); give it once")
+            here = value_here(owner, self._row, name, value, choices.get(name, ()), stacklevel + 1)
+            if here is not None or value is None:
+                known[name] = here
         return known
+
+    def _live_name(self, name: str) -> Optional[str]:
+        """The live parameter that ``name`` stands for, if any."""
+        live = (field for field in self._entry["params"] if field["live"])
+        return next((field["name"] for field in live if name in (field["name"], *field["aliases"])), None)
+
+    @contextlib.contextmanager
+    def _for_now(self, params: Mapping[str, Any]) -> Iterator[None]:
+        """Sets parameters for a while."""
+        kept = {name: getattr(self, name) for name in params}
+        try:
+            for name, value in params.items():
+                setattr(self, name, value)
+            yield
+        finally:
+            for name, value in kept.items():
+                setattr(self, name, value)
 
     def _arguments(self, inputs: tuple[Any, ...], named: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
         """The inputs by port, and the parameters of this call."""
@@ -264,13 +297,17 @@ class NativeBase(BaseLearner):
             raise TypeError(f"infer takes {len(names)} inputs ({', '.join(names)}), not {len(inputs)}")
         ports, overrides = dict(zip(names, inputs)), dict[str, Any]()
         live = {field["name"] for field in self._entry["params"] if field["live"]}
+        known = parameters(type(self)) if named else {}
         for name, value in self._known(named, stacklevel=4).items():
             if name in ports:
                 raise TypeError(f"infer got {name} twice; give it once")
             if name not in names and name not in live:
-                known = ", ".join([*names, *sorted(live)])
-                raise TypeError(f"infer has no argument {name!r}; there are {known}")
-            (ports if name in names else overrides)[name] = value
+                there = ", ".join([*names, *sorted(live)])
+                raise TypeError(f"infer has no argument {name!r}; there are {there}")
+            if name in names:
+                ports[name] = value
+            else:
+                overrides[name] = known[name].checked(value)
         # None stands for what is left out, where that may be.
         may_lack = {port["name"] for port in self._entry["ports"] if port["optional"] or port["init"]}
         return {name: value for name, value in ports.items() if value is not None or name not in may_lack}, overrides
@@ -548,6 +585,17 @@ def _teacher(teacher: Optional[Learner]) -> Any:
     return name, teacher
 
 
+class _Classes(Parameter):
+    """The classes that are to be trained, and once there is a model those that it has."""
+
+    def __init__(self, parameter: Parameter) -> None:
+        vars(self).update(vars(parameter))
+
+    def __get__(self, instance: Any, owner: Optional[type] = None) -> Any:
+        handle = None if instance is None else vars(instance).get("_handle")
+        return handle and handle.classes or super().__get__(instance, owner)
+
+
 def _alias(name: str) -> property:
     """OpenDR's name of a parameter as an attribute."""
     return property(lambda self: getattr(self, name), lambda self, value: setattr(self, name, value))
@@ -564,7 +612,13 @@ def _sample(folder: Optional[str], verbose: bool) -> PathLike:
     return copy
 
 
-def _parent(entry: Table) -> type[NativeBase]:
+def _parent(entry: Table, row: Row) -> type[NativeBase]:
+    from importlib import import_module
+
+    if row.mixin:
+        module, _, name = row.mixin.partition(":")
+        mixin: type[NativeBase] = getattr(import_module(module), name)
+        return mixin
     if not entry["fit_in"]:
         return NativeLearner
     from opendr._native_learner_rl import NativeLearnerRL
@@ -576,20 +630,27 @@ def native_class(entry: Table, module: str) -> type[NativeBase]:
     """The class of a learner of the registry."""
     from collections import namedtuple
 
-    from opendr._reference import document, params_annotations
-    from opendr.engine._parameters import signature
+    from opendr._reference import constructor, document, params_annotations
+    from opendr._upstream.modules import learner
 
+    row = learner(f"{entry['package']}.{entry['task']}", entry["class_name"]) or Row()
+    parent = _parent(entry, row)
     names = [output["name"] for output in entry["outputs"]]
     fields = [*entry["fit_params"], *entry["params"]]
     namespace: dict[str, Any] = {
         **{alias: _alias(field["name"]) for field in entry["fit_params"] for alias in field["aliases"]},
+        **methods(row, parent),
         "__doc__": document(entry),
         "__module__": module,
         "__annotations__": params_annotations(entry),
         "_entry": entry,
+        "_row": row,
+        "_places": arguments(row.init or " ".join(BaseLearner.__signature__.parameters)),
         "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
         **{field["name"]: field["default"] for field in fields},
     }
-    made: Any = type(entry["class_name"], (_parent(entry),), namespace)
-    made.__signature__ = signature(made, by_place=BaseLearner.__signature__.parameters)
+    made: Any = type(entry["class_name"], (parent,), namespace)
+    made.__signature__ = constructor(made)
+    if "classes" in {field["name"] for field in fields}:
+        made.classes = _Classes(vars(made)["classes"])
     return made  # type: ignore[no-any-return]

@@ -6,7 +6,7 @@ import inspect
 import textwrap
 from typing import Annotated, Any, Literal, Optional
 
-from opendr.engine.learners import Live, Range, Unit
+from opendr.engine._parameters import Live, Range, Unit, signature
 
 Table = dict[str, Any]
 _TYPES: dict[str, Any] = {"float": float, "int": int, "bool": bool, "text": str, "list": list}
@@ -29,6 +29,20 @@ def _annotation(field: Table) -> Any:
     if field["live"]:
         extras.append(Live())
     return Annotated[tuple([hint, *extras])]
+
+
+def constructor(cls: Any) -> inspect.Signature:
+    """The signature of a learner's constructor: the arguments by place, then all others by name."""
+    known = signature(cls, by_place=()).parameters
+    fields = (*cls._entry["fit_params"], *cls._entry["params"])
+    renamed = {alias: field["name"] for field in fields for alias in field["aliases"]}
+    shown = {}
+    for argument in cls._places:
+        ours = known.get(renamed.get(argument.name, argument.name))
+        default, hint = (None, Any) if ours is None else (ours.default, ours.annotation)
+        kind = inspect.Parameter.POSITIONAL_OR_KEYWORD
+        shown[argument.name] = inspect.Parameter(argument.name, kind, default=default, annotation=hint)
+    return inspect.Signature([*shown.values(), *(known[name] for name in known if name not in shown)])
 
 
 def document(entry: Table) -> str:

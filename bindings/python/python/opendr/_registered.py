@@ -22,7 +22,9 @@ def task_modules(package: types.ModuleType) -> None:
     """Makes the modules of a package of learners, one a task, with the task's learners and drawing functions."""
     from opendr import _drawing
     from opendr._native_learner import native_class
+    from opendr._upstream.modules import add_names
 
+    made = {}
     for entry in _opendr.entries():
         if entry["name"] in _OWN or package.__name__ != f"opendr.{entry['package']}":
             continue
@@ -30,14 +32,17 @@ def task_modules(package: types.ModuleType) -> None:
         module = sys.modules.get(name)
         if module is None:
             module = types.ModuleType(name, f"Learners of the task {entry['task']}.")
-            module.__dict__["__all__"] = []
-            sys.modules[name] = module
+            # Programs of OpenDR look for files beside a learner's module.
+            module.__dict__.update(__all__=[], __path__=[], __file__=package.__file__)
+            made[name] = sys.modules[name] = module
             setattr(package, entry["task"], module)
         found = {entry["class_name"]: native_class(entry, name)}
         for output in entry["outputs"]:
             found.update({name: getattr(_drawing, name) for name in _DRAWING.get(output["type"], ())})
         module.__dict__.update(found)
         module.__dict__["__all__"] = sorted({*module.__dict__["__all__"], *found})
+    for module in made.values():
+        add_names(module)
 
 
 def learners() -> dict[str, type[BaseLearner]]:

@@ -1,12 +1,16 @@
 """Learners of the task face_detection. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
-from opendr._native_learner import NativeLearner
+from opendr._native_learner import NativeLearner, PathLike
 from opendr.engine.data import Image
 from opendr.engine.target import BoundingBoxList
 

@@ -1,14 +1,19 @@
 """Learners of the task fall_detection. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw as draw
 from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
 from opendr._drawing import get_bbox as get_bbox
-from opendr._native_learner import NativeLearner
+from opendr._upstream.pose_datasets import URFallDatasetIterator as URFallDatasetIterator
+from opendr._upstream.learners.people import FallDetector
 from opendr.engine.data import Image
 from opendr.engine.target import BoundingBoxList, PoseList
 
@@ -16,7 +21,7 @@ class FallDetectorLearnerOutputs(NamedTuple):
     falls: BoundingBoxList
     poses: PoseList
 
-class FallDetectorLearner(NativeLearner):
+class FallDetectorLearner(FallDetector):
     """Tells which persons have fallen, by a rule on their poses over time.
 
     Task: fall_detection. ``infer`` takes:
@@ -43,10 +48,5 @@ class FallDetectorLearner(NativeLearner):
     hold: float
     keypoint_threshold: float
     base_height: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, hold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., pose_estimator: Any = ...) -> None: ...
-    @overload
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, hold: float = ..., threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., pose_estimator: Any = ...) -> FallDetectorLearnerOutputs: ...  # type: ignore[overload-overlap]
-    @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, hold: float = ..., threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., pose_estimator: Any = ...) -> list[FallDetectorLearnerOutputs]: ...
-    @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, hold: float = ..., threshold: float = ..., keypoint_threshold: float = ..., base_height: int = ..., pose_estimator: Any = ...) -> Iterator[FallDetectorLearnerOutputs]: ...
+    def __init__(self, pose_estimator: Any = ..., *, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., hold: float = ..., keypoint_threshold: float = ..., base_height: int = ...) -> None: ...
+    def eval(self, dataset: Any, verbose: Any = ..., **options: Any) -> dict[str, Any]: ...

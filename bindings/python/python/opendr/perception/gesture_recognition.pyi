@@ -1,16 +1,20 @@
 """Learners of the task gesture_recognition. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
 from opendr._native_learner import NativeLearner, PathLike
 from opendr.engine.data import Image, Vector
-from opendr.engine.target import BoundingBoxList, Category
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
+from opendr.engine.target import BoundingBoxList, Category
 
 class KeypointGestureLearner(NativeLearner):
     """Tells gestures by the key points of a hand or the path of a finger tip; trains in seconds.
@@ -73,7 +77,7 @@ class KeypointGestureLearner(NativeLearner):
     def infer(self, vector: Sequence[Union[Vector, ArrayLike]]) -> list[Category]: ...
     @overload
     def infer(self, vector: Iterator[Union[Vector, ArrayLike]]) -> Iterator[Category]: ...
-    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
 
 class HandGestureLearner(NativeLearner):
     """Tells the gestures of the hands in a picture, and in a video those of a pointing finger.
@@ -102,3 +106,8 @@ class HandGestureLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ...) -> list[BoundingBoxList]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ...) -> Iterator[BoundingBoxList]: ...
+
+class GestureRecognitionLearner:
+    """Not here yet: use HandGestureLearner, which finds hands and tells their gestures, or train NanodetLearner on HaGRID."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -1,13 +1,26 @@
 """Learners of the task object_tracking_2d. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._drawing import draw_bounding_boxes as draw_bounding_boxes
-from opendr._native_learner import NativeLearner
+from opendr._upstream.tracking_datasets import Market1501Dataset as Market1501Dataset
+from opendr._upstream.tracking_datasets import Market1501DatasetIterator as Market1501DatasetIterator
+from opendr._upstream.tracking_datasets import MotDataset as MotDataset
+from opendr._upstream.tracking_datasets import MotDatasetIterator as MotDatasetIterator
+from opendr._upstream.tracking_datasets import RawMotDatasetIterator as RawMotDatasetIterator
+from opendr._upstream.tracking_datasets import RawMotWithDetectionsDatasetIterator as RawMotWithDetectionsDatasetIterator
+from opendr._native_learner import NativeLearner, PathLike
+from opendr._upstream.learners.tracking import DeepSort, NumberedFrames, SingleObject
 from opendr.engine.data import Image
+from opendr.engine.datasets import Dataset
+from opendr.engine.learners import Learner
 from opendr.engine.target import BoundingBoxList, TrackingAnnotationList
 
 class SortLearner(NativeLearner):
@@ -123,7 +136,7 @@ class OcSortLearner(NativeLearner):
     def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, iou_threshold: float = ..., max_age: int = ..., min_hits: int = ..., delta_t: int = ..., inertia: float = ..., per_class: bool = ...) -> None: ...
     def infer(self, detections: BoundingBoxList, image: Optional[Union[Image, NDArray[Any], str, os.PathLike[str]]] = ..., *, threshold: float = ..., iou_threshold: float = ..., max_age: int = ..., min_hits: int = ..., delta_t: int = ..., inertia: float = ..., per_class: bool = ...) -> TrackingAnnotationList: ...
 
-class ObjectTracking2DDeepSortLearner(NativeLearner):
+class ObjectTracking2DDeepSortLearner(DeepSort):
     """DeepSORT follows the persons that a detector finds and knows them again by how they look.
 
     Task: object_tracking_2d. ``infer`` takes:
@@ -169,10 +182,14 @@ class ObjectTracking2DDeepSortLearner(NativeLearner):
     n_init: int
     nn_budget: int
     per_class: bool
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, max_dist: float = ..., min_confidence: float = ..., nms_max_overlap: float = ..., max_iou_distance: float = ..., max_age: int = ..., n_init: int = ..., nn_budget: int = ..., per_class: bool = ...) -> None: ...
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], detections: BoundingBoxList, *, max_dist: float = ..., min_confidence: float = ..., threshold: float = ..., nms_max_overlap: float = ..., max_iou_distance: float = ..., max_age: int = ..., n_init: int = ..., nn_budget: int = ..., per_class: bool = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ...) -> TrackingAnnotationList: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., max_dist: float = ..., min_confidence: float = ..., nms_max_overlap: float = ..., max_iou_distance: float = ..., max_age: int = ..., n_init: int = ..., nn_budget: int = ..., *, lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., per_class: bool = ...) -> None: ...
+    def fit(self, dataset: Dataset, epochs: Any = ..., val_dataset: Optional[Dataset] = ..., val_epochs: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., train_transforms: Any = ..., val_transforms: Any = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ...) -> dict[str, Any]: ...
+    def eval(self, dataset: Any, logging_path: Any = ..., silent: Any = ..., verbose: Any = ..., **options: Any) -> dict[str, Any]: ...
+    def optimize(self, do_constant_folding: Any = ..., img_size: Any = ..., *, target_device: str = ..., output: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
+    @classmethod
+    def download(cls, model_name: Any = ..., path: Optional[PathLike] = ..., server_url: Optional[str] = ..., *, mode: str = ..., verbose: bool = ..., url: Optional[str] = ..., variant: Optional[str] = ...) -> str: ...
 
-class ObjectTracking2DFairMotLearner(NativeLearner):
+class ObjectTracking2DFairMotLearner(NumberedFrames):
     """NanoDet and ByteTrack in one call follow the persons in a video.
 
     Task: object_tracking_2d. ``infer`` takes:
@@ -235,15 +252,20 @@ class ObjectTracking2DFairMotLearner(NativeLearner):
     min_box_area: float
     every_class: bool
     camera_motion: bool
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., lr_step: Any = ..., head_conv: Any = ..., ltrb: Any = ..., num_classes: Any = ..., reg_offset: Any = ..., gpus: Any = ..., num_workers: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., reid_dim: Any = ..., norm_wh: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., num_epochs: Any = ..., hm_weight: Any = ..., down_ratio: Any = ..., max_objs: Any = ..., track_buffer: int = ..., image_mean: Any = ..., image_std: Any = ..., frame_rate: Any = ..., min_box_area: float = ..., use_pretrained_backbone: Any = ..., *, every_class: bool = ..., camera_motion: bool = ...) -> None: ...
     @overload
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> TrackingAnnotationList: ...  # type: ignore[overload-overlap]
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], frame_ids: Any = ..., img_size: Any = ..., *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> TrackingAnnotationList: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> list[TrackingAnnotationList]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], frame_ids: Any = ..., img_size: Any = ..., *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> list[TrackingAnnotationList]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> Iterator[TrackingAnnotationList]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], frame_ids: Any = ..., img_size: Any = ..., *, threshold: float = ..., track_buffer: int = ..., min_box_area: float = ..., every_class: bool = ..., camera_motion: bool = ..., backbone: Any = ..., network_head: Any = ..., scale: Any = ..., num_classes: Any = ..., max_objs: Any = ..., frame_rate: Any = ..., image_mean: Any = ..., image_std: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., lr_step: Any = ..., num_epochs: Any = ..., checkpoint_after_iter: Any = ..., checkpoint_load_iter: Any = ..., num_workers: Any = ..., gpus: Any = ..., mse_loss: Any = ..., reg_loss: Any = ..., hm_weight: Any = ..., wh_weight: Any = ..., off_weight: Any = ..., id_weight: Any = ..., head_conv: Any = ..., ltrb: Any = ..., reg_offset: Any = ..., dense_wh: Any = ..., cat_spec_wh: Any = ..., norm_wh: Any = ..., reid_dim: Any = ..., down_ratio: Any = ..., use_pretrained_backbone: Any = ...) -> Iterator[TrackingAnnotationList]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., val_epochs: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., train_split_paths: Any = ..., val_split_paths: Any = ..., resume_optimizer: Any = ..., nID: Any = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ...) -> dict[str, Any]: ...
+    def eval(self, dataset: Dataset, val_split_paths: Any = ..., logging_path: Any = ..., silent: Any = ..., verbose: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., folder: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
+    def optimize(self, do_constant_folding: Any = ..., img_size: Any = ..., optimizable_dcn_v2: Any = ..., *, target_device: str = ..., output: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
+    @classmethod
+    def download(cls, model_name: Any = ..., path: Optional[PathLike] = ..., server_url: Optional[str] = ..., *, mode: str = ..., verbose: bool = ..., url: Optional[str] = ..., variant: Optional[str] = ...) -> str: ...
 
-class SiamRPNLearner(NativeLearner):
+class SiamRPNLearner(SingleObject):
     """NanoTrack follows one object of any kind from a box in the first frame.
 
     Task: object_tracking_2d. ``infer`` takes:
@@ -278,5 +300,12 @@ class SiamRPNLearner(NativeLearner):
     window_influence: float
     penalty: float
     size_rate: float
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, window_influence: float = ..., penalty: float = ..., size_rate: float = ..., n_epochs: Any = ..., num_workers: Any = ..., warmup_epochs: Any = ..., weight_decay: Any = ..., momentum: Any = ..., cls_weight: Any = ..., loc_weight: Any = ...) -> None: ...
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], init_box: Optional[BoundingBoxList] = ..., *, window_influence: float = ..., penalty: float = ..., size_rate: float = ..., n_epochs: Any = ..., num_workers: Any = ..., warmup_epochs: Any = ..., lr: Any = ..., weight_decay: Any = ..., momentum: Any = ..., cls_weight: Any = ..., loc_weight: Any = ..., batch_size: Any = ...) -> TrackingAnnotationList: ...
+    def __init__(self, device: str = ..., n_epochs: Any = ..., num_workers: Any = ..., warmup_epochs: Any = ..., lr: float = ..., weight_decay: Any = ..., momentum: Any = ..., cls_weight: Any = ..., loc_weight: Any = ..., batch_size: int = ..., temp_path: str = ..., *, iters: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., window_influence: float = ..., penalty: float = ..., size_rate: float = ...) -> None: ...
+    def fit(self, dataset: Dataset, log_interval: Any = ..., n_gpus: Any = ..., val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ...) -> dict[str, Any]: ...
+    @classmethod
+    def download(cls, path: Optional[PathLike] = ..., mode: str = ..., verbose: bool = ..., url: Optional[str] = ..., overwrite: Any = ..., *, variant: Optional[str] = ...) -> str: ...
+
+class OTBTrainDataset:
+    """Not here yet: SiamRPNLearner follows any object without training."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -1,21 +1,29 @@
 """Learners of the task panoptic_segmentation. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
+from opendr._upstream.segmentation_datasets import CityscapesDataset as CityscapesDataset
+from opendr._upstream.segmentation_datasets import KittiDataset as KittiDataset
+from opendr._upstream.segmentation_datasets import SemanticKittiDataset as SemanticKittiDataset
 from opendr._native_learner import NativeLearner, PathLike
+from opendr._upstream.learners.scenes import PanopticPictures
 from opendr.engine.data import Image, PointCloud
-from opendr.engine.target import Heatmap
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
+from opendr.engine.target import Heatmap
 
 class EfficientPsLearnerOutputs(NamedTuple):
     instance: Heatmap
     semantic: Heatmap
 
-class EfficientPsLearner(NativeLearner):
+class EfficientPsLearner(PanopticPictures):
     """Tells class and object of every pixel, by fusing DeepLab, CenterNet and BodyPix.
 
     Task: panoptic_segmentation. ``infer`` takes:
@@ -56,13 +64,16 @@ class EfficientPsLearner(NativeLearner):
     min_overlap: float
     min_leftover: float
     min_stuff: float
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., num_workers: Any = ..., seed: Any = ...) -> None: ...
+    def __init__(self, config_file: Any = ..., lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: Any = ..., seed: Any = ..., *, backbone: str = ..., network_head: str = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ...) -> None: ...
     @overload
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: Any = ..., num_workers: Any = ..., seed: Any = ...) -> EfficientPsLearnerOutputs: ...  # type: ignore[overload-overlap]
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], return_raw_logits: Any = ..., *, threshold: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: Any = ..., num_workers: Any = ..., seed: Any = ...) -> EfficientPsLearnerOutputs: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: Any = ..., num_workers: Any = ..., seed: Any = ...) -> list[EfficientPsLearnerOutputs]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], return_raw_logits: Any = ..., *, threshold: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: Any = ..., num_workers: Any = ..., seed: Any = ...) -> list[EfficientPsLearnerOutputs]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: Any = ..., num_workers: Any = ..., seed: Any = ...) -> Iterator[EfficientPsLearnerOutputs]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], return_raw_logits: Any = ..., *, threshold: float = ..., box_masks: bool = ..., min_overlap: float = ..., min_leftover: float = ..., min_stuff: float = ..., config_file: Any = ..., lr: Any = ..., iters: Any = ..., batch_size: Any = ..., optimizer: Any = ..., lr_schedule: Any = ..., momentum: Any = ..., weight_decay: Any = ..., optimizer_config: Any = ..., checkpoint_after_iter: Any = ..., num_workers: Any = ..., seed: Any = ...) -> Iterator[EfficientPsLearnerOutputs]: ...
+    def eval(self, dataset: Dataset, print_results: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., folder: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
+    @classmethod
+    def download(cls, path: Optional[PathLike] = ..., mode: str = ..., trained_on: Any = ..., *, verbose: bool = ..., url: Optional[str] = ..., variant: Optional[str] = ...) -> str: ...
 
 class EfficientLpsLearnerOutputs(NamedTuple):
     instance: Heatmap
@@ -142,11 +153,15 @@ class EfficientLpsLearner(NativeLearner):
     projected: bool
     max_gap: float
     min_points: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, rows: int = ..., columns: int = ..., fov_up: float = ..., fov_down: float = ..., half_view: float = ..., width: int = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., things: list[Any] = ..., projected: bool = ..., max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> None: ...
+    def __init__(self, config_file: Any = ..., lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., momentum: float = ..., weight_decay: float = ..., optimizer_config: Any = ..., checkpoint_after_iter: int = ..., temp_path: str = ..., device: str = ..., num_workers: int = ..., seed: int = ..., *, backbone: str = ..., network_head: str = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., rows: int = ..., columns: int = ..., fov_up: float = ..., fov_down: float = ..., half_view: float = ..., width: int = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., things: list[Any] = ..., projected: bool = ..., max_gap: float = ..., min_points: int = ...) -> None: ...
     @overload
-    def infer(self, point_cloud: Union[PointCloud, ArrayLike], *, projected: bool = ..., max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> EfficientLpsLearnerOutputs: ...  # type: ignore[overload-overlap]
+    def infer(self, point_cloud: Union[PointCloud, ArrayLike], return_raw_logits: Any = ..., projected: bool = ..., *, max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> EfficientLpsLearnerOutputs: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, point_cloud: Sequence[Union[PointCloud, ArrayLike]], *, projected: bool = ..., max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> list[EfficientLpsLearnerOutputs]: ...
+    def infer(self, point_cloud: Sequence[Union[PointCloud, ArrayLike]], return_raw_logits: Any = ..., projected: bool = ..., *, max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> list[EfficientLpsLearnerOutputs]: ...
     @overload
-    def infer(self, point_cloud: Iterator[Union[PointCloud, ArrayLike]], *, projected: bool = ..., max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> Iterator[EfficientLpsLearnerOutputs]: ...
-    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., rows: int = ..., columns: int = ..., fov_up: float = ..., fov_down: float = ..., half_view: float = ..., width: int = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+    def infer(self, point_cloud: Iterator[Union[PointCloud, ArrayLike]], return_raw_logits: Any = ..., projected: bool = ..., *, max_gap: float = ..., min_points: int = ..., config_file: Any = ...) -> Iterator[EfficientLpsLearnerOutputs]: ...
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., rows: int = ..., columns: int = ..., fov_up: float = ..., fov_down: float = ..., half_view: float = ..., width: int = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
+    def eval(self, dataset: Dataset, print_results: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., folder: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., verbose: bool = ..., **metric_params: Any) -> dict[str, Any]: ...
+    @classmethod
+    def download(cls, path: Optional[PathLike] = ..., mode: str = ..., trained_on: Any = ..., *, verbose: bool = ..., url: Optional[str] = ..., variant: Optional[str] = ...) -> str: ...
+    def visualize(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -1,15 +1,20 @@
 """Learners of the task semantic_segmentation. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
+from opendr._upstream.segmentation_datasets import CamVidDataset as CamVidDataset
 from opendr._native_learner import NativeLearner, PathLike
 from opendr.engine.data import Image
-from opendr.engine.target import Heatmap
 from opendr.engine.datasets import Dataset
 from opendr.engine.learners import Learner
+from opendr.engine.target import Heatmap
 
 class DeeplabLearner(NativeLearner):
     """DeepLab v3 tells the class of every pixel, in 8 bits.
@@ -100,14 +105,15 @@ class BisenetLearner(NativeLearner):
 
     full_size: bool
     num_classes: Optional[int]
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, crop_height: int = ..., crop_width: int = ..., width: int = ..., crop: float = ..., flip: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ..., full_size: bool = ..., num_classes: Optional[int] = ..., context_path: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., temp_path: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., device: str = ..., val_after: int = ..., weight_decay: float = ..., momentum: float = ..., drop_last: Any = ..., pin_memory: Any = ..., num_workers: int = ..., num_classes: Optional[int] = ..., crop_height: int = ..., crop_width: int = ..., context_path: Any = ..., *, lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., backbone: str = ..., network_head: str = ..., threshold: float = ..., scale: float = ..., width: int = ..., crop: float = ..., flip: float = ..., epochs: int = ..., max_steps: int = ..., accumulate: int = ..., batches_per_iter: int = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., seed: int = ..., full_size: bool = ...) -> None: ...
     @overload
     def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, full_size: bool = ..., context_path: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Heatmap: ...  # type: ignore[overload-overlap]
     @overload
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, full_size: bool = ..., context_path: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> list[Heatmap]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, full_size: bool = ..., context_path: Any = ..., drop_last: Any = ..., pin_memory: Any = ...) -> Iterator[Heatmap]: ...
-    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., keep_empty: bool = ..., skip_broken: bool = ..., crop_height: int = ..., crop_width: int = ..., width: int = ..., crop: float = ..., flip: float = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...  # type: ignore[override]
+    def fit(self, dataset: Dataset, val_dataset: Optional[Dataset] = ..., silent: bool = ..., verbose: bool = ..., *, logging_path: PathLike = ..., output: Optional[PathLike] = ..., resume: bool = ..., split: Optional[str] = ..., val_split: Optional[str] = ..., limit: Optional[int] = ..., teacher: Union[None, str, Learner] = ..., teacher_threshold: Optional[float] = ..., teacher_classes: Sequence[str] = ..., teacher_map: Optional[Mapping[str, str]] = ..., teacher_by_number: bool = ..., keep_empty: bool = ..., skip_broken: bool = ..., crop_height: int = ..., crop_width: int = ..., width: int = ..., crop: float = ..., flip: float = ..., epochs: int = ..., iters: int = ..., max_steps: int = ..., batch_size: int = ..., accumulate: int = ..., batches_per_iter: int = ..., lr: float = ..., optimizer: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., optimizer_name: Literal['adamw', 'adam', 'sgd', 'rmsprop'] = ..., momentum: float = ..., weight_decay: float = ..., lr_schedule: Literal['constant', 'step', 'cosine', 'linear'] = ..., warmup_steps: int = ..., warmup_ratio: float = ..., lr_min: float = ..., lr_schedule_eta_min: float = ..., lr_steps: list[Any] = ..., drop_after_epoch: list[Any] = ..., lr_gamma: float = ..., lr_decay: float = ..., grad_clip: float = ..., ema: float = ..., early_stop: int = ..., val_after: int = ..., checkpoint_after_iter: int = ..., checkpoint_minutes: float = ..., checkpoints_kept: int = ..., log_after: int = ..., num_workers: int = ..., seed: int = ...) -> dict[str, Any]: ...
+    def eval(self, dataset: Dataset, silent: Any = ..., verbose: bool = ..., *, metric: Optional[str] = ..., split: Optional[str] = ..., limit: Optional[int] = ..., folder: Optional[PathLike] = ..., skip_broken: bool = ..., classes: Optional[Mapping[str, str]] = ..., by_number: bool = ..., resamples: int = ..., **metric_params: Any) -> dict[str, Any]: ...
 
 class SelfieSegmentationLearner(NativeLearner):
     """Tells a person near the camera from what is behind.
@@ -187,3 +193,8 @@ class TiledSegmentationLearner(NativeLearner):
     def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> list[Heatmap]: ...
     @overload
     def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, tile: int = ..., tile_overlap: int = ..., whole: bool = ..., time_budget: float = ..., max_tiles: int = ..., detail_threshold: float = ..., change_threshold: float = ..., memory: int = ..., rotation: int = ...) -> Iterator[Heatmap]: ...
+
+class YOLOv8SegLearner:
+    """Not here yet: use DeeplabLearner for classes, BodyPixLearner of instance_segmentation for persons."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

@@ -1,16 +1,20 @@
 """Learners of the task end_to_end_planning. Made by bindings/python/stubs.py; do not edit."""
 
+# Each learner has the arguments of OpenDR's class of its name.
+# mypy: disable-error-code="override"
+# pyright: reportIncompatibleMethodOverride=false
+
 import os
-from collections.abc import Iterator, Sequence
-from typing import Any, Literal, NamedTuple, Optional, Union, overload
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Literal, NamedTuple, NoReturn, Optional, Union, overload
 
 from numpy.typing import ArrayLike, NDArray
 from opendr._native_learner import PathLike
-from opendr._native_learner_rl import NativeLearnerRL
+from opendr._upstream.learners.planning import Planner
 from opendr.engine.data import Observation
 from opendr.engine.target import RlTarget
 
-class EndToEndPlanningRLLearner(NativeLearnerRL):
+class EndToEndPlanningRLLearner(Planner):
     """Flies a drone between obstacles, from its depth camera to heading and yaw.
 
     Task: end_to_end_planning. ``infer`` takes:
@@ -45,11 +49,23 @@ class EndToEndPlanningRLLearner(NativeLearnerRL):
 
     deterministic: bool
     seed: int
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, n_steps: int = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ...) -> None: ...
+    def __init__(self, env: Any = ..., lr: float = ..., n_steps: int = ..., iters: int = ..., batch_size: int = ..., checkpoint_after_iter: int = ..., temp_path: str = ..., device: str = ..., *, optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., seed: int = ..., total_timesteps: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoints_kept: int = ..., preset: bool = ..., deterministic: bool = ...) -> None: ...
     @overload
-    def infer(self, observation: Union[Observation, ArrayLike], *, deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
+    def infer(self, observation: Union[Observation, ArrayLike], deterministic: bool = ...) -> RlTarget: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> list[RlTarget]: ...
+    def infer(self, observation: Sequence[Union[Observation, ArrayLike]], deterministic: bool = ...) -> list[RlTarget]: ...
     @overload
-    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], *, deterministic: bool = ...) -> Iterator[RlTarget]: ...
-    def fit(self, env: Any = ..., val_env: Any = ..., logging_path: PathLike = ..., silent: bool = ..., verbose: bool = ..., *, env_params: Optional[dict[str, Any]] = ..., output: Optional[PathLike] = ..., resume: bool = ..., lr: float = ..., n_steps: int = ..., batch_size: int = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...  # type: ignore[override]
+    def infer(self, observation: Iterator[Union[Observation, ArrayLike]], deterministic: bool = ...) -> Iterator[RlTarget]: ...
+    def fit(self, env: Any = ..., logging_path: PathLike = ..., verbose: bool = ..., *, val_env: Any = ..., silent: bool = ..., lr: float = ..., n_steps: int = ..., batch_size: int = ..., seed: int = ..., total_timesteps: int = ..., iters: int = ..., n_envs: int = ..., num_workers: int = ..., eval_freq: int = ..., n_eval_episodes: int = ..., checkpoint_after_iter: int = ..., checkpoints_kept: int = ..., preset: bool = ...) -> dict[str, Any]: ...
+    @classmethod
+    def download(cls, path: Optional[PathLike] = ..., url: Optional[str] = ..., *, mode: str = ..., verbose: bool = ..., variant: Optional[str] = ...) -> str: ...
+
+class AgiEnv:
+    """Not here yet: opendr.simulation has "UavDepthCorridor-v1", which needs no Webots."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...
+
+class UAVDepthPlanningEnv:
+    """Not here yet: opendr.simulation has "UavDepthCorridor-v1", which needs no Webots."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> NoReturn: ...

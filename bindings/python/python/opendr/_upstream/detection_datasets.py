@@ -1,0 +1,315 @@
+"""OpenDR's data sets of boxes in pictures."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any, Callable, Optional, Union
+from xml.etree import ElementTree
+
+from opendr._errors import FormatError
+from opendr._upstream.parts import Parts, inside, numbers
+from opendr.engine.data import Image
+from opendr.engine.datasets import DatasetIterator, ExternalDataset
+from opendr.engine.target import BoundingBox, BoundingBoxList, CocoBoundingBox
+
+PathLike = Union[str, "os.PathLike[str]"]
+Transform = Optional[Callable[..., Any]]
+_PICTURES = (".png", ".jpg", ".jpeg", ".bmp", ".webp")
+#: Larger annotations are none.
+_MOST_BYTES = 16 << 20
+
+
+class DetectionDataset(DatasetIterator):
+    """Pictures with boxes, whose samples pass through functions when they are read.
+
+    Args:
+        classes: What class indices mean.
+        dataset_type: The format, as ``ExternalDataset`` takes it.
+        root: Its folder.
+        image_paths: The files of the pictures, where a subclass reads them.
+        splits: The parts, a name or several; empty: the format's own first.
+        image_transform: From a picture to whatever.
+        target_transform: From the boxes to whatever.
+        transform: From both to a sample.
+
+    Raises:
+        FileNotFoundError: It is not there.
+        ValueError: It is of another format, or something is broken.
+    """
+
+    def __init__(
+        self,
+        classes: Sequence[str],
+        dataset_type: str,
+        root: PathLike,
+        image_paths: Optional[Sequence[str]] = None,
+        splits: Union[str, Sequence[str]] = "",
+        image_transform: Transform = None,
+        target_transform: Transform = None,
+        transform: Transform = None,
+    ) -> None:
+        self.dataset_type = dataset_type
+        self.root: str = os.fspath(root)
+        self.splits = splits
+        self.image_paths = None if image_paths is None else list(image_paths)
+        self._parts: Optional[Parts] = self._open() if image_paths is None else None
+        own = self._parts.classes if self._parts is not None else []
+        self.classes: list[str] = list(classes) or own
+        self._image_transform, self._target_transform, self._transform = image_transform, target_transform, transform
+
+    @property
+    def num_classes(self) -> int:
+        """How many classes there are."""
+        return len(self.classes)
+
+    def set_transform(self, transform: Transform) -> None:
+        """Sets what picture and boxes pass through together."""
+        self._transform = transform
+
+    def set_image_transform(self, transform: Transform) -> None:
+        """Sets what pictures pass through."""
+        self._image_transform = transform
+
+    def set_target_transform(self, transform: Transform) -> None:
+        """Sets what boxes pass through."""
+        self._target_transform = transform
+
+    def transform(self, transform: Callable[..., Any]) -> MappedDetectionDataset:
+        """Returns this data set with all samples passed through a function of picture and boxes."""
+        return MappedDetectionDataset(self, transform)
+
+    def get_image(self, item: int) -> Any:
+        """Picture number ``item``."""
+        image = self._image(item)
+        return image if self._image_transform is None else self._image_transform(image)
+
+    def get_bboxes(self, item: int) -> Any:
+        """The boxes of picture number ``item``."""
+        boxes = self._boxes(item)
+        return boxes if self._target_transform is None else self._target_transform(boxes)
+
+    def __getitem__(self, idx: int) -> Any:
+        image, boxes = self.get_image(idx), self.get_bboxes(idx)
+        return (image, boxes) if self._transform is None else self._transform(image, boxes)
+
+    def __len__(self) -> int:
+        return len(self._parts) if self._parts is not None else len(self.image_paths or ())
+
+    def _open(self) -> Parts:
+        names: list[Optional[str]] = list(_names(self.splits)) or [None]
+        external = ExternalDataset(self.root, self.dataset_type)
+        return Parts([external.open(split=name, target=BoundingBoxList) for name in names])
+
+    def _image(self, item: int) -> Image:
+        if self._parts is None:
+            return Image.open((self.image_paths or [])[item])
+        image: Image = self._parts[item][0]
+        return image
+
+    def _boxes(self, item: int) -> BoundingBoxList:
+        if self._parts is None:
+            raise NotImplementedError(f"{type(self).__name__} reads no boxes; write _boxes, or leave image_paths out")
+        part, index = self._parts.place(item)
+        found: BoundingBoxList = part.target(index)
+        return found
+
+
+class MappedDetectionDataset(DatasetIterator):
+    """A data set whose samples pass through a function of picture and boxes when they are read.
+
+    Args:
+        data: The data set.
+        map_function: From a picture and its boxes to a sample.
+    """
+
+    def __init__(self, data: DatasetIterator, map_function: Callable[..., Any]) -> None:
+        self.data = data
+        self.map_function = map_function
+        self.classes: list[str] = list(getattr(data, "classes", []))
+
+    def __getitem__(self, idx: int) -> Any:
+        item = self.data[idx]
+        return self.map_function(*item) if isinstance(item, tuple) else self.map_function(item)
+
+    def __len__(self) -> int:
+        return len(self.data)
+
+
+class ConcatDataset(Parts):
+    """Data sets one after the other.
+
+    Args:
+        datasets: The data sets; those that name their classes name the same.
+
+    Raises:
+        ValueError: Their classes differ.
+    """
+
+
+class WiderFaceDataset(DetectionDataset):
+    """WIDER FACE: the folders ``wider_face_split`` and ``WIDER_train``, ... as they are unpacked.
+
+    Args:
+        root: The folder that has them.
+        splits: The parts: ``"train"``, ``"val"``.
+        ignore_tiny: Whether faces of less than 10 pixels are left out.
+        image_transform: From a picture to whatever.
+        target_transform: From the boxes to whatever.
+        transform: From both to a sample.
+
+    Raises:
+        FileNotFoundError: It is not there.
+    """
+
+    def __init__(
+        self,
+        root: PathLike,
+        splits: Union[str, Sequence[str]],
+        ignore_tiny: bool = True,
+        image_transform: Transform = None,
+        target_transform: Transform = None,
+        transform: Transform = None,
+    ) -> None:
+        self.ignore_tiny = ignore_tiny
+        transforms = (image_transform, target_transform, transform)
+        super().__init__(["face"], "wider_face", root, None, splits, *transforms)
+
+    def _boxes(self, item: int) -> BoundingBoxList:
+        found = super()._boxes(item)
+        if not self.ignore_tiny:
+            return found
+        kept = [box for box in found.data if max(box.width, box.height) >= 10]
+        return BoundingBoxList(kept, found.image_id, classes=found.classes)
+
+
+class WiderPersonDataset(DetectionDataset):
+    """WiderPerson: ``train.txt``, ``val.txt``, and the folders ``Images`` and ``Annotations`` as they are unpacked.
+
+    Pedestrians, riders and persons that are partly seen are of the class ``person``; regions to ignore and crowds are
+    marked as crowds, which no metric counts.
+
+    Args:
+        root: The folder that has them.
+        splits: The parts: ``"train"``, ``"val"``.
+        image_transform: From a picture to whatever.
+        target_transform: From the boxes to whatever.
+        transform: From both to a sample.
+
+    Raises:
+        FileNotFoundError: A file is not there.
+        ValueError: A line is broken.
+    """
+
+    def __init__(
+        self,
+        root: PathLike,
+        splits: Union[str, Sequence[str]],
+        image_transform: Transform = None,
+        target_transform: Transform = None,
+        transform: Transform = None,
+    ) -> None:
+        folder, names = os.fspath(root), list[str]()
+        for split in _names(splits):
+            with open(inside(folder, f"{split}.txt"), encoding="utf-8") as file:
+                names += [line.strip() for line in file if line.strip()]
+        files = [inside(os.path.join(folder, "Images"), f"{name}.jpg") for name in names]
+        self._annotations = [inside(os.path.join(folder, "Annotations"), f"{name}.jpg.txt") for name in names]
+        transforms = (image_transform, target_transform, transform)
+        super().__init__(["person"], "wider_person", root, files, splits, *transforms)
+
+    def _boxes(self, item: int) -> BoundingBoxList:
+        boxes, path = list[BoundingBox](), self._annotations[item]
+        with open(path, encoding="utf-8") as file:
+            lines = [line for line in file if line.strip()]
+        for number, line in enumerate(lines[1:], 2):
+            kind, x0, y0, x1, y1 = numbers(line, 5, f"{path}:{number}")
+            place = (0, x0, y0, x1 - x0, y1 - y0)
+            if kind in (1, 2, 3):
+                boxes.append(BoundingBox(*place, class_name="person"))
+            else:
+                boxes.append(CocoBoundingBox(*place, iscrowd=1, class_name="person"))
+        return BoundingBoxList(boxes, classes=self.classes)
+
+
+class XMLBasedDataset(DetectionDataset):
+    """Pictures, and boxes in Pascal VOC's XML files, in folders of any names.
+
+    Args:
+        dataset_type: What it is called.
+        root: The folder that has both.
+        classes: The classes; by default those that the annotations name, by the alphabet.
+        image_transform: From a picture to whatever.
+        target_transform: From the boxes to whatever.
+        transform: From both to a sample.
+        splits: Kept as it is: the folder is one part.
+        images_dir: The folder of the pictures.
+        annotations_dir: The folder of the annotations, called as the pictures are.
+        preload_anno: Whether annotations are read now, else when they are asked for.
+
+    Raises:
+        FileNotFoundError: A folder is not there.
+        ValueError: An annotation is broken.
+    """
+
+    def __init__(
+        self,
+        dataset_type: str,
+        root: PathLike,
+        classes: Optional[Sequence[str]] = None,
+        image_transform: Transform = None,
+        target_transform: Transform = None,
+        transform: Transform = None,
+        splits: Union[str, Sequence[str]] = "",
+        images_dir: str = "images",
+        annotations_dir: str = "annotations",
+        preload_anno: bool = False,
+    ) -> None:
+        self.abs_images_dir = os.path.join(os.fspath(root), images_dir)
+        self.abs_annot_dir = os.path.join(os.fspath(root), annotations_dir)
+        names = sorted(name for name in os.listdir(self.abs_images_dir) if name.lower().endswith(_PICTURES))
+        self._files = [os.path.join(self.abs_annot_dir, f"{os.path.splitext(name)[0]}.xml") for name in names]
+        files = [os.path.join(self.abs_images_dir, name) for name in names]
+        transforms = (image_transform, target_transform, transform)
+        super().__init__(classes or (), dataset_type, root, files, splits, *transforms)
+        self.preload_anno = preload_anno
+        self.bboxes: list[BoundingBoxList] = []
+        if not self.classes:
+            self.classes = sorted({name for file in self._files for name, _ in _objects(file)})
+        if preload_anno:
+            self.bboxes = [self._boxes(item) for item in range(len(files))]
+
+    def _boxes(self, item: int) -> BoundingBoxList:
+        if self.bboxes:
+            return self.bboxes[item]
+        boxes, file = [], self._files[item]
+        for name, (x0, y0, x1, y1) in _objects(file):
+            if name not in self.classes:
+                raise FormatError(f"{file}: the class {name!r:.100} is none of {', '.join(self.classes)}")
+            # VOC counts pixels from 1, the last one included.
+            place = (x0 - 1, y0 - 1, x1 - x0 + 1, y1 - y0 + 1)
+            boxes.append(BoundingBox(self.classes.index(name), *place, class_name=name))
+        return BoundingBoxList(boxes, classes=self.classes)
+
+
+def _names(splits: Union[str, Sequence[str]]) -> list[str]:
+    return [splits] if isinstance(splits, str) and splits else list(splits)
+
+
+def _objects(file: str) -> list[tuple[str, list[float]]]:
+    """The objects of an annotation: class and corners."""
+    with open(file, "rb") as stream:
+        text = stream.read(_MOST_BYTES + 1)
+    # Entities of one's own make a document of a few bytes endless.
+    if len(text) > _MOST_BYTES or b"<!DOCTYPE" in text or b"<!ENTITY" in text:
+        raise FormatError(f"{file} is no annotation: it is too large, or has a document type")
+    try:
+        objects = list(ElementTree.fromstring(text).iter("object"))
+        corners = [
+            " ".join(entry.findtext(f"bndbox/{edge}", "") for edge in ("xmin", "ymin", "xmax", "ymax"))
+            for entry in objects
+        ]
+        names = [entry.findtext("name", "").strip().lower() for entry in objects]
+    except ElementTree.ParseError as error:
+        raise FormatError(f"{file}: {error}") from None
+    return [(name, numbers(line, 4, file)) for name, line in zip(names, corners)]

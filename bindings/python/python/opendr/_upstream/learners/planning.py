@@ -1,0 +1,35 @@
+"""Policies that plan."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from opendr._native_learner import PathLike
+from opendr._native_learner_rl import NativeLearnerRL
+from opendr._upstream.arguments import by_name
+
+
+class Planner(NativeLearnerRL):
+    """A policy that keeps the environment that its constructor was given."""
+
+    def __init__(self, *given: Any, **named: Any) -> None:
+        found = by_name(type(self).__name__, self._places, given, named, stacklevel=3)
+        #: Where it acts, unless ``fit`` and ``eval`` are given another environment.
+        self.env: Any = found.pop("env", None)
+        super().__init__(**found)
+
+    def fit(
+        self,
+        env: Any = None,
+        val_env: Any = None,
+        logging_path: PathLike = "",
+        silent: bool = False,
+        verbose: bool = True,
+        **options: Any,
+    ) -> dict[str, Any]:
+        """Trains as ``fit`` of every policy does, in the environment of the constructor where none is given."""
+        return super().fit(self.env if env is None else env, val_env, logging_path, silent, verbose, **options)
+
+    def eval(self, env: Any = None, **options: Any) -> dict[str, Any]:
+        """Measures as ``eval`` of every policy does, in the environment of the constructor where none is given."""
+        return super().eval(self.env if env is None else env, **options)

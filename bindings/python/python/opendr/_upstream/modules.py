@@ -1,0 +1,126 @@
+"""Module paths and names out of the table."""
+
+from __future__ import annotations
+
+import functools
+import types
+from collections.abc import Mapping
+from importlib import import_module
+from importlib.machinery import ModuleSpec
+from typing import Any, Optional
+
+from opendr._upstream.absent import absent
+from opendr._upstream.rows import HERE, Absent, Home, Learner
+
+#: OpenDR's packages that the table has, and its modules that are no learners'.
+TASKS = (
+    "control.mobile_manipulation",
+    "control.multi_object_search",
+    "control.single_demo_grasp",
+    "engine",
+    "perception.active_perception",
+    "perception.activity_recognition",
+    "perception.binary_high_resolution",
+    "perception.compressive_learning",
+    "perception.continual_slam",
+    "perception.face_recognition",
+    "perception.facial_expression_recognition",
+    "perception.fall_detection",
+    "perception.gesture_recognition",
+    "perception.heart_anomaly_detection",
+    "perception.multimodal_human_centric",
+    "perception.object_detection_2d",
+    "perception.object_detection_3d",
+    "perception.object_tracking_2d",
+    "perception.object_tracking_3d",
+    "perception.panoptic_segmentation",
+    "perception.pose_estimation",
+    "perception.semantic_segmentation",
+    "perception.skeleton_based_action_recognition",
+    "perception.speech_recognition",
+    "perception.speech_transcription",
+    "planning.end_to_end_planning",
+    "simulation.human_model_generation",
+    "utils",
+)
+
+
+def rows(task: str) -> types.ModuleType:
+    """The rows of a package, e.g. ``"perception.pose_estimation"``."""
+    return import_module(f"opendr._upstream.tasks.{task.rpartition('.')[2]}")
+
+
+def learner(task: str, name: str) -> Optional[Learner]:
+    """The row of a learner that is here."""
+    if task not in TASKS:
+        return None
+    row: Optional[Learner] = getattr(rows(task), "LEARNERS", {}).get(name)
+    return row
+
+
+@functools.lru_cache(maxsize=None)
+def paths(task: str) -> Mapping[str, Mapping[str, Home]]:
+    """The module paths of a package, the package itself among them: names and their homes. The classes of a module are
+    in the packages above it too."""
+    found: dict[str, dict[str, Home]] = {}
+    for path, names in rows(task).MODULES.items():
+        parts = [f"opendr.{task}", *filter(None, path.split("."))]
+        # The engine has a class of that name.
+        classes = {name: home for name, home in names.items() if name[0].isupper() and name != "Dataset"}
+        for count in range(1, len(parts)):
+            found.setdefault(".".join(parts[:count]), {}).update(classes)
+        found.setdefault(".".join(parts), {}).update(names)
+    return found
+
+
+def names_of(module: str) -> Mapping[str, Home]:
+    """OpenDR's names in a module; none where it is no module of OpenDR."""
+    task = _task(module)
+    return {} if task is None else paths(task).get(module, {})
+
+
+def _task(module: str) -> Optional[str]:
+    """The package of the table that a module path is in."""
+    inner = module.partition(".")[2]
+    return next((task for task in TASKS if inner == task or inner.startswith(f"{task}.")), None)
+
+
+def spec_of(module: str) -> Optional[ModuleSpec]:
+    """The spec of a module of the table that is no file."""
+    task = _task(module)
+    if task is None or module not in paths(task):
+        return None
+    loader: Any = _Loader()
+    return ModuleSpec(module, loader, origin="opendr._upstream", is_package=True)
+
+
+class _Loader:
+    def create_module(self, spec: ModuleSpec) -> None:
+        return None
+
+    def exec_module(self, module: types.ModuleType) -> None:
+        module.__doc__ = f"OpenDR's {module.__name__[len('opendr.') :]}."
+        add_names(module)
+
+
+def add_names(module: types.ModuleType) -> None:
+    """Gives a module OpenDR's names, each made when it is first asked for; those that it has stay."""
+    names = names_of(module.__name__)
+
+    def __getattr__(name: str) -> Any:
+        if name not in names:
+            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+        value = module.__dict__[name] = _value(module.__name__, name, names[name])
+        return value
+
+    own = module.__dict__.get("__all__", [])
+    module.__dict__.update(__getattr__=__getattr__, __all__=sorted({*own, *names}))
+
+
+def _value(module: str, name: str, home: Home) -> Any:
+    if isinstance(home, Absent):
+        return absent(name, module, f"{name} is not here yet; {home.use}")
+    if home != HERE:
+        return getattr(import_module(home), name)
+    found = vars(import_module(f"opendr.{_task(module)}")).get(name)
+    return found or absent(name, module, f"{name} is not in this build of opendr; install one with all its learners")

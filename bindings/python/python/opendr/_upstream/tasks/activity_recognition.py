@@ -1,0 +1,58 @@
+"""OpenDR's perception.activity_recognition."""
+
+from __future__ import annotations
+
+from opendr._upstream.rows import HERE, Absent, Home, Learner
+
+_TIMESERIES = "opendr._upstream.video_datasets"
+
+MODULES: dict[str, dict[str, Home]] = {
+    "continual_transformer_encoder.continual_transformer_encoder_learner": {
+        "CoTransEncLearner": Absent(
+            "use GatedRecurrentUnitLearner of heart_anomaly_detection for classes of time series"
+        )
+    },
+    "cox3d.cox3d_learner": {"CoX3DLearner": HERE},
+    "datasets.dummy_timeseries_dataset": {"DummyTimeseriesDataset": _TIMESERIES},
+    "datasets.kinetics": {
+        "CLASSES": Absent("`classes` of the loaded learner names what it tells"),
+        "KineticsDataset": "opendr._upstream.video_datasets",
+    },
+    "x3d.x3d_learner": {"X3DLearner": HERE},
+}
+
+_FIT = "dataset val_dataset epochs steps>max_steps"
+_INIT = (
+    "lr iters batch_size optimizer lr_schedule backbone network_head checkpoint_after_iter checkpoint_load_iter"
+    " temp_path device loss weight_decay momentum drop_last pin_memory num_workers seed num_classes"
+)
+
+LEARNERS = {
+    "X3DLearner": Learner(
+        init=_INIT,
+        infer="batch>video",
+        fit=_FIT,
+        eval="dataset steps>limit",
+        optimize="do_constant_folding!onnx",
+        download="path model_names",
+        models="xs s m l",
+        folder="x3d_{model_names=s}.pyth",
+        demos="online_recognition",
+        differs=(
+            "`infer` gives one `Category` for one clip, with the scores of all classes in `probabilities`",
+            "trained on stick figures of JHMDB's actions, not on Kinetics",
+        ),
+    ),
+    "CoX3DLearner": Learner(
+        init=f"{_INIT} temporal_window_size",
+        infer="batch>image",
+        fit=_FIT,
+        eval="dataset steps>limit",
+        optimize="do_constant_folding!onnx",
+        download="path model_names",
+        models="xs s m l",
+        folder="x3d_{model_names=s}.pyth",
+        demos="online_recognition",
+        differs=("as X3DLearner; pictures are given as they are, not normalised",),
+    ),
+}

@@ -1,0 +1,34 @@
+"""Learners of OpenDR that are not here yet can be imported, and say what to use instead."""
+
+from opendr.control.mobile_manipulation import MobileRLLearner
+from opendr.control.multi_object_search import MultiObjectSearchRLLearner
+from opendr.control.single_demo_grasp import SingleDemoGraspLearner
+from opendr.perception.active_perception.active_face_recognition import ActiveFaceRecognitionLearner
+from opendr.perception.activity_recognition import CoTransEncLearner
+from opendr.perception.continual_slam.continual_slam_learner import ContinualSLAMLearner
+from opendr.perception.gesture_recognition.gesture_recognition_learner import GestureRecognitionLearner
+from opendr.perception.multimodal_human_centric import IntentRecognitionLearner
+from opendr.perception.object_detection_2d import (
+    DetrLearner,
+    FSeq2NMSLearner,
+    RetinaFaceLearner,
+    YOLOv3DetectorLearner,
+    YOLOv5DetectorLearner,
+)
+from opendr.perception.semantic_segmentation import YOLOv8SegLearner
+from opendr.perception.skeleton_based_action_recognition import ProgressiveSpatioTemporalGCNLearner
+from opendr.perception.speech_transcription import VoskLearner
+from opendr.simulation.human_model_generation import PIFuGeneratorLearner
+
+for learner in (
+    MobileRLLearner, MultiObjectSearchRLLearner, SingleDemoGraspLearner, ActiveFaceRecognitionLearner,
+    CoTransEncLearner, ContinualSLAMLearner, GestureRecognitionLearner, IntentRecognitionLearner, DetrLearner,
+    FSeq2NMSLearner, RetinaFaceLearner, YOLOv3DetectorLearner, YOLOv5DetectorLearner, YOLOv8SegLearner,
+    ProgressiveSpatioTemporalGCNLearner, VoskLearner, PIFuGeneratorLearner,
+):  # fmt: skip
+    try:
+        learner(device="cpu")
+    except NotImplementedError as error:
+        assert str(error).startswith(f"{learner.__name__} is not here yet; "), error
+    else:
+        raise AssertionError(learner)
