@@ -191,8 +191,7 @@ fn suites(
         parity,
         of_c,
     ];
-    let of_ros =
-        environments.ros.suites(&package, |command| environment.apply(command), &[programs, module]);
+    let of_ros = environments.ros.suites(&package, |command| environment.apply(command), &[programs, module]);
     Ok((suites, of_ros.into()))
 }
 

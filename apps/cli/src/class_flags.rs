@@ -28,9 +28,12 @@ pub fn pairs(flag: &str, matches: &ArgMatches) -> Result<BTreeMap<String, String
     let mut pairs = BTreeMap::new();
     for text in matches.get_many::<String>(flag).into_iter().flatten() {
         let pair = text.split_once('=').map(|(one, other)| (one.trim(), other.trim()));
-        let (one, other) = pair.filter(|(one, other)| !one.is_empty() && !other.is_empty()).ok_or_else(|| {
-            Error::invalid_param(format!("--{flag} {text:?} is no pair of classes; write LEARNER=DATASET"))
-        })?;
+        let (one, other) =
+            pair.filter(|(one, other)| !one.is_empty() && !other.is_empty()).ok_or_else(|| {
+                Error::invalid_param(format!(
+                    "--{flag} {text:?} is no pair of classes; write LEARNER=DATASET"
+                ))
+            })?;
         if pairs.insert(one.to_owned(), other.to_owned()).is_some() {
             return Err(Error::invalid_param(format!("--{flag} has {one:?} twice; give it once")));
         }

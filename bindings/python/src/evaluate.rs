@@ -27,7 +27,8 @@ struct Function {
 
 impl Function {
     fn call<'py>(&self, py: Python<'py>, ports: &Ports<'_>) -> PyResult<Bound<'py, PyAny>> {
-        let data = PLACES.iter().map_while(|place| ports.get(place)).map(|value| python_from_value(py, value));
+        let data =
+            PLACES.iter().map_while(|place| ports.get(place)).map(|value| python_from_value(py, value));
         self.infer.bind(py).call1(PyTuple::new(py, data.collect::<PyResult<Vec<_>>>()?)?)
     }
 
@@ -58,9 +59,8 @@ impl Predictor for Function {
 
     fn infer(&mut self, ports: &Ports<'_>) -> Result<Outputs> {
         let header = ports.get(PLACES[0]).map(|value| value.to_value().header().clone());
-        let predicted = Python::attach(|py| {
-            self.predict(py, ports).map_err(|raised| error_from_exception(py, raised))
-        })?;
+        let predicted =
+            Python::attach(|py| self.predict(py, ports).map_err(|raised| error_from_exception(py, raised)))?;
         Ok(predicted
             .into_iter()
             .map(|mut value| {
@@ -99,9 +99,11 @@ pub fn evaluate(
     PythonBar::new(!verbose).run(py, |bar| {
         let job = options.open_by(metric, dataset.as_ref())?;
         let types = if types.is_empty() && !job.dataset.is_empty() { types_of(&job.dataset)? } else { types };
-        let ports: Vec<Port> = PLACES.into_iter().zip(types).map(|(place, value_type)| port(place, value_type)).collect();
+        let ports: Vec<Port> =
+            PLACES.into_iter().zip(types).map(|(place, value_type)| port(place, value_type)).collect();
         let subject = Subject { learner: name, ..Subject::default() };
-        let outcome = job.run_pipelines(&mut function, &ports, classes.into_iter().collect(), subject, bar)?;
+        let outcome =
+            job.run_pipelines(&mut function, &ports, classes.into_iter().collect(), subject, bar)?;
         Ok((json_of(&outcome)?, outcome.to_string()))
     })
 }
@@ -111,8 +113,9 @@ pub fn evaluate(
 /// # Errors
 /// `InvalidParam` for what is none of the options.
 pub fn eval_options_from_json(options: &str) -> Result<EvalOptions> {
-    serde_json::from_str(options)
-        .map_err(|error| Error::invalid_param(format!("eval has no such arguments: {error}")).with_source(error))
+    serde_json::from_str(options).map_err(|error| {
+        Error::invalid_param(format!("eval has no such arguments: {error}")).with_source(error)
+    })
 }
 
 fn types_of(dataset: &dyn DatasetIterator) -> Result<Vec<ValueType>> {

@@ -52,7 +52,8 @@ impl Groups {
     /// The group of unit number `unit`.
     pub fn of(&mut self, unit: usize) -> &mut dyn AnyMetric {
         let count = self.groups.len();
-        let group = if self.units <= count { unit % count } else { Random::at([SEED, unit as u64]).below(count) };
+        let group =
+            if self.units <= count { unit % count } else { Random::at([SEED, unit as u64]).below(count) };
         self.groups[group].as_mut()
     }
 
@@ -68,7 +69,12 @@ impl Groups {
     ///
     /// # Errors
     /// As [`Groups::report`].
-    pub fn interval(&self, report: &Report, resamples: usize, progress: &dyn Progress) -> Result<Option<Interval>> {
+    pub fn interval(
+        &self,
+        report: &Report,
+        resamples: usize,
+        progress: &dyn Progress,
+    ) -> Result<Option<Interval>> {
         let is_number = report.statistics.get(&report.headline).is_some_and(f64::is_finite);
         if self.units < LEAST_UNITS || resamples == 0 || !is_number {
             return Ok(None);
@@ -122,7 +128,8 @@ mod tests {
         let metric = find("classification").unwrap().make(&ParamMap::new()).unwrap();
         let mut groups = Groups::new(metric, samples);
         for at in 0..samples {
-            let (prediction, truth) = (Category::new(i64::from(at % samples < right), None), Category::new(1, None));
+            let (prediction, truth) =
+                (Category::new(i64::from(at % samples < right), None), Category::new(1, None));
             groups.of(at).update(at, (&prediction).into(), (&truth).into()).unwrap();
         }
         groups

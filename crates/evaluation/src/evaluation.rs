@@ -8,8 +8,8 @@ use opendr_datasets::{Problem, Problems};
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{AnyLearner, Entry, Port};
 use opendr_engine::params::{ParamMap, ParamValue};
-use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value};
 use opendr_engine::target::Classes;
+use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value};
 use opendr_metrics::MetricEntry;
 use serde::{Deserialize, Serialize};
 
@@ -136,9 +136,8 @@ impl<'a> Evaluation<'a> {
     ) -> Result<Outcome> {
         let begun = Instant::now();
         let mut tally = self.begin(dataset, classes)?;
-        let done = self
-            .resume(&mut tally)
-            .and_then(|journal| self.predict(predictors, ports, &mut tally, journal));
+        let done =
+            self.resume(&mut tally).and_then(|journal| self.predict(predictors, ports, &mut tally, journal));
         self.progress.end();
         done?;
         self.finish(tally, begun, describe)

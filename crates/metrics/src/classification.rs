@@ -308,7 +308,8 @@ fn rank_of_class(truth: i64, scores: &[f32], order: &[usize]) -> Result<usize> {
     let own = scores[class];
     // Classes that the data set does not name stand behind those that it does.
     let place = |class: usize| order.get(class).copied().unwrap_or(class);
-    let before = |(other, score): &(usize, &f32)| **score > own || (**score == own && place(*other) > place(class));
+    let before =
+        |(other, score): &(usize, &f32)| **score > own || (**score == own && place(*other) > place(class));
     Ok(scores.iter().enumerate().filter(before).count())
 }
 

@@ -205,7 +205,8 @@ fn tell(message: &ReceivedMessage, dropped: u64) {
         let sent = UNIX_EPOCH + Duration::new(word(4).into(), word(8) % 1_000_000_000);
         let late = message.received_at.duration_since(sent).unwrap_or_default().as_micros();
         // Two comparisons of memory: byte by byte takes a build without optimisation longer than the next picture does.
-        let pixels = message.bytes.len().checked_sub(640 * 480 * 3).map_or(&[][..], |from| &message.bytes[from..]);
+        let pixels =
+            message.bytes.len().checked_sub(640 * 480 * 3).map_or(&[][..], |from| &message.bytes[from..]);
         let whole = pixels.first() == Some(&(word(0) as u8)) && pixels[1..] == pixels[..pixels.len() - 1];
         println!(
             "{{\"image\": {}, \"late_us\": {late}, \"whole\": {whole}, \"dropped\": {dropped}}}",

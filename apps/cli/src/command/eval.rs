@@ -41,11 +41,9 @@ pub fn grammar() -> Command {
         .args(class_flags::flags())
         .arg(then_flag::flag())
         .arg(
-            Arg::new("resamples")
-                .long("resamples")
-                .value_parser(value_parser!(usize))
-                .value_name("N")
-                .help("Bootstrap resamples for the interval of the main number; 0 leaves it out [default: 200]"),
+            Arg::new("resamples").long("resamples").value_parser(value_parser!(usize)).value_name("N").help(
+                "Bootstrap resamples for the interval of the main number; 0 leaves it out [default: 200]",
+            ),
         )
         .arg(
             Arg::new("limit")

@@ -27,7 +27,8 @@ pub fn grammar() -> Command {
         )
         .arg(
             Arg::new("out")
-                .long("out").alias("output")
+                .long("out")
+                .alias("output")
                 .short('o')
                 .required(true)
                 .value_parser(value_parser!(PathBuf))

@@ -75,7 +75,8 @@ fn val_flags() -> [Arg; 3] {
 fn output_flags() -> [Arg; 4] {
     [
         Arg::new("out")
-            .long("out").alias("output")
+            .long("out")
+            .alias("output")
             .short('o')
             .value_parser(value_parser!(PathBuf))
             .value_name("DIR")

@@ -52,7 +52,8 @@ pub fn grammar() -> Command {
         .args(data_flags("validation", "Measure on this data set before and after"))
         .arg(
             Arg::new("out")
-                .long("out").alias("output")
+                .long("out")
+                .alias("output")
                 .short('o')
                 .required(true)
                 .value_parser(value_parser!(PathBuf))

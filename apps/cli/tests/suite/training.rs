@@ -97,8 +97,7 @@ fn the_bare_network_is_exported() {
 #[test]
 fn a_model_is_made_smaller() {
     let Some((place, data)) = Place::with_data() else { return };
-    let done =
-        place.run(["optimize", "yunet/320", "--fp16", "--out", "half", "--json", "-q"]).ends_with(0);
+    let done = place.run(["optimize", "yunet/320", "--fp16", "--out", "half", "--json", "-q"]).ends_with(0);
     let report: Value = serde_json::from_str(&done.stdout).unwrap();
     let [before, after] = [0, 1].map(|at| report["bytes"][at].as_f64().unwrap());
     assert!(report["precision"] == "fp16" && after < 0.6 * before, "{report}");

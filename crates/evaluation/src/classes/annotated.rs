@@ -69,7 +69,8 @@ pub(crate) fn annotated_classes(dataset: &dyn DatasetIterator, target: ValueType
     };
     let of_number = numbers.iter().filter_map(|number| usize::try_from(*number).ok());
     let of_label = labels.iter().filter_map(|label| usize::try_from(classes.index(label)?).ok());
-    let mut occurring: Vec<usize> = of_number.chain(of_label).filter(|place| *place < classes.len()).collect();
+    let mut occurring: Vec<usize> =
+        of_number.chain(of_label).filter(|place| *place < classes.len()).collect();
     occurring.sort_unstable();
     occurring.dedup();
     AnnotatedClasses { classes, occurring: Some(occurring).filter(|places| !places.is_empty()) }
@@ -89,8 +90,11 @@ fn reads_quickly(target: ValueType) -> bool {
 
 /// The list of descriptions by number.
 fn numbered(described: &BTreeMap<i64, String>) -> Classes {
-    let Some((last, _)) = described.last_key_value().filter(|(last, _)| (0..MOST_CLASSES).contains(*last)) else {
+    let Some((last, _)) = described.last_key_value().filter(|(last, _)| (0..MOST_CLASSES).contains(*last))
+    else {
         return Classes::default();
     };
-    (0..=*last).map(|class| described.get(&class).cloned().unwrap_or_else(|| format!("class {class}"))).collect()
+    (0..=*last)
+        .map(|class| described.get(&class).cloned().unwrap_or_else(|| format!("class {class}")))
+        .collect()
 }

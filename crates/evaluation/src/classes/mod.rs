@@ -142,7 +142,8 @@ impl ClassMap {
         };
         match found {
             Some((place, by)) => {
-                let dataset = self.dataset.name(place as i64).map(|name| name.to_string()).unwrap_or_default();
+                let dataset =
+                    self.dataset.name(place as i64).map(|name| name.to_string()).unwrap_or_default();
                 self.pairs.push(ClassPair { learner: label.to_owned(), dataset, by });
             }
             None => self.learner_only.push(label.to_owned()),
@@ -336,8 +337,9 @@ impl ClassMap {
     }
 
     fn mapped_classes(&mut self, labels: &[u32], own: &Classes) -> Vec<u32> {
-        let table: Vec<u32> =
-            (0..own.len() as u32).map(|class| self.mapped_label(class, own).unwrap_or(self.no_class)).collect();
+        let table: Vec<u32> = (0..own.len() as u32)
+            .map(|class| self.mapped_label(class, own).unwrap_or(self.no_class))
+            .collect();
         labels.iter().map(|label| table.get(*label as usize).copied().unwrap_or(self.no_class)).collect()
     }
 
@@ -354,7 +356,9 @@ impl ClassMap {
                     return result;
                 }
                 let result = *mapped.entry(*label).or_insert_with(|| {
-                    let Some(class) = self.mapped_label(label / LABEL_DIVISOR, own) else { return self.no_class };
+                    let Some(class) = self.mapped_label(label / LABEL_DIVISOR, own) else {
+                        return self.no_class;
+                    };
                     if label % LABEL_DIVISOR == 0 {
                         return class * LABEL_DIVISOR;
                     }
@@ -409,15 +413,25 @@ impl ClassMap {
             return Ok(());
         }
         let counted: Vec<&str> = match annotated {
-            Some(classes) => classes.iter().filter_map(|class| self.dataset.name(*class as i64)).map(AsRef::as_ref).collect(),
+            Some(classes) => classes
+                .iter()
+                .filter_map(|class| self.dataset.name(*class as i64))
+                .map(AsRef::as_ref)
+                .collect(),
             None => self.dataset.iter().collect(),
         };
-        let matched = counted.iter().filter(|class| report.pairs.iter().any(|pair| pair.dataset == **class)).count();
+        let matched =
+            counted.iter().filter(|class| report.pairs.iter().any(|pair| pair.dataset == **class)).count();
         if matched * 2 >= counted.len() {
             return Ok(());
         }
         let learner: Vec<&str> = match self.learner.is_empty() {
-            true => report.pairs.iter().map(|pair| pair.learner.as_str()).chain(report.learner_only.iter().map(String::as_str)).collect(),
+            true => report
+                .pairs
+                .iter()
+                .map(|pair| pair.learner.as_str())
+                .chain(report.learner_only.iter().map(String::as_str))
+                .collect(),
             false => self.learner.iter().collect(),
         };
         Err(Error::invalid_input(format!(

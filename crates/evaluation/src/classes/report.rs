@@ -83,7 +83,11 @@ impl fmt::Display for ClassReport {
             .filter(|pair| pair.by != MatchedBy::Name)
             .map(|pair| format!("{} = {}", pair.learner, pair.dataset))
             .collect();
-        writeln!(f, "{}", if renamed.is_empty() { String::new() } else { format!(" ({})", listed(&renamed)) })?;
+        writeln!(
+            f,
+            "{}",
+            if renamed.is_empty() { String::new() } else { format!(" ({})", listed(&renamed)) }
+        )?;
         if !self.dataset_only.is_empty() {
             writeln!(f, "  not predicted: {}", listed(&self.dataset_only))?;
         }

@@ -121,7 +121,17 @@ mod tests {
     use super::*;
 
     const CAMVID: [&str; 11] = [
-        "Sky", "Building", "Pole", "Road", "Pavement", "Tree", "SignSymbol", "Fence", "Car", "Pedestrian", "Bicyclist",
+        "Sky",
+        "Building",
+        "Pole",
+        "Road",
+        "Pavement",
+        "Tree",
+        "SignSymbol",
+        "Fence",
+        "Car",
+        "Pedestrian",
+        "Bicyclist",
     ];
 
     fn found(label: &str, classes: &[&'static str]) -> Option<(&'static str, MatchedBy)> {
@@ -130,7 +140,8 @@ mod tests {
 
     #[test]
     fn by_name_before_synonym_before_grouping() {
-        let classes = ["aeroplane", "Traffic_Light", "pedestrian", "car, auto, automobile", "rider", "bicycle"];
+        let classes =
+            ["aeroplane", "Traffic_Light", "pedestrian", "car, auto, automobile", "rider", "bicycle"];
         let cases = [
             ("traffic light", Some(("Traffic_Light", MatchedBy::Name))),
             ("Automobile", Some(("car, auto, automobile", MatchedBy::Name))),

@@ -64,8 +64,19 @@ fn a_category_that_the_data_set_does_not_have_is_wrong_and_named() {
 
 #[test]
 fn pixels_of_several_classes_meet_in_one() {
-    let camvid =
-        ["Sky", "Building", "Pole", "Road", "Pavement", "Tree", "SignSymbol", "Fence", "Car", "Pedestrian", "Bicyclist"];
+    let camvid = [
+        "Sky",
+        "Building",
+        "Pole",
+        "Road",
+        "Pavement",
+        "Tree",
+        "SignSymbol",
+        "Fence",
+        "Car",
+        "Pedestrian",
+        "Bicyclist",
+    ];
     let mut map = map(&["road", "rider", "bicycle", "moon"], &camvid);
     let mut heatmap = Heatmap::from_labels(vec![0, 1, 2, 3, 255], &[1, 5]).unwrap();
     heatmap.classes = classes(&["road", "rider", "bicycle", "moon"]);
@@ -91,8 +102,19 @@ fn scores_become_the_class_of_the_highest() {
 
 #[test]
 fn segments_that_meet_in_a_class_are_numbered_anew() {
-    let camvid =
-        ["Sky", "Building", "Pole", "Road", "Pavement", "Tree", "SignSymbol", "Fence", "Car", "Pedestrian", "Bicyclist"];
+    let camvid = [
+        "Sky",
+        "Building",
+        "Pole",
+        "Road",
+        "Pavement",
+        "Tree",
+        "SignSymbol",
+        "Fence",
+        "Car",
+        "Pedestrian",
+        "Bicyclist",
+    ];
     let mut map = map(&["road", "car", "truck"], &camvid).with_labels(MapLabels::Segments);
     let mut heatmap = Heatmap::from_labels(vec![0, 1001, 1001, 2001, 1002, 2001], &[2, 3]).unwrap();
     heatmap.classes = classes(&["road", "car", "truck"]);
@@ -117,7 +139,10 @@ fn strangers_are_an_error_that_names_both() {
 #[test]
 fn the_user_maps_or_compares_numbers() {
     let matching = ClassMatching {
-        pairs: BTreeMap::from([("lorry".to_owned(), "Gizmo".to_owned()), ("kite".to_owned(), "widget".to_owned())]),
+        pairs: BTreeMap::from([
+            ("lorry".to_owned(), "Gizmo".to_owned()),
+            ("kite".to_owned(), "widget".to_owned()),
+        ]),
         by_number: false,
     };
     let sides = || (classes(&["lorry", "kite"]), classes(&["widget", "gizmo"]));

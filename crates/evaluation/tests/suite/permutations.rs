@@ -7,8 +7,8 @@ use opendr_engine::data::Vector;
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::learner::{Inputs, Outputs, Ports};
 use opendr_engine::target::{
-    BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Category, Classes, Heatmap, TrackingAnnotation3D,
-    TrackingAnnotation3DList,
+    BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Category, Classes, Heatmap,
+    TrackingAnnotation3D, TrackingAnnotation3DList,
 };
 use opendr_engine::{Random, Result, Value};
 use opendr_evaluation::{Evaluation, Predictor, Subject};
@@ -34,7 +34,13 @@ impl Numbering {
 }
 
 /// What is there or predicted in a sample, by the places of classes in [`NAMES`].
-fn value(metric: &str, numbering: &Numbering, random: &mut Random, is_truth: bool, noise: &mut Random) -> Value {
+fn value(
+    metric: &str,
+    numbering: &Numbering,
+    random: &mut Random,
+    is_truth: bool,
+    noise: &mut Random,
+) -> Value {
     let class = |random: &mut Random, noise: &mut Random| {
         let class = random.below(NAMES.len());
         // One prediction in four is of another class.
@@ -92,7 +98,14 @@ fn value(metric: &str, numbering: &Numbering, random: &mut Random, is_truth: boo
             let found = |at: usize, random: &mut Random, noise: &mut Random| {
                 let class = numbering.of(class(random, noise)) as i64;
                 let left = 40.0 * at as f32 + noise.uniform(0.0, 8.0);
-                BoundingBox::new(class, left, 10.0, 30.0, 30.0, if is_truth { 1.0 } else { noise.uniform(0.0, 1.0) })
+                BoundingBox::new(
+                    class,
+                    left,
+                    10.0,
+                    30.0,
+                    30.0,
+                    if is_truth { 1.0 } else { noise.uniform(0.0, 1.0) },
+                )
             };
             let boxes = (0..6).map(|at| found(at, random, noise)).collect();
             BoundingBoxList { boxes, classes, ..BoundingBoxList::default() }.into()
@@ -152,9 +165,8 @@ fn numbers(metric: &str, learner: &Numbering, dataset: &Numbering, seed: u64) ->
         Evaluation { resamples: 0, ..Evaluation::new(Subject::default(), find(metric).unwrap(), &problems) };
     let truths = Truths { values: truths, classes: dataset.classes() };
     let ports = <&Vector as Inputs<'_>>::PORTS;
-    let outcome = evaluation
-        .run_pipelines(&mut [Predictions(predictions)], ports, learner.classes(), &truths)
-        .unwrap();
+    let outcome =
+        evaluation.run_pipelines(&mut [Predictions(predictions)], ports, learner.classes(), &truths).unwrap();
     let mut numbers = outcome.report.statistics.scalars.clone();
     for table in &outcome.report.tables {
         for (row, values) in &table.rows {

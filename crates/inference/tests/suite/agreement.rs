@@ -160,7 +160,9 @@ impl Compared {
     fn label_difference(&self) -> f64 {
         let labels = |output: &Output| -> Vec<usize> {
             match self.info.element_type {
-                ElementType::I32 | ElementType::I64 => output.values.iter().map(|&label| label as usize).collect(),
+                ElementType::I32 | ElementType::I64 => {
+                    output.values.iter().map(|&label| label as usize).collect()
+                }
                 _ => output.values.chunks(*output.shape.last().unwrap()).map(position_of_largest).collect(),
             }
         };

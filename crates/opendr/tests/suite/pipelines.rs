@@ -35,7 +35,8 @@ fn poses_become_the_skeletons_that_a_network_looks_at() {
     for action in ["spatio_temporal_gcn", "co_st_gcn"] {
         let Some((pose, poses)) = learner(&models, "movenet/multipose") else { return };
         let Some((entry, actions)) = learner(&models, action) else { return };
-        let mut pipeline = Pipeline::default().then(pose, poses.as_ref()).unwrap().then(entry, actions.as_ref()).unwrap();
+        let mut pipeline =
+            Pipeline::default().then(pose, poses.as_ref()).unwrap().then(entry, actions.as_ref()).unwrap();
         assert_eq!(pipeline.ports().iter().map(|port| port.name).collect::<Vec<_>>(), ["image"]);
 
         // By hand: the same network over a buffer of its own.
@@ -106,7 +107,11 @@ fn each_box_is_a_picture_of_its_own() {
     // Poses lie in the whole picture.
     let Some((detector, persons)) = learner(&models, "centernet") else { return };
     let Some((entry, poses)) = learner(&models, "movenet") else { return };
-    let mut pipeline = Pipeline::default().then(detector, persons.as_ref()).unwrap().then_each(entry, poses.as_ref()).unwrap();
+    let mut pipeline = Pipeline::default()
+        .then(detector, persons.as_ref())
+        .unwrap()
+        .then_each(entry, poses.as_ref())
+        .unwrap();
     let outputs = answers(&mut pipeline, &picture(&models, "zidane.jpg"));
     let (Some(Value::PoseList(poses)), Some(Value::BoundingBoxList(boxes))) =
         (outputs.get("poses"), outputs.get("boxes"))

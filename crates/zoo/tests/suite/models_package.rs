@@ -26,8 +26,12 @@ fn get(place: &Place, folders: &[&[u8]]) -> Result<Vec<u8>, Error> {
 
 #[test]
 fn first_folder_with_the_file_of_the_card_is_taken() {
-    let folders: [&[&[u8]]; 4] =
-        [&[b"weights"], &[b"weights", b"other.."], &[b"other..", b"weights"], &[b"longer than it", b"weights"]];
+    let folders: [&[&[u8]]; 4] = [
+        &[b"weights"],
+        &[b"weights", b"other.."],
+        &[b"other..", b"weights"],
+        &[b"longer than it", b"weights"],
+    ];
     for folders in folders {
         assert_eq!(get(&Place::new(), folders).unwrap(), b"weights", "{folders:?}");
     }
