@@ -1,4 +1,6 @@
-//! Tests of `opendr-evaluation` as its users call it.
+//! The integration tests of this crate, one program: each program more is linked once more.
+
+#![allow(clippy::unwrap_used)]
 
 mod evaluation;
 mod permutations;

@@ -40,7 +40,7 @@ class Download:
         wanted = "pretrained" if path is not None and found.get("variant") is None else None
         if mode == "images" and path is not None and row.picture:
             return self._picture(learner, os.fspath(path), found)
-        if mode != wanted or row.folder is None:
+        if path is None or mode != wanted or row.folder is None:
             return str(self._parent.download(learner, path, mode, **found))
         model: str = self._parent.download(learner, None, mode, **found)
         place = os.path.join(os.fspath(path), _filled(row.folder, {**getattr(learner, "_idle", {}), **names}))
