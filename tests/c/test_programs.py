@@ -80,6 +80,11 @@ def test_learner_is_measured(compiler, shared):
     outcome = json.loads(done.stdout)
     assert (outcome["metric"], outcome["samples"]) == ("coco_detection", 8)
     assert 0.3 < outcome["scalars"]["map50"] <= 1
+    # With a learner behind it, by a metric of what the first predicts.
+    options = '{"limit": 8, "metric": "coco_detection", "then": ["movenet"]}'
+    pipeline = json.loads(compiler.run(program, shared / "data/coco128", options).stdout)
+    assert (pipeline["learner"], pipeline["samples"]) == ("centernet + movenet", 8)
+    assert 0.3 < pipeline["scalars"]["map50"] <= outcome["scalars"]["map50"] + 1e-9
     for dataset, options, code in [("/no/such/folder", "{}", 13), ("/tmp", '{"nonsense": 1}', 12)]:
         done = compiler.run(program, dataset, options, code=code)
         assert done.stdout.strip()

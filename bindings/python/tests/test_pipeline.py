@@ -7,6 +7,7 @@ import numpy as np
 import opendr
 import pytest
 from opendr.engine.data import Image
+from opendr.engine.datasets import DatasetIterator
 from opendr.engine.learners import Learner
 from opendr.engine.target import BoundingBox, BoundingBoxList, Category, PoseList
 
@@ -44,6 +45,19 @@ class Judge(Learner):
 
     def infer(self, boxes: BoundingBoxList) -> Category:
         return Category(prediction=len(boxes.data), confidence=1.0)
+
+
+class Counted(DatasetIterator):
+    """Pictures, and how many boxes the detector finds in each, by the name of the number."""
+
+    classes = ["two", "zero", "one", "three"]
+
+    def __len__(self):
+        return 8
+
+    def __getitem__(self, idx):
+        name = ["zero", "one", "two", "three"][idx % 4]
+        return picture(idx % 4), Category(prediction=self.classes.index(name), description=name)
 
 
 def picture(value):
@@ -119,3 +133,19 @@ def test_compiled_learners_beside_each_other(faces, nanodet, photo):
     (frame, found), = pipeline.run([image])
     assert frame is image and set(found) == {"boxes", "poses"}
     assert found["boxes"] == nanodet.infer(image)
+
+
+def test_it_is_measured_as_a_learner_is():
+    judge = Judge()
+    judge.classes = ["zero", "one", "two", "three"]
+    numbers = opendr.Pipeline(Detector(), judge).eval(Counted())
+    assert numbers["accuracy"] == 1.0
+    assert numbers["report"]["learner"] == "detector + judge"
+    assert {pair["learner"] for pair in numbers["report"]["classes"]["pairs"]} == set(judge.classes)
+    assert numbers["report"]["interval"]["units"] == 8
+    judge.classes = ["null", "eins", "zwei", "drei"]
+    with pytest.raises(ValueError, match="match one of the learner by name"):
+        opendr.Pipeline(Detector(), judge).eval(Counted())
+    pairs = dict(zip(judge.classes, ["zero", "one", "two", "three"]))
+    assert opendr.Pipeline(Detector(), judge).eval(Counted(), classes=pairs)["accuracy"] == 1.0
+    assert opendr.Pipeline(Detector(), judge).eval(Counted(), by_number=True)["accuracy"] == 0.25
