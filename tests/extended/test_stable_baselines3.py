@@ -63,7 +63,7 @@ def hopping_by_stable_baselines3(seed):
 def hopping_by_ours(seed, folder):
     """The same with Stable-Baselines3's default settings, which are ours too."""
     learner = PpoLearner(n_envs=4, n_steps=512, total_timesteps=HOPPER_STEPS, seed=seed, eval_freq=0)
-    learner.fit(env=lambda: gymnasium.make("Hopper-v5"), output=folder, silent=True)
+    learner.fit(env=lambda: gymnasium.make("Hopper-v5"), out=folder, silent=True)
     return learner.eval(env=lambda: gymnasium.make("Hopper-v5"), episodes=20)["mean_return"]
 
 

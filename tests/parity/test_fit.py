@@ -73,7 +73,7 @@ def test_every_surface_trains_the_same(data, counter, tmp_path):
     command += ["--val-split=val", "--out", str(tmp_path / "command"), "--device=cpu"]
     reports = {"command": json.loads(printed(command)[0])}
     external = ExternalDataset(data, "yolo")
-    numbers = counter.fit(external, silent=True, output=tmp_path / "python", val_split="val", epochs=2, lr=0.5)
+    numbers = counter.fit(external, silent=True, out=tmp_path / "python", val_split="val", epochs=2, lr=0.5)
     reports["python"] = numbers["report"]
     by_c = json.dumps({**options, "output": str(tmp_path / "c")})
     reports["c"] = json.loads(printed([program("OPENDR_INFER_JSON_C"), "--fit", "counter", str(data), by_c])[0])
@@ -98,14 +98,14 @@ def test_c_hears_how_it_goes_and_stops_it(data, tmp_path):
 
 
 def test_data_sets_of_python(counter, tmp_path, capsys):
-    numbers = counter.fit(Boxes(4), Boxes(6), output=tmp_path / "run")
+    numbers = counter.fit(Boxes(4), Boxes(6), out=tmp_path / "run")
     assert (numbers["loss"], numbers["val_boxes"], numbers["report"]["dataset"]) == ([1.5], [2.5], "Boxes")
     assert "trained on 4 samples of Boxes" in capsys.readouterr().out
     with pytest.raises(ValueError, match="is not empty"):
-        counter.fit(Boxes(4), output=tmp_path / "run")
+        counter.fit(Boxes(4), out=tmp_path / "run")
     with pytest.raises(TypeError, match="ExternalDataset or a DatasetIterator, not int"):
         counter.fit(3)
-    counter.fit(Boxes(4), output=tmp_path / "quiet", silent=True)
+    counter.fit(Boxes(4), out=tmp_path / "quiet", silent=True)
     assert capsys.readouterr().out == ""
 
 
@@ -118,7 +118,7 @@ def test_arguments_of_the_constructor_are_those_of_fit(tmp_path):
     assert (tmp_path / "temp/model/model.json").is_file()
     resumed = cls(0.5, 3, temp_path=str(tmp_path / "temp"), checkpoint_load_iter=2)
     assert resumed.fit(Boxes(4), silent=True)["loss"] == [3.0, 3.0, 0.75]
-    assert learner.fit(Boxes(4), silent=True, output=tmp_path / "other", lr=1.0, iters=1)["loss"] == [1.5]
+    assert learner.fit(Boxes(4), silent=True, out=tmp_path / "other", lr=1.0, iters=1)["loss"] == [1.5]
     with pytest.raises(ValueError, match="epochs = 0"):
         cls(epochs=0)
     with pytest.raises(TypeError, match="no argument 'momentum'"):
@@ -129,11 +129,11 @@ def test_arguments_of_the_constructor_are_those_of_fit(tmp_path):
 
 def test_interrupt_saves(counter, tmp_path, interruptible):
     with pytest.raises(KeyboardInterrupt):
-        counter.fit(Boxes(4, interrupt=6), silent=True, output=tmp_path / "run", epochs=3)
+        counter.fit(Boxes(4, interrupt=6), silent=True, out=tmp_path / "run", epochs=3)
     report = json.loads((tmp_path / "run/report.json").read_text())
     assert not report["complete"] and report["curves"] == {"loss": [1.5]}
     assert counter.is_ready
-    resumed = counter.fit(Boxes(4), silent=True, output=tmp_path / "run", epochs=3, resume=True)
+    resumed = counter.fit(Boxes(4), silent=True, out=tmp_path / "run", epochs=3, resume=True)
     assert resumed["loss"] == [1.5] * 3
 
 
@@ -155,11 +155,11 @@ def test_a_learner_written_in_python_teaches(counter, tmp_path):
     with pytest.raises(TypeError, match="register"):
         counter.fit(Boxes(4), teacher=teacher)
     opendr.register(OneEachLearner)
-    numbers = counter.fit(Boxes(4), silent=True, output=tmp_path / "run", teacher=teacher)
+    numbers = counter.fit(Boxes(4), silent=True, out=tmp_path / "run", teacher=teacher)
     assert numbers["loss"] == [1.0] and numbers["report"]["samples"] == 4
     lines = (tmp_path / "run/teacher.jsonl").read_text().splitlines()
     assert len(lines) == 5 and "one_each" in lines[0]
-    both = counter.fit(Boxes(4), silent=True, output=tmp_path / "both", teacher=teacher, teacher_threshold=0.1)
+    both = counter.fit(Boxes(4), silent=True, out=tmp_path / "both", teacher=teacher, teacher_threshold=0.1)
     assert both["loss"] == [2.0]
 
 

@@ -15,7 +15,7 @@ use crate::string::{Text, opendr_string};
 /// Measures the learner on a data set on disk.
 ///
 /// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
-/// "split", "limit", "folder", "skip_broken", "classes" (an object: classes of the data set by classes of the learner), "by_number",
+/// "split", "limit", "out", "skip_broken", "classes" (an object: classes of the data set by classes of the learner), "by_number",
 /// "resamples", and "then", a list of pretrained learners behind this one, such as ["byte_track"], so that the pipeline is
 /// measured; NULL takes the defaults. The outcome is an object of JSON: under "scalars" the numbers by name; it is to be freed.
 #[unsafe(no_mangle)]

@@ -16,7 +16,7 @@ use crate::string::{Text, opendr_string};
 /// Trains the learner on a data set on disk, from its model where it has one, and loads the result.
 ///
 /// dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "params" (of the training), "split",
-/// "val", "val_format", "val_split", "limit", "output", "logging_path", "resume", "teacher", "teacher_threshold",
+/// "val", "val_format", "val_split", "limit", "out", "logging_path", "resume", "teacher", "teacher_threshold",
 /// "teacher_classes", "keep_empty", "skip_broken"; NULL takes the defaults. progress, which may be NULL, hears how it goes
 /// and may stop it: what was done is then saved, to be resumed. The report is an object of JSON: under "curves" and
 /// "scalars" the numbers by name, under "model" the path of the trained container; it is to be freed.
@@ -73,7 +73,7 @@ fn options_from_json(json: &str) -> Result<FitOptions> {
 /// Trains a policy in environments that id names, e.g. "CartPole-v1", from its model where it has one, and loads the result.
 ///
 /// env_params_json is an object of parameters of the environment; NULL takes the defaults. options_json is an object:
-/// "params" (of the training), "output", "logging_path", "resume"; NULL takes the defaults. progress and report are as
+/// "params" (of the training), "out", "logging_path", "resume"; NULL takes the defaults. progress and report are as
 /// those of opendr_fit.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn opendr_fit_in(

@@ -102,7 +102,7 @@ def picture(detector):
 
 def test_eval_of_a_python_data_set_resumes(detector, picture, tmp_path):
     dataset = Astronauts(picture)
-    outcome = detector.eval(dataset, folder=tmp_path)
+    outcome = detector.eval(dataset, out=tmp_path)
     report = outcome["report"]
     assert (report["samples"], report["counted"], report["complete"], report["skipped"]) == (3, 3, True, 0)
     # "person" is the data set's "human"; classes that it does not have do not count.

@@ -16,7 +16,7 @@ SHORT = {"total_timesteps": 1024, "eval_freq": 512, "n_eval_episodes": 3, "check
 @pytest.fixture(scope="module")
 def policy(tmp_path_factory):
     learner = PpoLearner()
-    learner.outcome = learner.fit("CartPole-v1", silent=True, output=tmp_path_factory.mktemp("run") / "run", **SHORT)
+    learner.outcome = learner.fit("CartPole-v1", silent=True, out=tmp_path_factory.mktemp("run") / "run", **SHORT)
     return learner
 
 
@@ -37,7 +37,7 @@ def test_a_policy_learns_by_name(policy, tmp_path):
 
 def test_the_same_training_gives_the_same_policy(policy, tmp_path):
     again = PpoLearner(**SHORT)
-    again.fit("CartPole-v1", silent=True, output=tmp_path / "run")
+    again.fit("CartPole-v1", silent=True, out=tmp_path / "run")
     seen = np.random.default_rng(0).normal(0, 0.1, (20, 4))
     assert [int(again.infer(row)) for row in seen] == [int(policy.infer(row)) for row in seen]
 
@@ -71,7 +71,7 @@ def test_eval_is_of_fixed_episodes(policy):
 def test_a_policy_learns_in_an_environment_of_gymnasium(tmp_path):
     learner = SacLearner(net_arch=[16, 16], learning_starts=64, batch_size=16)
     outcome = learner.fit(
-        lambda: gymnasium.make("Pendulum-v1"), silent=True, output=tmp_path / "run", total_timesteps=400, eval_freq=0,
+        lambda: gymnasium.make("Pendulum-v1"), silent=True, out=tmp_path / "run", total_timesteps=400, eval_freq=0,
         n_eval_episodes=1,
     )
     assert outcome["steps"] == 400 and len(outcome["val_return"]) == 1
@@ -80,10 +80,10 @@ def test_a_policy_learns_in_an_environment_of_gymnasium(tmp_path):
 
 def test_one_environment_trains_without_another_to_measure_in(tmp_path):
     learner = PpoLearner(n_steps=64, preset=False)
-    outcome = learner.fit(gymnasium.make("CartPole-v1"), silent=True, output=tmp_path / "run", total_timesteps=128)
+    outcome = learner.fit(gymnasium.make("CartPole-v1"), silent=True, out=tmp_path / "run", total_timesteps=128)
     assert outcome["steps"] == 128 and "val_return" not in outcome
     with pytest.raises(opendr.Unsupported, match="give a function"):
-        learner.fit(gymnasium.make("CartPole-v1"), silent=True, output=tmp_path / "two", n_envs=2)
+        learner.fit(gymnasium.make("CartPole-v1"), silent=True, out=tmp_path / "two", n_envs=2)
 
 
 class Breaking(gymnasium.Wrapper):
@@ -102,18 +102,18 @@ def test_what_an_environment_raises_leaves_the_checkpoint(tmp_path):
     learner = PpoLearner(n_steps=64, n_envs=1, preset=False)
     made = iter([Breaking(gymnasium.make("CartPole-v1")), gymnasium.make("CartPole-v1")])
     with pytest.raises(RuntimeError, match="the motor burnt"):
-        learner.fit(lambda: next(made), silent=True, output=tmp_path / "run", **SHORT)
-    outcome = learner.fit(lambda: gymnasium.make("CartPole-v1"), silent=True, output=tmp_path / "run", resume=True, **SHORT)
+        learner.fit(lambda: next(made), silent=True, out=tmp_path / "run", **SHORT)
+    outcome = learner.fit(lambda: gymnasium.make("CartPole-v1"), silent=True, out=tmp_path / "run", resume=True, **SHORT)
     assert outcome["steps"] == 1024
 
 
 def test_wrong_environments_are_told(tmp_path):
     learner = PpoLearner()
     with pytest.raises(ValueError, match="no environment"):
-        learner.fit(output=tmp_path / "run")
+        learner.fit(out=tmp_path / "run")
     with pytest.raises(FileNotFoundError, match="CartPole-v1"):
-        learner.fit("CartPole-v7", silent=True, output=tmp_path / "run")
+        learner.fit("CartPole-v7", silent=True, out=tmp_path / "run")
     with pytest.raises(ValueError, match="gravity"):
-        learner.fit("CartPole-v1", env_params={"gravity": -1}, silent=True, output=tmp_path / "run")
+        learner.fit("CartPole-v1", env_params={"gravity": -1}, silent=True, out=tmp_path / "run")
     with pytest.raises(TypeError, match="no argument 'epochs'"):
-        learner.fit("CartPole-v1", silent=True, output=tmp_path / "run", epochs=3)
+        learner.fit("CartPole-v1", silent=True, out=tmp_path / "run", epochs=3)

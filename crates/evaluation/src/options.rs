@@ -28,7 +28,8 @@ pub struct EvalOptions {
     /// Only the first so many samples.
     pub limit: Option<usize>,
     /// The folder for answers, report and pictures.
-    pub folder: Option<PathBuf>,
+    #[serde(alias = "folder")]
+    pub out: Option<PathBuf>,
     /// Whether what is broken is left out and listed.
     pub skip_broken: bool,
     /// Classes of the data set by classes of the learner, where their names do not match.
@@ -152,7 +153,7 @@ impl EvalJob<'_> {
             metric_params: self.options.metric_params.clone(),
             classes: self.options.class_matching(),
             resamples: self.options.resamples.unwrap_or(RESAMPLES),
-            folder: self.options.folder.as_deref(),
+            folder: self.options.out.as_deref(),
             progress,
             ..Evaluation::new(subject, self.metric, &self.problems)
         }

@@ -90,7 +90,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         metric: matches.get_one("metric").cloned(),
         split: dataset_flags::split(matches),
         limit: matches.get_one("limit").copied(),
-        folder: matches.get_one("out").cloned(),
+        out: matches.get_one("out").cloned(),
         skip_broken: dataset_flags::skip_broken(matches),
         classes: class_flags::pairs("classes", matches)?,
         by_number: matches.get_flag("by-number"),

@@ -169,7 +169,7 @@ fn options(name: &str, params: ParamMap, matches: &ArgMatches) -> Result<FitOpti
         split: dataset_flags::split(matches),
         val_split: word(matches, "val-split"),
         limit: matches.get_one("limit").copied(),
-        output: matches.get_one("out").cloned(),
+        out: matches.get_one("out").cloned(),
         logging_path: matches.get_one("logging-path").cloned(),
         resume: matches.get_flag("resume"),
         teacher_threshold: matches.get_one("teacher-threshold").copied(),
@@ -182,7 +182,7 @@ fn options(name: &str, params: ParamMap, matches: &ArgMatches) -> Result<FitOpti
     };
     let output = options.output_folder(name)?;
     options.logging_path.get_or_insert_with(|| output.join(LOGS));
-    options.output = Some(output);
+    options.out = Some(output);
     Ok(options)
 }
 

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, NoReturn, Optional, Union
 
 from opendr import _opendr
 from opendr._errors import InternalError, InvalidInput, Unsupported
+from opendr._older_names import under_older_name
 from opendr._upstream.arguments import by_name, methods, value_here
 from opendr._upstream.rows import Argument, arguments
 from opendr._upstream.rows import Learner as Row
@@ -161,7 +162,7 @@ class NativeBase(BaseLearner):
         self,
         target_device: str = "",
         *,
-        output: Optional[PathLike] = None,
+        out: Optional[PathLike] = None,
         precision: str = "int8",
         calibration: Union[None, Dataset] = None,
         validation: Union[None, Dataset] = None,
@@ -172,7 +173,7 @@ class NativeBase(BaseLearner):
 
         Args:
             target_device: Not taken: the result runs on every device.
-            output: Folder for the container.
+            out: Folder for the container.
             precision: ``"int8"``: a quarter of the size, needs ``calibration``; ``"fp16"``: half the size.
             calibration: What the learner looks at to find the ranges of its values; annotations are not needed.
             validation: What it is measured on before and after.
@@ -188,13 +189,14 @@ class NativeBase(BaseLearner):
             ValueError: Something is missing, or an option is wrong.
         """
         if target_device:
-            raise Unsupported(f"{type(self).__name__} cannot optimize for {target_device!r}; give output and precision")
-        if output is None:
-            raise ValueError("optimize writes a model; give output, the folder for it")
+            raise Unsupported(f"{type(self).__name__} cannot optimize for {target_device!r}; give out and precision")
+        out = under_older_name(out, "out", options, "output")
+        if out is None:
+            raise ValueError("optimize writes a model; give out, the folder for it")
         if "method" in options:
             options["calibration"] = options.pop("method")
         given = {"precision": precision, **options}
-        report, text = self._handle.optimize(os.fspath(output), given, calibration, validation, verbose)
+        report, text = self._handle.optimize(os.fspath(out), given, calibration, validation, verbose)
         vars(self).update(self._handle.params())
         if verbose:
             print(text, end="")
@@ -359,7 +361,7 @@ class NativeLearner(NativeBase, Learner):
         metric: Optional[str] = None,
         split: Optional[str] = None,
         limit: Optional[int] = None,
-        folder: Optional[PathLike] = None,
+        out: Optional[PathLike] = None,
         skip_broken: bool = False,
         classes: Optional[Mapping[str, str]] = None,
         by_number: bool = False,
@@ -375,7 +377,7 @@ class NativeLearner(NativeBase, Learner):
             metric: What to measure by (``opendr.metrics.names()``); by default the task's own.
             split: The part of an ``ExternalDataset``.
             limit: Only the first so many samples.
-            folder: Folder for the answers, ``report.json``, figures and a sheet of the worst samples; an evaluation that
+            out: Folder for the predictions, ``report.json``, figures and a sheet of the worst samples; an evaluation that
                 was broken off goes on from there.
             skip_broken: Whether what is broken is left out and listed, instead of ending it.
             classes: Classes of the data set by classes of the learner, where their names do not match.
@@ -392,12 +394,13 @@ class NativeLearner(NativeBase, Learner):
             FileNotFoundError: Nothing is loaded, or the data set is not there.
             ValueError: Data set, learner and metric do not fit together, or a sample is broken.
         """
+        out = under_older_name(out, "out", metric_params, "folder")
         options = {
             "metric": metric,
             "metric_params": metric_params,
             "split": split,
             "limit": limit,
-            "folder": None if folder is None else os.fspath(folder),
+            "out": None if out is None else os.fspath(out),
             "skip_broken": skip_broken,
             "classes": dict(classes or {}),
             "by_number": by_number,
@@ -417,7 +420,7 @@ class NativeLearner(NativeBase, Learner):
         silent: bool = False,
         verbose: bool = True,
         *,
-        output: Optional[PathLike] = None,
+        out: Optional[PathLike] = None,
         resume: bool = False,
         split: Optional[str] = None,
         val_split: Optional[str] = None,
@@ -442,9 +445,9 @@ class NativeLearner(NativeBase, Learner):
             logging_path: Folder of TensorBoard's event files and of curves; empty: none.
             silent: Whether to show nothing at all.
             verbose: Whether to print the outcome.
-            output: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
+            out: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
                 else ``runs/NAME-DATE``.
-            resume: Whether to go on from the last checkpoint in ``output``, or in the last run of this learner.
+            resume: Whether to go on from the last checkpoint in ``out``, or in the last run of this learner.
             split: The part of an ``ExternalDataset`` to train on; by default the one for that.
             val_split: The part to measure on, of ``val_dataset`` or, without it, of ``dataset``.
             limit: Only the first so many samples.
@@ -467,13 +470,13 @@ class NativeLearner(NativeBase, Learner):
             ValueError: Data set, learner and parameters do not fit together, or a sample is broken.
             OSError: Something cannot be written.
         """
-        place = output or self.temp_path or None
+        place = under_older_name(out, "out", fit_params, "output") or self.temp_path or None
         options = {
             "params": self._fit_params(fit_params),
             "split": split,
             "val_split": val_split,
             "limit": limit,
-            "output": None if place is None else os.fspath(place),
+            "out": None if place is None else os.fspath(place),
             "logging_path": os.fspath(logging_path) if logging_path else None,
             "resume": resume or self.checkpoint_load_iter > 0,
             "teacher": teacher if isinstance(teacher, str) else None,
@@ -522,7 +525,7 @@ class NativeLearner(NativeBase, Learner):
         if all(field["name"] != "create_new" for field in self._entry["fit_params"]):
             self._cannot("fit_reference")
         dataset = ExternalDataset(os.fspath(path), "imagenet")
-        return self.fit(dataset, silent=silent, output=save_path, create_new=create_new)
+        return self.fit(dataset, silent=silent, out=save_path, create_new=create_new)
 
 
 class Stream:

@@ -8,6 +8,7 @@ from typing import Any, Optional
 
 from opendr._errors import Unsupported
 from opendr._native_learner import NativeBase, PathLike
+from opendr._older_names import under_older_name
 from opendr.engine.learners import LearnerRL
 
 
@@ -28,7 +29,7 @@ class NativeLearnerRL(NativeBase, LearnerRL):
         verbose: bool = True,
         *,
         env_params: Optional[dict[str, Any]] = None,
-        output: Optional[PathLike] = None,
+        out: Optional[PathLike] = None,
         resume: bool = False,
         **fit_params: Any,
     ) -> dict[str, Any]:
@@ -43,9 +44,9 @@ class NativeLearnerRL(NativeBase, LearnerRL):
             silent: Whether to show nothing at all.
             verbose: Whether to print the outcome.
             env_params: Parameters of an environment that is named.
-            output: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
+            out: Folder of checkpoints, report and, in ``model``, the trained container; by default ``temp_path`` or
                 else ``runs/NAME-DATE``.
-            resume: Whether to go on from the last checkpoint in ``output``, or in the last run of this learner.
+            resume: Whether to go on from the last checkpoint in ``out``, or in the last run of this learner.
             fit_params: Parameters of the training (docs/learners.md); by default those the constructor was given.
 
         Returns:
@@ -55,10 +56,10 @@ class NativeLearnerRL(NativeBase, LearnerRL):
             ValueError: Environment, policy and parameters do not fit together.
             RuntimeError: The environment raised; what was learnt up to the last checkpoint is kept.
         """
-        place = output or self.temp_path or None
+        place = under_older_name(out, "out", fit_params, "output") or self.temp_path or None
         options = {
             "params": self._fit_params(fit_params),
-            "output": None if place is None else os.fspath(place),
+            "out": None if place is None else os.fspath(place),
             "logging_path": os.fspath(logging_path) if logging_path else None,
             "resume": resume or self.checkpoint_load_iter > 0,
         }

@@ -121,7 +121,7 @@ def evaluate_function(
     Args:
         infer: From the data of a sample to targets.
         dataset: What to measure on.
-        options: ``metric``, ``metric_params``, ``split``, ``limit``, ``folder``, ``skip_broken``, ``classes``, ``by_number``,
+        options: ``metric``, ``metric_params``, ``split``, ``limit``, ``out``, ``skip_broken``, ``classes``, ``by_number``,
             ``resamples``.
         reset: What makes ``infer`` forget, before a sequence.
         types: The types of data that ``infer`` takes, by default those of the first sample.

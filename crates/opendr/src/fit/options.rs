@@ -25,10 +25,11 @@ pub struct FitOptions {
     /// Only the first so many samples.
     pub limit: Option<usize>,
     /// The folder of checkpoints, the trained model and the report; by default `runs/NAME-DATE`.
-    pub output: Option<PathBuf>,
+    #[serde(alias = "output")]
+    pub out: Option<PathBuf>,
     /// The folder of event files and curves; none are written without it.
     pub logging_path: Option<PathBuf>,
-    /// Whether to go on from the last checkpoint in `output`; without `output`, in the last run of the learner in `runs`.
+    /// Whether to go on from the last checkpoint in `out`; without `out`, in the last run of the learner in `runs`.
     pub resume: bool,
     /// A learner of the zoo whose answers are learned from, instead of annotations, e.g. `"nanodet"`.
     pub teacher: Option<String>,

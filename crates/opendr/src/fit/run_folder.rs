@@ -18,7 +18,7 @@ impl FitOptions {
     /// # Errors
     /// `NotFound` when there is no run to resume.
     pub fn output_folder(&self, name: &str) -> Result<PathBuf> {
-        match &self.output {
+        match &self.out {
             Some(output) => Ok(output.clone()),
             None if self.resume => last_run(Path::new(RUNS), name),
             None => Ok(new_run(Path::new(RUNS), name, &stamp(SystemTime::now()))),

@@ -73,7 +73,7 @@ impl<'a> LearnerTraining<'a> {
     fn train(&mut self, until: u64) -> Result<bool> {
         let options = FitOptions {
             params: self.params.clone(),
-            output: Some(self.folder.clone()),
+            out: Some(self.folder.clone()),
             resume: self.folder.exists(),
             ..FitOptions::default()
         };

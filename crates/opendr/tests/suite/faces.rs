@@ -144,7 +144,7 @@ fn persons_are_known_after_references_and_others_are_not() {
                output: &str,
                dataset: &ExternalDataset,
                new: bool| {
-        let mut options = FitOptions { output: Some(folder.0.join(output)), ..FitOptions::default() };
+        let mut options = FitOptions { out: Some(folder.0.join(output)), ..FitOptions::default() };
         options.params.insert("create_new".into(), new.into());
         opendr::fit(learner, entry, FitData::from(DatasetRef::External(dataset)), &options, &Silent)
     };
@@ -195,7 +195,7 @@ fn persons_are_known_after_references_and_others_are_not() {
     assert!(found.boxes[0].confidence > 0.99, "{found:#}");
 
     // A network of one's own, with the detector in its container; its persons need references again.
-    let mut options = FitOptions { output: Some(folder.0.join("network")), ..FitOptions::default() };
+    let mut options = FitOptions { out: Some(folder.0.join("network")), ..FitOptions::default() };
     let small = [("dimension", 16.into()), ("batch_size", 2.into()), ("max_steps", 2.into())];
     options.params.extend(small.map(|(name, value): (&str, ParamValue)| (name.to_owned(), value)));
     options.params.insert("mode".into(), "full".into());

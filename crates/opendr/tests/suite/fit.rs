@@ -42,7 +42,7 @@ impl Place {
     }
 
     fn options(&self, json: &str) -> FitOptions {
-        FitOptions { output: Some(self.0.clone()), ..serde_json::from_str(json).unwrap() }
+        FitOptions { out: Some(self.0.clone()), ..serde_json::from_str(json).unwrap() }
     }
 }
 
@@ -154,7 +154,7 @@ fn a_teacher_that_answers_something_else_is_refused() {
     teacher.entry = opendr::registry().find("movenet").unwrap();
     let dataset = Boxes(3);
     let data = FitData { teacher: Some(teacher), ..DatasetRef::Iterator(&dataset).into() };
-    let options = FitOptions { output: Some(place.0.join("run")), ..FitOptions::default() };
+    let options = FitOptions { out: Some(place.0.join("run")), ..FitOptions::default() };
     let error = opendr::fit(learner.as_mut(), entry, data, &options, &Silent).unwrap_err();
     assert!(error.to_string().contains("needs BoundingBoxList"), "{error}");
 }
@@ -200,7 +200,7 @@ fn a_real_teacher_labels_pictures_once() {
         opendr::fit(learner.as_mut(), entry, data, options, &Silent)
     };
     let mut options = FitOptions {
-        output: Some(place.0.join("run")),
+        out: Some(place.0.join("run")),
         teacher_classes: vec!["person".to_owned()],
         ..FitOptions::default()
     };

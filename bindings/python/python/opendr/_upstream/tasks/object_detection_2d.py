@@ -98,7 +98,7 @@ LEARNERS = {
         infer="input>image conf_threshold iou_threshold nms_max_num hf dynamic ch_l",
         fit="dataset val_dataset logging_path verbose logging!log seed local_rank!rank",
         eval="dataset verbose logging!log local_rank!rank",
-        optimize="export_path>output verbose optimization!onnx conf_threshold!live iou_threshold!live nms_max_num!live"
+        optimize="export_path>out verbose optimization!onnx conf_threshold!live iou_threshold!live nms_max_num!live"
         " hf!half dynamic!size ch_l!layout lazy_load!onnx",
         methods={"optimize_c_model": "the container that save() writes is what C loads"},
         folder="nanodet_{model_to_use=m}",

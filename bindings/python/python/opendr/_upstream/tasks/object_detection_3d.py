@@ -18,7 +18,7 @@ LEARNERS = {
         " lr_schedule_params!scheduler",
         infer="point_clouds>point_cloud",
         fit="dataset val_dataset refine_weight!weight ground_truth_annotations!truth logging_path silent verbose"
-        " model_dir>output image_shape!shape evaluate!evaluate",
+        " model_dir>out image_shape!shape evaluate!evaluate",
         eval="dataset ground_truth_annotations!truth logging_path!log silent verbose image_shape!shape count>limit",
         optimize="do_constant_folding!onnx",
         download="model_name path server_url>url",

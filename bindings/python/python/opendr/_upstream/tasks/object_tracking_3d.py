@@ -48,7 +48,7 @@ LEARNERS = {
         " vertical_regressor_kwargs iters backbone batch_size threshold scale",
         infer="point_cloud frame id draw!draw",
         fit="dataset steps>max_steps val_dataset refine_weight!weight ground_truth_annotations!truth logging_path"
-        " silent verbose model_dir>output image_shape!shape evaluate!evaluate debug!log load_optimizer!scratch",
+        " silent verbose model_dir>out image_shape!shape evaluate!evaluate debug!log load_optimizer!scratch",
         eval="dataset ground_truth_annotations!truth logging_path!log silent verbose image_shape!shape count>limit",
         optimize="do_constant_folding!onnx",
         download="model_name path server_url>url",
