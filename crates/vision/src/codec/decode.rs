@@ -18,7 +18,7 @@ const HEAD: u64 = 64;
 /// Samples of the largest picture that is read where nobody says otherwise: 89 megapixels of RGB.
 const MAX_SAMPLES: u64 = 1 << 28;
 /// The variable of the environment that raises or lowers it.
-const VARIABLE: &str = "OPENDR_MAX_SAMPLES";
+pub(crate) const LIMIT_VARIABLE: &str = "OPENDR_MAX_SAMPLES";
 
 /// Reads picture files within bounds.
 ///
@@ -36,7 +36,7 @@ impl Default for Decoder {
     /// Up to as many samples as `OPENDR_MAX_SAMPLES` says, by default 2^28: 89 megapixels of RGB.
     fn default() -> Self {
         static LIMIT: OnceLock<u64> = OnceLock::new();
-        let set = || std::env::var(VARIABLE).ok()?.trim().parse().ok();
+        let set = || std::env::var(LIMIT_VARIABLE).ok()?.trim().parse().ok();
         Self { max_samples: *LIMIT.get_or_init(|| set().unwrap_or(MAX_SAMPLES)) }
     }
 }
@@ -97,7 +97,7 @@ impl Decoder {
         file.take(limit).read_to_end(&mut bytes)?;
         if bytes.len() as u64 > limit {
             return Err(Error::invalid_input(format!(
-                "over {limit} bytes, too large for a picture; if it is one, set {VARIABLE} above {}",
+                "over {limit} bytes, too large for a picture; if it is one, set {LIMIT_VARIABLE} above {}",
                 self.max_samples
             )));
         }
@@ -132,7 +132,7 @@ pub(super) fn check_size(width: u32, height: u32, channels: u8, max_samples: u64
     }
     Err(Error::invalid_input(format!(
         "the header claims {width}x{height} pixels of {channels} channels, {samples} samples, over the limit of \
-         {max_samples}; make it smaller or, if the file can be trusted, set {VARIABLE} to {samples} or more"
+         {max_samples}; make it smaller or, if the file can be trusted, set {LIMIT_VARIABLE} to {samples} or more"
     )))
 }
 

@@ -11,6 +11,7 @@ mod jpeg;
 mod orientation;
 mod size;
 
+pub(crate) use decode::LIMIT_VARIABLE;
 pub use decode::{Decoder, decode, open};
 pub use depth::{encode_depth_png, save_depth};
 pub use encode::{Encoder, encode_png, save};

@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use opendr_engine::data::Image;
 use opendr_engine::{Error, Result, ResultExt};
 
+use crate::codec::LIMIT_VARIABLE;
 use crate::source::{Frame, FrameReader, VideoInfo};
 use crate::video::ffmpeg::{Complaints, Ffmpeg, input_arguments};
 use crate::video::frame_line::FrameLine;
@@ -85,7 +86,7 @@ impl VideoReader {
         let samples = (width as u64).saturating_mul(height as u64).saturating_mul(3);
         if samples > self.max_samples {
             return Err(Error::invalid_input(format!(
-                "frames of {width}x{height} pixels, over the limit of {} samples; raise `Decoder::max_samples`",
+                "frames of {width}x{height} pixels, over the limit of {} samples; set {LIMIT_VARIABLE} to {samples} or more",
                 self.max_samples
             )));
         }
