@@ -579,8 +579,9 @@ enum opendr_status opendr_env_close(struct opendr_env **env);
 // Measures the learner on a data set on disk.
 //
 // dataset_type is its format, e.g. "coco"; NULL recognises it. options_json is an object: "metric", "metric_params",
-// "split", "limit", "out", "skip_broken"; NULL takes the defaults. The outcome is an object of JSON: under "scalars"
-// the numbers by name; it is to be freed.
+// "split", "limit", "out", "skip_broken", "classes" (an object: classes of the data set by classes of the learner), "by_number",
+// "resamples", and "then", a list of pretrained learners behind this one, such as ["byte_track"], so that the pipeline is
+// measured; NULL takes the defaults. The outcome is an object of JSON: under "scalars" the numbers by name; it is to be freed.
 enum opendr_status opendr_eval(const struct opendr_learner *learner,
                                const char *dataset,
                                const char *dataset_type,
