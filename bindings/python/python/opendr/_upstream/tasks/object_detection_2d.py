@@ -115,7 +115,7 @@ LEARNERS = {
         " checkpoint_load_iter temp_path device threshold num_classes panoptic_segmentation",
         infer="m1_image>colour m2_image>infrared",
         fit="m1_train_edataset>dataset m2_train_edataset!pairs annotations_folder!part m1_train_annotations_file!part"
-        " m2_train_annotations_file!part m1_train_images_folder>split m2_train_images_folder!pairs out_dir>output"
+        " m2_train_annotations_file!part m1_train_images_folder>split m2_train_images_folder!pairs out_dir>out"
         " trial_dir!trial logging_path silent verbose m1_val_edataset>val_dataset m2_val_edataset!pairs"
         " m1_val_annotations_file!part m2_val_annotations_file!part m1_val_images_folder>val_split"
         " m2_val_images_folder!pairs",
