@@ -302,30 +302,27 @@ impl ClassMap {
             return Ok(());
         }
         let own = if map.classes.is_empty() { self.learner.clone() } else { map.classes.clone() };
-        let shape = map.shape().to_vec();
-        let labels = match map.values() {
-            HeatmapValues::Labels(labels) => labels.clone(),
+        let is_map_of_classes = match map.values() {
+            HeatmapValues::Labels(_) => true,
             // Scores of every class: the class of the highest.
-            HeatmapValues::Scores(_) if shape.len() == 3 && shape[0] == own.len() => {
-                map.class_labels()?.0.into_owned().into()
-            }
-            HeatmapValues::Scores(_) => return Ok(()),
+            HeatmapValues::Scores(_) => matches!(map.shape(), [classes, _, _] if *classes == own.len()),
         };
+        if !is_map_of_classes {
+            return Ok(());
+        }
         if own.is_empty() {
             self.has_unnamed = true;
             return Ok(());
         }
         self.learn(&own);
+        let (labels, shape) = map.class_labels()?;
         let mapped = match self.map_labels {
             MapLabels::Classes => self.mapped_classes(&labels, &own),
             MapLabels::Segments => self.mapped_segments(&labels, &own),
         };
-        let shape = if mapped.len() == labels.len() && shape.len() == 3 && shape[0] == own.len() {
-            &shape[1..]
-        } else {
-            &shape[..]
-        };
-        map.labels_mut(shape).copy_from_slice(&mapped);
+        let shape = shape.to_vec();
+        drop(labels);
+        map.labels_mut(&shape).copy_from_slice(&mapped);
         map.classes = self.dataset.clone();
         Ok(())
     }

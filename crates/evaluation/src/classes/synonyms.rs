@@ -120,19 +120,7 @@ pub(super) fn find<'a>(label: &str, classes: impl Iterator<Item = &'a str>) -> O
 mod tests {
     use super::*;
 
-    const CAMVID: [&str; 11] = [
-        "Sky",
-        "Building",
-        "Pole",
-        "Road",
-        "Pavement",
-        "Tree",
-        "SignSymbol",
-        "Fence",
-        "Car",
-        "Pedestrian",
-        "Bicyclist",
-    ];
+    use crate::classes::tests::CAMVID;
 
     fn found(label: &str, classes: &[&'static str]) -> Option<(&'static str, MatchedBy)> {
         find(label, classes.iter().copied()).map(|(index, by)| (classes[index], by))

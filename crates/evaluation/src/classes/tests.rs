@@ -4,6 +4,21 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 
 use super::*;
 
+/// CamVid's eleven classes.
+pub(super) const CAMVID: [&str; 11] = [
+    "Sky",
+    "Building",
+    "Pole",
+    "Road",
+    "Pavement",
+    "Tree",
+    "SignSymbol",
+    "Fence",
+    "Car",
+    "Pedestrian",
+    "Bicyclist",
+];
+
 fn classes(names: &[&str]) -> Classes {
     names.iter().copied().collect()
 }
@@ -64,20 +79,7 @@ fn a_category_that_the_data_set_does_not_have_is_wrong_and_named() {
 
 #[test]
 fn pixels_of_several_classes_meet_in_one() {
-    let camvid = [
-        "Sky",
-        "Building",
-        "Pole",
-        "Road",
-        "Pavement",
-        "Tree",
-        "SignSymbol",
-        "Fence",
-        "Car",
-        "Pedestrian",
-        "Bicyclist",
-    ];
-    let mut map = map(&["road", "rider", "bicycle", "moon"], &camvid);
+    let mut map = map(&["road", "rider", "bicycle", "moon"], &CAMVID);
     let mut heatmap = Heatmap::from_labels(vec![0, 1, 2, 3, 255], &[1, 5]).unwrap();
     heatmap.classes = classes(&["road", "rider", "bicycle", "moon"]);
     let mut prediction = Value::from(heatmap);
@@ -102,20 +104,7 @@ fn scores_become_the_class_of_the_highest() {
 
 #[test]
 fn segments_that_meet_in_a_class_are_numbered_anew() {
-    let camvid = [
-        "Sky",
-        "Building",
-        "Pole",
-        "Road",
-        "Pavement",
-        "Tree",
-        "SignSymbol",
-        "Fence",
-        "Car",
-        "Pedestrian",
-        "Bicyclist",
-    ];
-    let mut map = map(&["road", "car", "truck"], &camvid).with_labels(MapLabels::Segments);
+    let mut map = map(&["road", "car", "truck"], &CAMVID).with_labels(MapLabels::Segments);
     let mut heatmap = Heatmap::from_labels(vec![0, 1001, 1001, 2001, 1002, 2001], &[2, 3]).unwrap();
     heatmap.classes = classes(&["road", "car", "truck"]);
     let mut prediction = Value::from(heatmap);
