@@ -58,7 +58,7 @@ fn scenes_have_clouds_or_pictures() {
 }
 
 #[test]
-fn wrong_calibrations_are_told_by_line() {
+fn wrong_calibrations_are_reported_by_line() {
     for (from, to, wanted) in [
         ("R0_rect", "R1_rect", "c.txt at R0_rect: this matrix is missing"),
         ("700 0 600", "700 0", "c.txt:2: P2 has 11 numbers instead of 12"),
@@ -73,13 +73,13 @@ fn wrong_calibrations_are_told_by_line() {
     }
     let read = calibration_from_kitti(CALIBRATION, Path::new("c.txt")).unwrap();
     assert_eq!(calibration_from_kitti(&kitti_from_calibration(&read), Path::new("c.txt")).unwrap(), read);
-    // The tracking benchmark calls its matrices otherwise.
+    // The tracking benchmark has other names of matrices.
     let tracking = CALIBRATION.replace("R0_rect:", "R_rect").replace("velo_to_cam:", "velo_cam");
     assert_eq!(calibration_from_kitti(&tracking, Path::new("c.txt")).unwrap(), read);
 }
 
 #[test]
-fn broken_scenes_are_told() {
+fn broken_scenes_are_reported() {
     for (name, bytes, wanted) in [
         ("label_2/000001.txt", &b"Car 1 2"[..], "000001.txt:1: has 3 fields instead of 15 to 16"),
         ("velodyne/000001.bin", &[0; 20], "000001.bin at byte 16: 20 bytes are no whole number"),
@@ -118,8 +118,8 @@ fn wrong_lines_are_refused() {
         assert!(error.starts_with(wanted), "{error}");
     }
     assert!(track_from_line(&format!("0 -1 {IGNORED}")).is_ok());
-    assert!(track_from_line(&format!("0 -1 {CAR}")).unwrap_err().starts_with("gives the object number -1"));
-    assert!(track_from_line(&format!("-1 0 {CAR}")).unwrap_err().starts_with("is of frame -1"));
+    assert!(track_from_line(&format!("0 -1 {CAR}")).unwrap_err().starts_with("has object id -1"));
+    assert!(track_from_line(&format!("-1 0 {CAR}")).unwrap_err().starts_with("has frame -1"));
 }
 
 #[test]
@@ -133,7 +133,7 @@ fn what_is_written_is_read() {
         assert_eq!(again.len(), 2);
         let mut data = kitti.get(1).unwrap().data;
         if let Value::PointCloudWithCalibration(scan) = &mut data[0] {
-            // The pictures go with boxes in the picture only.
+            // Only boxes in the image have images as data.
             scan.image_shape = None;
         }
         assert_eq!(again.get(1).unwrap().data, data, "{target:?}");
@@ -142,7 +142,7 @@ fn what_is_written_is_read() {
 }
 
 #[test]
-fn recordings_follow_one_another() {
+fn sequences_follow_one_another() {
     let labels = format!("1 3 {CAR}\n0 3 {CAR}\n1 -1 {IGNORED}\n1 -1 {IGNORED}\n");
     let folder = TemporaryFolder::new()
         .with("training/label_02/0000.txt", &labels)

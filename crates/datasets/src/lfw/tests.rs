@@ -37,7 +37,7 @@ fn pairs_of_lfw_are_read() {
 }
 
 #[test]
-fn broken_lists_are_told_by_line() {
+fn broken_lists_are_reported_by_line() {
     for (line, wanted) in [
         ("Ann 1", "pairs.txt:6: has 2 fields instead of 3 or 4"),
         ("Ann x 2", "pairs.txt:6: has \"x\" instead of the number of a picture"),

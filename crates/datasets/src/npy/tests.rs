@@ -29,7 +29,7 @@ fn every_type_is_read() {
 }
 
 #[test]
-fn fortran_order_is_turned() {
+fn fortran_order_is_converted() {
     let (shape, numbers) = array_from_npy(&file("|u1", "True", "(2, 3)", &[1, 4, 2, 5, 3, 6])).unwrap();
     assert_eq!((shape, numbers), (vec![2, 3], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
 }

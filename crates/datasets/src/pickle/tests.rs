@@ -16,7 +16,7 @@ fn values_are_read() {
 }
 
 #[test]
-fn code_and_broken_files_are_refused() {
+fn code_and_broken_files_are_errors() {
     for (bytes, wanted) in [
         (
             &b"\x80\x02cos\nsystem\nX\x02\x00\x00\x00ls\x85R."[..],
@@ -36,7 +36,7 @@ fn code_and_broken_files_are_refused() {
 }
 
 #[test]
-fn the_same_bytes_again_and_again_are_refused() {
+fn copying_the_same_bytes_too_often_is_an_error() {
     let mut bytes = b"\x80\x02]q\x00c_codecs\nencode\nq\x01X\x10\x27\0\0".to_vec();
     bytes.extend([b'a'; 10_000]);
     bytes.extend(*b"\x85q\x02R");
@@ -45,10 +45,10 @@ fn the_same_bytes_again_and_again_are_refused() {
     }
     bytes.push(b'.');
     let error = Pickle::parse(&bytes).unwrap_err();
-    assert!(error.to_string().contains("again and again"), "{error}");
+    assert!(error.to_string().contains("copied too often"), "{error}");
 }
 
-/// A list within itself is no endless work.
+/// A list that contains itself is parsed without an endless loop.
 #[test]
 fn cycles_cost_nothing() {
     let pickle = Pickle::parse(b"\x80\x02]q\x00h\x00a.").unwrap();

@@ -52,7 +52,7 @@ fn tables_are_read() {
 }
 
 #[test]
-fn broken_files_are_told_by_line() {
+fn broken_files_are_reported_by_line() {
     for (from, to, wanted) in [
         ("@data\n", "", "ts:9: is no line of a head"),
         ("@timeStamps false", "@timeStamps true", "ts:3: has time stamps"),
@@ -89,7 +89,7 @@ fn what_is_written_is_read() {
     let again = open(&copy, Some("train")).unwrap();
     assert_eq!(again.classes(), series.classes());
     for index in 0..2 {
-        // NaN differs from itself, its text does not.
+        // NaN is not equal to itself, but its text is.
         assert_eq!(format!("{:?}", sample(&again, index)), format!("{:?}", sample(&series, index)));
     }
 }

@@ -23,7 +23,7 @@ fn every_encoding_both_ways() {
 }
 
 #[test]
-fn loud_samples_are_cut() {
+fn loud_samples_are_clipped() {
     let loud = Audio::new(vec![2.0, -2.0], 1, 8000).unwrap();
     let read = |encoding| audio_from_wav(&wav_from_audio(&loud, encoding).unwrap()).unwrap();
     assert_eq!(read(WavEncoding::Pcm16).array().as_slice(), [32767.0 / 32768.0, -1.0]);
