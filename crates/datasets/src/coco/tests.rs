@@ -152,7 +152,7 @@ fn broken_entries_are_reported_with_their_place() {
     assert!(found[0].contains("annotations[0]") && found[0].contains("line 5, byte 2"), "{found:?}");
     assert!(found[0].contains("key \"bbox[1]\""), "{found:?}");
     assert!(
-        found[1].contains("annotations[1].image_id: line 7") && found[1].contains("no picture 140"),
+        found[1].contains("annotations[1].image_id: line 7") && found[1].contains("no image 140"),
         "{found:?}"
     );
     assert!(found[2].contains("annotations[2].segmentation") && found[2].contains("40x10"), "{found:?}");
@@ -220,7 +220,7 @@ fn parts_are_chosen() {
     other.write("test_b.json", SMALL);
     assert!(Coco::annotation_file(other.path(), &OpenOptions::default()).unwrap().ends_with("test_b.json"));
     let error = id(Some("test")).unwrap_err().to_string();
-    assert!(error.contains("there are: val2017, train2017") || error.contains("val2017"), "{error}");
+    assert!(error.contains("the parts are: val2017, train2017") || error.contains("val2017"), "{error}");
 }
 
 #[test]

@@ -67,13 +67,13 @@ fn subjects_have_gestures() {
 #[test]
 fn broken_labels_are_reported_by_line() {
     for (line, wanted) in [
-        ("color_1.png,color_1.png,[1 2 3 4]", "Subject1.txt:4: has 1 boxes where the first line names 2"),
+        ("color_1.png,color_1.png,[1 2 3 4]", "Subject1.txt:4: has 1 boxes, but the first line has 2"),
         (
             "color_1.png,color_1.png,[0 0 0 0],[1 2 x 4]",
             "Subject1.txt:4: has \"[1 2 x 4]\" as the box of Punch",
         ),
-        ("color_1.png,color_1.png,[0 0 0 0],[0 0 0 0]", "Subject1.txt:4: shows no gesture"),
-        ("color_9.png,color_1.png,[0 0 0 0],[1 2 3 4]", "Subject1.txt:4: names "),
+        ("color_1.png,color_1.png,[0 0 0 0],[0 0 0 0]", "Subject1.txt:4: has no gesture"),
+        ("color_9.png,color_1.png,[0 0 0 0],[1 2 3 4]", "Subject1.txt:4: refers to "),
         ("..,color_1.png,[0 0 0 0],[1 2 3 4]", "Subject1.txt:4: the file name \"..\""),
         ("x", "Subject1.txt:4: has 1 fields instead of 4"),
     ] {

@@ -102,11 +102,11 @@ fn broken_rows_are_reported_and_skipped() {
         ("1,2,3,4,nan,6,1,1,1", "gt.txt:4: has \"nan\" in field 5"),
         ("1,2,3,4,5,6,1,14,1", "gt.txt:4: has class 14"),
         ("1,2,3,4,5,6,1,1,1.5", "gt.txt:4: has visibility 1.5"),
-        ("0,2,3,4,5,6,1,1,1", "gt.txt:4: is of picture 0"),
-        ("9000000000,2,3,4,5,6,1,1,1", "gt.txt:4: is of picture 9000000000"),
-        ("3,2,3,4,5,6,1,1,1", "gt.txt:4: is of picture 3 of 2"),
-        ("1,-1,3,4,5,6,1,1,1", "gt.txt:4: gives the object number -1"),
-        ("1,7,3,4,5,6,1,1,1", "gt.txt:4: has object 7 a second time"),
+        ("0,2,3,4,5,6,1,1,1", "gt.txt:4: has frame 0"),
+        ("9000000000,2,3,4,5,6,1,1,1", "gt.txt:4: has frame 9000000000"),
+        ("3,2,3,4,5,6,1,1,1", "gt.txt:4: has frame 3, but the sequence has 2"),
+        ("1,-1,3,4,5,6,1,1,1", "gt.txt:4: has object id -1"),
+        ("1,7,3,4,5,6,1,1,1", "gt.txt:4: has object 7 twice"),
         ("1,2,3,4,0,6,1,1,1", "gt.txt:4: has a box of 0 x 6 pixels"),
     ] {
         let folder = challenge().with("train/A/gt/gt.txt", format!("{TRUTH}{line}\n"));
@@ -122,9 +122,9 @@ fn broken_folders_are_reported() {
     for (name, text, wanted) in [
         ("train/A/seqinfo.ini", "imDir=../..\n", "seqinfo.ini:1: has \"../..\" as imDir"),
         ("train/A/seqinfo.ini", "seqLength=99999999999\n", "seqinfo.ini:1: has \"99999999999\" as seqLength"),
-        ("train/A/seqinfo.ini", "seqLength=3\n", "seqLength is 3, but the last picture is number 2"),
-        ("train/A/img1/000004.jpg", "", "the picture before it is number 2"),
-        ("train/A/img1/x.jpg", "", "its name is no number"),
+        ("train/A/seqinfo.ini", "seqLength=3\n", "seqLength is 3, but the last image is number 2"),
+        ("train/A/img1/000004.jpg", "", "the image before it is number 2"),
+        ("train/A/img1/x.jpg", "", "its name is not a number"),
     ] {
         let folder = challenge().with(name, text);
         let error = open(&folder, &Problems::strict()).unwrap_err();

@@ -42,8 +42,8 @@ fn bodies_keep_their_place() {
 #[test]
 fn broken_recordings_are_reported_by_line() {
     for (from, to, line, wanted) in [
-        ("2\n3\n", "99999999999\n3\n", 1, "tells an impossible number of frames"),
-        ("2\n3\n", "2\n-3\n", 2, "tells an impossible number of bodies"),
+        ("2\n3\n", "99999999999\n3\n", 1, "has an invalid number of frames"),
+        ("2\n3\n", "2\n-3\n", 2, "has an invalid number of bodies"),
         ("\n25\n", "\n24\n", 4, "has 24 joints instead of 25"),
         ("5 0 0.5", "nan 0 0.5", 5, "has \"nan\" in field 1"),
         ("5 0 0.5 0 0 0 0 0 0 0 0 2", "5", 5, "has 1 fields instead of 3 to 12"),
@@ -103,7 +103,7 @@ fn broken_arrays_are_reported() {
     for (data, labels, wanted) in [
         (npy_from_f32(&[1.0], &[1]).unwrap(), vec![0], "val_data.npy: has shape [1]"),
         (good.clone(), vec![0, 1, 2], "val_label.npy: has 3 classes for 2 samples"),
-        (good.clone(), vec![0, -1], "val_label.npy at sample 1: is class -1"),
+        (good.clone(), vec![0, -1], "val_label.npy at sample 1: has class -1"),
     ] {
         let folder = TemporaryFolder::new()
             .with("val_data.npy", data)

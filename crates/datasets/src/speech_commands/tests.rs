@@ -53,7 +53,7 @@ fn lists_define_the_parts() {
     }
     for (line, wanted) in [
         ("yes/../../x.wav", "testing_list.txt:2: the file name"),
-        ("yes/zz_nohash_0.wav", "testing_list.txt:2: names \"yes/zz_nohash_0.wav\", which is missing"),
+        ("yes/zz_nohash_0.wav", "testing_list.txt:2: refers to \"yes/zz_nohash_0.wav\", which is missing"),
     ] {
         let folder = words()
             .with("validation_list.txt", "yes/b2_nohash_0.wav\n")

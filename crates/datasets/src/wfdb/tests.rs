@@ -38,7 +38,7 @@ fn headers_are_parsed_completely() {
 fn wrong_headers_are_reported_by_line() {
     for (text, line, wanted) in [
         ("", 1, "has no record line"),
-        ("# x\nr 2 100\nr.dat 16", 2, "promises 2 signals where 1 lines follow"),
+        ("# x\nr 2 100\nr.dat 16", 2, "states 2 signals, but 1 lines follow"),
         ("r 9999999999", 1, "has 9999999999 signals"),
         ("r -1", 1, "has \"-1\" as the number of signals"),
         ("r 1 nan\nr.dat 16", 1, "has \"nan\" as the sampling frequency"),
@@ -151,11 +151,11 @@ fn records_both_ways() {
 fn broken_records_are_reported() {
     let good = || TemporaryFolder::new().with("a.hea", "a 1 100 2\na.dat 16\n").with("a.dat", [0; 4]);
     for (name, bytes, wanted) in [
-        ("a.hea", &b"a 1 100 2\n../a.dat 16\n"[..], "a.hea:2: the file name \"../a.dat\" leaves"),
+        ("a.hea", &b"a 1 100 2\n../a.dat 16\n"[..], "a.hea:2: the file name \"../a.dat\" is outside"),
         (
             "a.hea",
             b"a 1 100 99999999999\na.dat 16\n",
-            "a.dat at byte 4: the file has 2 of 99999999999 instants",
+            "a.dat at byte 4: the file has 2 of 99999999999 frames",
         ),
         ("a.dat", b"", "a.dat at byte 0: the file has 0 of 2"),
     ] {
@@ -172,7 +172,7 @@ fn broken_records_are_reported() {
     assert!(
         told[0].ends_with("b.hea:1: has \"x\" as the number of signals")
             && problems.list()[0].place.is_some()
-            && told[1].contains("c.atr: an annotation at sample 9 of 2")
+            && told[1].contains("c.atr: has an annotation at sample 9 of 2")
     );
     let list = good().with("RECORDS", "../a\n");
     let error = Wfdb::open(list.path(), &OpenOptions::default(), &Problems::strict()).unwrap_err();
