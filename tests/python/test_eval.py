@@ -174,8 +174,8 @@ def test_poses_are_evaluated_on_coco(opendr, shared, tmp_path):
 def test_wrong_use_is_told(opendr, coco128, tmp_path):
     for arguments, code, text in [
         (("eval", "centernet", tmp_path / "none"), 13, "no data set at"),
-        (("eval", "centernet", tmp_path), 11, "no data set of a known format"),
-        (("eval", "centernet", coco128, "--format", "nonsense"), 13, "there are coco"),
+        (("eval", "centernet", tmp_path), 11, "not a data set of a known format"),
+        (("eval", "centernet", coco128, "--format", "nonsense"), 13, "choose one of coco"),
         (("eval", "centernet", coco128, "--metric", "transcription"), 11, "compares with"),
         (("eval", "centernet", coco128, "--metric-param", "use_classes"), 12, "NAME=VALUE"),
         (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "there are max_detections"),

@@ -225,7 +225,9 @@ mod tests {
         assert_eq!((dataset.len(), problems.count()), (1, 3));
         let told: Vec<_> = problems.list().iter().map(|problem| problem.to_string()).collect();
         assert!(
-            told[0].contains("val.txt:2") && told[1].contains("synset") && told[2].contains("class 2, but there are 2 classes"),
+            told[0].contains("val.txt:2")
+                && told[1].contains("synset")
+                && told[2].contains("class 2, but there are 2 classes"),
             "{told:?}"
         );
         assert!(matches!(dataset.target(0).unwrap(), Some(Value::Category(category)) if category.class == 1));

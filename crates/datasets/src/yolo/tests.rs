@@ -74,7 +74,8 @@ fn broken_lines_are_reported() {
         error.rsplit_once("a.txt").unwrap().1.to_owned()
     };
     assert!(
-        error("0 .5 .5 .5 .5\n2 .5 .5 .5 .5").starts_with(":2: has class 2, which is not one of the 2 classes")
+        error("0 .5 .5 .5 .5\n2 .5 .5 .5 .5")
+            .starts_with(":2: has class 2, which is not one of the 2 classes")
     );
     assert!(error("-1 .5 .5 .5 .5").contains("class -1"));
     assert!(error("0 .5 .5 NaN .5").contains("\"NaN\" in field 4"));
