@@ -65,7 +65,7 @@ mod tests {
         let numbers: Vec<f32> = (0..50).flat_map(|time| [time as f32, f32::NAN]).collect();
         let image = curve(&numbers, 2).unwrap();
         let grey = image.hwc_u8(PixelFormat::Grey);
-        let top = |column: usize| (0..SIZE[1]).find(|row| grey[row * SIZE[0] + column] > GROUND);
+        let top = |column: usize| (0..SIZE[1]).find(|row| grey[row * SIZE[0] + column] > BACKGROUND);
         let tops: Vec<usize> = (0..SIZE[0]).filter_map(top).collect();
         assert_eq!(tops.len(), SIZE[0]);
         assert!(tops.windows(2).all(|pair| pair[1] <= pair[0]) && tops[0] > 210 && tops[SIZE[0] - 1] < 20);

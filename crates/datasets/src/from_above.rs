@@ -84,7 +84,7 @@ mod tests {
         };
         let target = BoundingBox3DList::from(vec![found]).into();
         let image = from_above(&cloud.into(), Some(&target)).unwrap().unwrap();
-        let lit = |x: usize, y: usize| image.view().sample_u8(x, y, 1) > GROUND;
+        let lit = |x: usize, y: usize| image.view().sample_u8(x, y, 1) > BACKGROUND;
         assert!(lit(180, 120) && !lit(120, 180));
         // The box is behind and to the right: 15 to 25 metres each.
         assert!(lit(340, 315) && lit(315, 340) && lit(365, 340) && !lit(340, 340) && !lit(140, 140));

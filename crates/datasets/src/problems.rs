@@ -152,9 +152,9 @@ mod tests {
         assert_eq!(source.downcast_ref::<Problem>(), Some(&problem()));
         assert_eq!(error.to_string(), "gt.txt:7: 10 columns, not 9");
         let problems = Problems::skipping();
-        for _ in 0..MOST_KEPT + 5 {
+        for _ in 0..MAX_KEPT + 5 {
             problems.report(problem()).unwrap();
         }
-        assert_eq!((problems.count(), problems.list().len()), (MOST_KEPT as u64 + 5, MOST_KEPT));
+        assert_eq!((problems.count(), problems.list().len()), (MAX_KEPT as u64 + 5, MAX_KEPT));
     }
 }

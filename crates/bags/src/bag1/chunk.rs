@@ -27,7 +27,7 @@ impl Layout for Connections {
         decompress(header.compression.unwrap_or(b"none"), bytes, u64::from(size))
     }
 
-    fn learn(&mut self, records: &[u8], summary: &mut Summary) -> Result<()> {
+    fn read_channels(&mut self, records: &[u8], summary: &mut Summary) -> Result<()> {
         let mut at = 0;
         while at < records.len() {
             let (header, data) = split(records, at)?;

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use opendr_engine::{Error, Result};
 
 use crate::npy::NpyType;
-use crate::pickle::{Id, Item, MAX_AXES, refused};
+use crate::pickle::{Id, Item, MAX_AXES, code_error};
 
 /// Largest number of values.
 const MAX_ITEMS: usize = 16 << 20;

@@ -128,7 +128,7 @@ mod tests {
             let [left, top, width, height] = window;
             assert!(left + width <= 500 && top + height <= 375);
             assert!((0.5..=2.0).contains(&(width as f32 / height as f32)));
-            assert!(boxes.iter().any(|object| has_middle(corners_of(window), *object)));
+            assert!(boxes.iter().any(|object| has_centre(corners_of(window), *object)));
         }
         assert!((50..250).contains(&whole), "{whole}");
         assert_eq!(overlap([0.0, 0.0, 2.0, 1.0], [1.0, 0.0, 3.0, 1.0]), 1.0 / 3.0);
