@@ -19,8 +19,7 @@ use crate::storage::Storage;
 /// An opened recording.
 ///
 /// Its properties come from the index of the file. A recording whose writer was interrupted has no index: its
-/// messages are
-/// found by reading the file once, and [`Bag::is_complete`] returns false.
+/// messages are found by reading the file once, and [`Bag::is_complete`] returns false.
 pub struct Bag {
     format: BagFormat,
     storage: Box<dyn Storage>,
@@ -28,8 +27,7 @@ pub struct Bag {
 
 impl Bag {
     /// Opens the recording at `path`: a folder of rosbag2, or a `.bag`, `.mcap` or `.db3` file. The content decides
-    /// the
-    /// format, not the name.
+    /// the format, not the name.
     ///
     /// # Errors
     ///
@@ -93,8 +91,7 @@ impl Bag {
     }
 
     /// Returns the number of messages of all channels, as stated by the index. It may be wrong in a damaged file:
-    /// do not
-    /// allocate by it.
+    /// do not allocate by it.
     pub fn message_count(&self) -> u64 {
         self.message_counts().iter().fold(0, |sum, count| sum.saturating_add(*count))
     }

@@ -12,8 +12,7 @@ pub struct Recorded {
     /// Time of publication in nanoseconds, if the format has it (MCAP).
     pub publish_time_ns: Option<i64>,
     /// The message in the encoding of its channel. The bytes are a view that keeps the whole chunk (about 1 MB, or
-    /// the
-    /// largest message) in memory: copy messages that are kept for long.
+    /// the largest message) in memory: copy messages that are kept for long.
     pub bytes: Bytes,
 }
 

@@ -1,9 +1,8 @@
 //! Measures the images per second of the loader, decoded and augmented; one side of `benches/loader.py`.
 //!
 //! `load FOLDER [--crop resized|iou|none] [--hue RAD] [--threads N] [--batch N] [--epochs N]`: JPEGs of
-//! `FOLDER/images/*/`
-//! with YOLO labels in `FOLDER/object_detection/labels/*/`. Prints the images per second of each epoch after the
-//! first.
+//! `FOLDER/images/*/` with YOLO labels in `FOLDER/object_detection/labels/*/`. Prints the images per second of each
+//! epoch after the first.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

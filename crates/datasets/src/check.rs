@@ -12,8 +12,7 @@ use crate::{Problem, Problems};
 const MARGIN: f32 = 1.0;
 
 /// Reads every sample on `threads` threads, with its data, and reports samples that cannot be read and invalid
-/// annotations:
-/// not finite, outside of the image, of an unknown class.
+/// annotations: not finite, outside of the image, of an unknown class.
 ///
 /// # Errors
 /// The first problem, unless `problems` skips them.

@@ -156,8 +156,7 @@ impl Format for Cityscapes {
     }
 
     /// Writes label ids if the classes of the data set are those of Cityscapes, otherwise the class indices for
-    /// training
-    /// (`labelTrainIds`).
+    /// training (`labelTrainIds`).
     fn write(
         dataset: &dyn DatasetIterator,
         path: &Path,

@@ -21,8 +21,7 @@ pub(crate) struct ClassFolders {
 
 impl ClassFolders {
     /// Lists the folders in `root` as classes, in the order of their names. `things_in` returns the files of a
-    /// folder, and
-    /// folders without any are skipped; `meaning` returns the class name of a folder.
+    /// folder, and folders without any are skipped; `meaning` returns the class name of a folder.
     pub fn new(
         root: PathBuf,
         things_in: impl Fn(&Path) -> Vec<String>,

@@ -19,15 +19,12 @@ const MAX_SIDE: usize = 640;
 const MAX_BYTES: usize = 256 << 20;
 
 /// Reads the clip at `path`: a `.npy` of `[channels, frames, height, width]`, a video file, or a folder of images
-/// as frames,
-/// in the order of their names. Levels of videos and images are within 0 and 1. Frames of more than 640 pixels a
-/// side are
-/// resized, and a clip of more than 256 MB is subsampled evenly.
+/// as frames, in the order of their names. Levels of videos and images are within 0 and 1. Frames of more than 640
+/// pixels a side are resized, and a clip of more than 256 MB is subsampled evenly.
 ///
 /// # Errors
 /// `NotFound`, `Io` or `Unsupported` if it cannot be read, `Format` if it is not a clip or its frames differ in
-/// size; all
-/// with the path.
+/// size; all with the path.
 pub(crate) fn open_clip(path: &Path) -> Result<Video> {
     let opening = || format!("opening {}", path.display());
     if has_extension(&path.to_string_lossy(), &["npy"]) {

@@ -40,8 +40,7 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
 }
 
 /// Draws the first datum of a sample that can be drawn, with the target: an image as it is, the middle frame of a
-/// clip, audio
-/// and time series as curves, a point cloud in bird's eye view; `None` without such a datum.
+/// clip, audio and time series as curves, a point cloud in bird's eye view; `None` without such a datum.
 pub fn picture_with_target(sample: &Sample) -> Option<Image> {
     let mut picture = sample.data.iter().find_map(|datum| picture_of(datum, sample.target.as_ref()))?;
     // Lines are twice as thick, since the image is scaled down afterwards.

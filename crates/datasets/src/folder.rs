@@ -132,8 +132,7 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 }
 
 /// Writes an image to `to`: as a copy of the file `from` (a hard link if `link`) if it has the same format,
-/// otherwise by
-/// encoding `image`.
+/// otherwise by encoding `image`.
 ///
 /// # Errors
 /// `Io` if it cannot be written.

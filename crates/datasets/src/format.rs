@@ -10,8 +10,7 @@ use crate::{Problems, Recognition};
 /// A data set format, which can be recognised, read and written.
 ///
 /// Opening reads indices and lists, never bulk data. Bulk data is read by [`DatasetIterator::get`], which fails
-/// only for
-/// broken samples.
+/// only for broken samples.
 pub trait Format: DatasetIterator + Sized + 'static {
     /// Name of the format on the command line, e.g. `"coco"`.
     const NAME: &'static str;
@@ -32,8 +31,7 @@ pub trait Format: DatasetIterator + Sized + 'static {
     ///
     /// # Errors
     /// `NotFound` if `path` is not such a data set, with what is missing; `Format` for broken files, unless
-    /// `problems` skips
-    /// them.
+    /// `problems` skips them.
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self>;
 
     /// Writes any data set in this format.
@@ -59,8 +57,7 @@ pub trait Format: DatasetIterator + Sized + 'static {
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct OpenOptions {
     /// Name of the part in the data set: `"val2017"`, `"train"`, `"testing"`. By default the only one, or the first
-    /// existing
-    /// one of val, test, train.
+    /// existing one of val, test, train.
     pub split: Option<String>,
     /// Target type, for annotations that can be read as several; by default the first available one.
     pub target: Option<ValueType>,

@@ -15,8 +15,7 @@ const BACKGROUND: u8 = 24;
 const POINT: Colour = [150, 200, 230];
 
 /// Draws the cloud of `datum` with the outlines of the boxes of `target`. The lidar is in the centre and ahead is
-/// up;
-/// `None` without a cloud.
+/// up; `None` without a cloud.
 ///
 /// # Errors
 /// `InvalidInput` for a calibration that is not invertible.

@@ -22,8 +22,7 @@ const COLOURS: [&str; 2] = ["rgb", "color"];
 /// Gestures in colour and depth: a sample has a colour image, a depth image (16 bits) and the gesture as class.
 ///
 /// HANDS has a folder for each subject; `train` has subjects 1 to 3, `test` 4 and 5. Two gestures at once are a
-/// class of
-/// their own (`A_AND_B`). Otherwise `rgb/CLASS/` and `depth/CLASS/` have images of the same names.
+/// class of their own (`A_AND_B`). Otherwise `rgb/CLASS/` and `depth/CLASS/` have images of the same names.
 #[derive(Debug)]
 pub struct Hands {
     gestures: Vec<Gesture>,

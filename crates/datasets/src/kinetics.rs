@@ -15,8 +15,7 @@ use crate::picture_files::{split_name, write_each};
 use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
 /// Clips in class folders. Class indices follow the order of the folders' names. A clip is a video file, a `.npy`,
-/// or a
-/// folder of images as frames.
+/// or a folder of images as frames.
 #[derive(Debug)]
 pub struct Kinetics(ClassFolders);
 

@@ -32,8 +32,7 @@ struct Scene {
 
 impl Scene {
     /// Reads the data that belong to `target`: the cloud for 3D boxes (with its calibration, if there is one), the
-    /// image for
-    /// boxes in the image; the other if only that exists.
+    /// image for boxes in the image; the other if only that exists.
     fn data(&self, target: ValueType, header: &Header) -> Result<Vec<Value>> {
         Ok(match (&self.cloud, &self.picture) {
             (Some(cloud), picture) if !is_flat(target) || picture.is_none() => {

@@ -1,14 +1,11 @@
 //! Data set formats, augmentation and the parallel loader.
 //!
 //! [`open`] opens a data set, whose format it can recognise, and [`formats`] lists the formats (COCO, YOLO, Pascal
-//! VOC, KITTI,
-//! MOT and more). Samples are read when they are needed, from any thread. Nothing on disk is trusted: problems are
-//! reported
-//! with file and line or key, through [`Problems`]. Module [`augment`] has augmentations of images, point clouds,
-//! audio and
-//! time series; module [`loader`] reads, augments and batches samples on several threads. The types of samples and
-//! targets
-//! are in `opendr-engine`, metrics in `opendr-metrics`, and evaluation in `opendr-evaluation`.
+//! VOC, KITTI, MOT and more). Samples are read when they are needed, from any thread. Nothing on disk is trusted:
+//! problems are reported with file and line or key, through [`Problems`]. Module [`augment`] has augmentations of
+//! images, point clouds, audio and time series; module [`loader`] reads, augments and batches samples on several
+//! threads. The types of samples and targets are in `opendr-engine`, metrics in `opendr-metrics`, and evaluation in
+//! `opendr-evaluation`.
 //!
 //! ```
 //! use opendr_datasets::augment::{Augment, Flip, Others};

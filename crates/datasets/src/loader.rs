@@ -2,8 +2,7 @@
 //! threads.
 //!
 //! Threads read samples, augment them and fill batches ahead of the training, at most [`LoaderOptions::ahead`]
-//! batches, which
-//! bounds memory. The order and every random number depend on seed, epoch and sample index only.
+//! batches, which bounds memory. The order and every random number depend on seed, epoch and sample index only.
 
 mod collate;
 mod epoch;
@@ -124,13 +123,11 @@ impl<'d, C: Collate> Loader<'d, C> {
     }
 
     /// Calls `each` with the batches of an epoch from `position` on (0 for all), on this thread, until it breaks,
-    /// and returns
-    /// the skipped samples. It supports borrowed data sets, unlike [`Loader::epoch`].
+    /// and returns the skipped samples. It supports borrowed data sets, unlike [`Loader::epoch`].
     ///
     /// # Errors
     /// `InvalidInput` for a position past the end; the first error of a sample (unless broken samples are skipped)
-    /// or of
-    /// `each`, which ends the loop.
+    /// or of `each`, which ends the loop.
     pub fn for_each(
         &self,
         epoch: u64,

@@ -23,8 +23,7 @@ const DISTRACTOR: i64 = 0;
 /// is skipped.
 ///
 /// The header of the image has the camera as frame id, e.g. `c3`. Parts are `query`, `bounding_box_test` (the
-/// gallery,
-/// also called `test` or `gallery`) and `bounding_box_train` (`train`).
+/// gallery, also called `test` or `gallery`) and `bounding_box_train` (`train`).
 #[derive(Debug)]
 pub struct Market1501 {
     root: PathBuf,

@@ -26,8 +26,7 @@ const FASHION: [&str; 10] =
 /// Grey images with their class.
 ///
 /// Class names are the lines of `classes.txt` beside the files. Without it, they are Fashion-MNIST's if the folder
-/// name
-/// contains "fashion", otherwise numbers. Parts are `train` and `test`.
+/// name contains "fashion", otherwise numbers. Parts are `train` and `test`.
 pub struct Mnist {
     pictures: Idx<3>,
     labels: Idx<1>,

@@ -25,12 +25,9 @@ const HEAD: usize = 4096;
 /// A data set of the MOT Challenge, of motmetrics, or a bare `gt.txt`: a sample is a frame with its objects.
 ///
 /// The samples are the frames of one sequence after the other. The header of image and target has the name of the
-/// sequence
-/// as frame id, and the time since its start. The data of a sample are its image, if there are images, and, if the
-/// target
-/// type is tracks and the sequence has detections, the detections of `det.txt`, the input of trackers. Ignored
-/// objects have
-/// confidence 0 in the ground truth; they are dropped if the target type is boxes.
+/// sequence as frame id, and the time since its start. The data of a sample are its image, if there are images,
+/// and, if the target type is tracks and the sequence has detections, the detections of `det.txt`, the input of
+/// trackers. Ignored objects have confidence 0 in the ground truth; they are dropped if the target type is boxes.
 #[derive(Debug)]
 pub struct Mot {
     sequences: Vec<MotSequence>,

@@ -25,8 +25,7 @@ impl NpyFile {
     ///
     /// # Errors
     /// `NotFound` or `Io` if it cannot be read; `Format` if it is not an `.npy` file or truncated; `Unsupported`
-    /// for arrays of
-    /// Python objects or structures. All have the path.
+    /// for arrays of Python objects or structures. All have the path.
     pub fn open(path: impl Into<PathBuf>) -> Result<Self> {
         let path = path.into();
         let read = || -> Result<NpyHeader> {
@@ -61,8 +60,7 @@ impl NpyFile {
     ///
     /// # Errors
     /// `NotFound` past the end, `Unsupported` for Fortran order with several axes (parts are not contiguous),
-    /// `InvalidInput`
-    /// for a part over 256 MB, `Io`.
+    /// `InvalidInput` for a part over 256 MB, `Io`.
     pub fn part(&self, index: usize) -> Result<Vec<f64>> {
         let shape = self.shape();
         let Some((count, rest)) = shape.split_first().filter(|(count, _)| index < **count) else {

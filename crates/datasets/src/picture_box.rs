@@ -4,8 +4,7 @@
 /// height]`.
 ///
 /// Annotated boxes may exceed the border a little, by rounding or for truncated objects. A box that is mostly
-/// outside belongs
-/// to another image or has other units. Unknown sizes (0) and empty boxes at the border pass.
+/// outside belongs to another image or has other units. Unknown sizes (0) and empty boxes at the border pass.
 pub(crate) fn leaves_picture([left, top, width, height]: [f32; 4], size: [u32; 2]) -> bool {
     if size.contains(&0) {
         return false;

@@ -16,8 +16,7 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition};
 const SLOP_NS: i64 = 20_000_000;
 
 /// A recording: a sample is a message of the annotation topic and the datum with the nearest stamp within 20 ms.
-/// Data
-/// without annotation are not samples.
+/// Data without annotation are not samples.
 #[derive(Debug)]
 pub struct AnnotatedRecording {
     recording: Recording,

@@ -22,8 +22,7 @@ use pickled::PickledPoses;
 /// Skeleton sequences with their action: a sample is one recording, `[1, channels, frames, joints, persons]`.
 ///
 /// NTU RGB+D has metres and two persons, padded with zeros; its parts are `xsub_train`, `xsub_val`, `xview_train`
-/// and
-/// `xview_val`. The parts of arrays are the names before `_data.npy`, of pickles those before `.pkl`.
+/// and `xview_val`. The parts of arrays are the names before `_data.npy`, of pickles those before `.pkl`.
 #[derive(Debug)]
 pub struct Skeletons {
     source: Source,

@@ -24,10 +24,8 @@ const NOISE: &str = "_background_noise_";
 /// Spoken words: a sample is a clip with its word.
 ///
 /// Parts are those of `validation_list.txt` and `testing_list.txt`; the rest is training. Without these lists, the
-/// rule of
-/// the paper assigns clips to parts, which keeps a speaker in one part. Without lists and without a selected part,
-/// all
-/// clips are read.
+/// rule of the paper assigns clips to parts, which keeps a speaker in one part. Without lists and without a
+/// selected part, all clips are read.
 #[derive(Debug)]
 pub struct SpeechCommands {
     classes: Classes,

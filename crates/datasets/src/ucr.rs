@@ -25,8 +25,7 @@ const EXTENSIONS: &[&str] = &["ts", "tsv", "csv", "txt"];
 /// Time series with their class: a sample is `[time, features]`.
 ///
 /// Missing values are NaN. Those at the end are dropped, since UCR pads shorter series with them. Classes have the
-/// order of the
-/// header of a `.ts` file, otherwise of their values.
+/// order of the header of a `.ts` file, otherwise of their values.
 #[derive(Debug)]
 pub struct Ucr {
     path: PathBuf,

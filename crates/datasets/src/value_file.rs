@@ -46,8 +46,7 @@ pub const fn value_extensions(kind: ValueType) -> &'static [&'static str] {
 ///
 /// # Errors
 /// `Unsupported` for a type without a file format, `NotFound` or `Io` if the file cannot be read, `Format` for
-/// other content;
-/// all with the path.
+/// other content; all with the path.
 pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
     let path = path.as_ref();
     let opening = || format!("opening {}", path.display());
@@ -88,8 +87,7 @@ pub fn open_value(kind: ValueType, path: impl AsRef<Path>) -> Result<Value> {
 }
 
 /// Returns the files of the type `kind` at `path`: the file itself, or those in the folder, in order. A folder of
-/// images is
-/// one clip.
+/// images is one clip.
 ///
 /// # Errors
 /// `NotFound` if the path does not exist or the folder has no file of the type, `Io` if it cannot be read.

@@ -134,8 +134,7 @@ pub fn open_wav(path: impl AsRef<Path>) -> Result<Audio> {
 ///
 /// # Errors
 /// `Format` with the byte offset if a file is not a WAVE file, truncated or inconsistent, or has a sample that is
-/// not finite;
-/// `Unsupported` for compressed audio.
+/// not finite; `Unsupported` for compressed audio.
 pub fn audio_from_wav(bytes: &[u8]) -> Result<Audio> {
     if bytes.get(..4) != Some(b"RIFF") || bytes.get(8..12) != Some(b"WAVE") {
         return Err(Error::format("the file does not start with RIFF and WAVE; use a WAVE file"));

@@ -56,8 +56,7 @@ pub fn open_wfdb_header(path: impl AsRef<Path>) -> Result<WfdbHeader> {
 ///
 /// # Errors
 /// `NotFound` or `Io` if a file cannot be read; `Format` with file and line or byte; `Unsupported` for signal
-/// formats other
-/// than 8, 16, 24, 32, 61, 80 and 212, and for records of several segments.
+/// formats other than 8, 16, 24, 32, 61, 80 and 212, and for records of several segments.
 pub fn open_wfdb_record(path: impl AsRef<Path>) -> Result<WfdbRecord> {
     let path = header_path(path.as_ref());
     let header = open_wfdb_header(&path)?;
@@ -128,12 +127,10 @@ fn read_annotations(path: &Path, length: Option<usize>) -> Result<Vec<WfdbAnnota
 type ReadRecord = Arc<(WfdbHeader, Timeseries)>;
 
 /// WFDB records: a sample is a whole record without target, or, if beats are annotated and the target is a
-/// `Category` (the
-/// default), one beat with its class of AAMI EC57 (N, S, V, F, Q).
+/// `Category` (the default), one beat with its class of AAMI EC57 (N, S, V, F, Q).
 ///
 /// A beat extends from a quarter of a second before its annotation to half a second after it; beats too close to
-/// the ends
-/// of their record are skipped.
+/// the ends of their record are skipped.
 #[derive(Debug)]
 pub struct Wfdb {
     records: Vec<PathBuf>,

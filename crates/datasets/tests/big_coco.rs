@@ -19,8 +19,7 @@ const FOLDER: &str = "OPENDR_BIG_COCO";
 const PICTURES: usize = 500;
 
 /// Writes a file of about `megabytes` on a single line and returns the number of annotations. The annotations of an
-/// image are
-/// spread over the file and precede what they depend on; three are broken.
+/// image are spread over the file and precede what they depend on; three are broken.
 fn generate(folder: &Path, megabytes: usize) -> usize {
     fs::create_dir_all(folder.join("annotations")).unwrap();
     fs::create_dir_all(folder.join("val")).unwrap();

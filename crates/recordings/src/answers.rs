@@ -15,8 +15,7 @@ use crate::channels::{Known, channel_of, unreadable, wire_of};
 /// Writer of values as messages: ROS 1's in rosbag 1, ROS 2's in the other formats.
 ///
 /// Classes are written by name, in ROS 1 by number, since its messages have no field for names. A dropped writer
-/// finishes
-/// the recording, but ignores errors: use [`Answers::finish`].
+/// finishes the recording, but ignores errors: use [`Answers::finish`].
 #[derive(Debug)]
 pub struct Answers {
     writer: BagWriter,

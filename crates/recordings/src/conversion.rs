@@ -17,8 +17,7 @@ pub struct Conversion {
     /// Topics to convert; `None` for all.
     pub topics: Option<Vec<String>>,
     /// Whether messages of ROS 1 are converted to ROS 2 in an MCAP file, which supports both. The other formats
-    /// support one ROS
-    /// version only.
+    /// support one ROS version only.
     pub is_ros2: bool,
 }
 
@@ -38,8 +37,8 @@ enum Way {
 
 impl Conversion {
     /// Writes `recording` at `path` and returns the number of messages written. Messages of the other ROS version
-    /// are converted
-    /// if OpenDR supports them. `left_out` is called with an error for each topic and message that is skipped.
+    /// are converted if OpenDR supports them. `left_out` is called with an error for each topic and message that is
+    /// skipped.
     ///
     /// # Errors
     /// As [`BagWriter::create`]; the errors of reading and those that `left_out` returns.

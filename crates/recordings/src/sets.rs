@@ -67,10 +67,8 @@ pub struct Set {
 /// Iterator over synchronised sets of messages, in order of the log times of the first port.
 ///
 /// Each message of the first port is matched with the messages of the other ports whose stamps are nearest, within
-/// 20 ms,
-/// recorded up to one second later. The queues are bounded. A message that cannot be read yields an error, and
-/// reading
-/// continues.
+/// 20 ms, recorded up to one second later. The queues are bounded. A message that cannot be read yields an error,
+/// and reading continues.
 #[derive(Debug)]
 pub struct Sets {
     ports: Vec<PortTopic>,

@@ -24,6 +24,5 @@ mod op {
 }
 
 /// Size of the bag's header with its padding and without the two lengths, in bytes. The size is fixed, so that the
-/// header
-/// can be rewritten at the end; `rosbag reindex` relies on it.
+/// header can be rewritten at the end; `rosbag reindex` relies on it.
 const BAG_HEADER: usize = 4096;

@@ -9,13 +9,11 @@ use crate::augment::Others;
 /// Random change of samples.
 pub trait Augment: Send + Sync {
     /// Changes `sample`, its data and target together. All randomness comes from `random`. `others` gives the
-    /// unchanged
-    /// samples of the data set, for augmentations that mix several.
+    /// unchanged samples of the data set, for augmentations that mix several.
     ///
     /// # Errors
     /// `InvalidInput` if the sample has no data of the type that is changed, `Unsupported` if its target cannot be
-    /// changed
-    /// accordingly, and errors of reading other samples. The sample is invalid after an error.
+    /// changed accordingly, and errors of reading other samples. The sample is invalid after an error.
     fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()>;
 }
 

@@ -1,10 +1,8 @@
 //! Augmentation: random changes of samples, data and target together. One file for each augmentation.
 //!
 //! An [`Augment`] takes all randomness from the [`Random`](opendr_engine::Random) it receives, so a sample does not
-//! depend on
-//! the thread that processes it. A target that cannot be changed like the data (a 3D box when its image is rotated)
-//! is an
-//! error.
+//! depend on the thread that processes it. A target that cannot be changed like the data (a 3D box when its image
+//! is rotated) is an error.
 
 mod audio;
 mod augmentation;

@@ -83,8 +83,7 @@ impl AnnotationRecord {
     }
 
     /// Converts to a pose. The confidence of a keypoint is half its visibility (0 not labelled, 0.5 occluded, 1
-    /// visible);
-    /// keypoints that are not labelled are [`Keypoint::MISSING`].
+    /// visible); keypoints that are not labelled are [`Keypoint::MISSING`].
     pub fn into_pose(mut self, categories: &Categories) -> Pose {
         let points = std::mem::take(&mut self.keypoints);
         let keypoint = |point: &[f32]| match point {

@@ -64,8 +64,7 @@ impl Index {
     /// Reads the file at `path` with annotations of type `E`; invalid entries are reported and skipped.
     ///
     /// Annotations depend on categories, which COCO writes last: annotations that precede them are skipped, and
-    /// read in a
-    /// second pass.
+    /// read in a second pass.
     pub fn new<E: Entry>(path: &Path, problems: &Problems) -> Result<Self> {
         let file = File::open(path).context(|| format!("opening {}", path.display()))?;
         Self::from_reader::<E, _>(file, path, problems)

@@ -22,8 +22,7 @@ const FOLDER: &str = "infrared";
 
 impl CocoInfrared {
     /// Returns the infrared image of sample `index`: of the same name in the folder of the same part, or in
-    /// `infrared` itself;
-    /// its extension may differ.
+    /// `infrared` itself; its extension may differ.
     fn infrared_path(&self, index: usize) -> Result<PathBuf> {
         let colour = self.coco.picture_path(index)?;
         let part = self.coco.folder.file_name().unwrap_or_default();

@@ -13,8 +13,7 @@ const SPLITS: [&str; 6] = ["val", "valid", "validation", "test", "minival", "tra
 const HEAD: u64 = 1 << 16;
 
 /// Returns the sorted annotation files at `path`: itself, those of its folder `annotations`, its own, or (as
-/// exported by
-/// Roboflow) those of its parts.
+/// exported by Roboflow) those of its parts.
 pub(super) fn annotation_files(path: &Path) -> Vec<PathBuf> {
     if path.is_file() {
         return if is_json(path) { vec![path.to_owned()] } else { Vec::new() };

@@ -1,8 +1,7 @@
 //! COCO: boxes, masks and keypoints in one JSON file, images in a folder.
 //!
 //! The file may be much larger than memory: one pass checks every entry and stores its offset, and entries are
-//! parsed when
-//! their image is read.
+//! parsed when their image is read.
 
 mod annotation;
 mod categories;
@@ -42,8 +41,7 @@ const KEYS: [&str; 4] = ["images", "annotations", "categories", "licenses"];
 /// A COCO data set of instances or keypoints.
 ///
 /// Class indices are the positions of COCO's category ids in ascending order; [`DatasetIterator::class_ids`]
-/// returns the
-/// ids.
+/// returns the ids.
 #[derive(Debug)]
 pub struct Coco {
     folder: PathBuf,

@@ -27,8 +27,7 @@ use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 const LABEL_DIVISOR: u32 = 1000;
 
 /// A COCO panoptic data set: a box with its mask for every segment, things and stuff, or a label map (class times
-/// 1000 plus
-/// instance index; class 255 outside of segments).
+/// 1000 plus instance index; class 255 outside of segments).
 #[derive(Debug)]
 pub struct CocoPanoptic {
     folder: PathBuf,

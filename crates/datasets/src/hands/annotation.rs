@@ -13,9 +13,8 @@ use crate::{Problem, Problems};
 const ABSENT: &str = "[0 0 0 0]";
 
 /// Reads the rows of `SubjectN.txt`: colour, depth, and for every gesture of the first line its box, or `[0 0 0
-/// 0]`. Only
-/// the file name of a path is used, since HANDS has the folders of its authors. Missing files are reported if
-/// `checked`.
+/// 0]`. Only the file name of a path is used, since HANDS has the folders of its authors. Missing files are
+/// reported if `checked`.
 pub(super) fn read(path: &Path, subject: &str, checked: bool, problems: &Problems) -> Result<Vec<Gesture>> {
     let folder = path.join(subject);
     let list = folder.join(format!("{subject}.txt"));

@@ -25,8 +25,7 @@ pub fn open_kitti_calibration(path: impl AsRef<Path>) -> Result<Calibration> {
 /// Parses a calibration of the detection or tracking benchmark; `path` is used in errors.
 ///
 /// Each matrix must have the right number of finite values. Rotations are checked for right angles, unit lengths
-/// and a
-/// positive determinant, the projection for positive focal lengths.
+/// and a positive determinant, the projection for positive focal lengths.
 ///
 /// # Errors
 /// `Format` with file and line, or the missing matrix.

@@ -17,8 +17,7 @@ const FOLDERS: [&str; 3] = ["label_2", "image_2", "velodyne"];
 /// KITTI's detection benchmark: a sample is a scene with its boxes.
 ///
 /// Samples with 3D boxes have clouds with their calibration, samples with boxes in the image have images. Regions
-/// without
-/// labels are boxes of the class `DontCare`. The test part has no targets.
+/// without labels are boxes of the class `DontCare`. The test part has no targets.
 #[derive(Debug)]
 pub struct Kitti {
     root: PathBuf,

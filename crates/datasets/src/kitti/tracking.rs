@@ -21,8 +21,7 @@ const FRAMES_PER_SECOND: f64 = 10.0;
 /// KITTI's tracking benchmark: a sample is a frame of a sequence with its objects.
 ///
 /// The samples are the frames of one sequence after the other. Their header has the name of the sequence as frame
-/// id and
-/// the time since its start (10 frames per second). Data depend on the target as in [`Kitti`](crate::Kitti).
+/// id and the time since its start (10 frames per second). Data depend on the target as in [`Kitti`](crate::Kitti).
 #[derive(Debug)]
 pub struct KittiTracking {
     recordings: Vec<Recording>,

@@ -71,8 +71,7 @@ impl Reading {
 /// Iterator over the batches of an epoch, in order, prepared by threads that end with it.
 ///
 /// A sample that cannot be read or augmented is an error in place of its batch (unless broken samples are skipped),
-/// after
-/// which the next batch follows. A panic of a thread resumes in the thread that requests the batch.
+/// after which the next batch follows. A panic of a thread resumes in the thread that requests the batch.
 pub struct Epoch<C: Collate = Samples> {
     queue: Arc<WorkQueue<'static, C>>,
     threads: Vec<JoinHandle<()>>,

@@ -81,8 +81,7 @@ impl ImageBatch {
     }
 
     /// Returns the shape: `[images, channels, height, width]`, or `[images, height, width, channels]`, by the
-    /// layout of the
-    /// preprocessing.
+    /// layout of the preprocessing.
     pub fn shape(&self) -> [usize; 4] {
         self.shape
     }

@@ -59,8 +59,7 @@ pub struct MotRow {
 
 impl MotRow {
     /// Parses a line of 6 to 10 fields. The eighth and ninth of 8 or 9 fields are class and visibility; the last
-    /// three of 10
-    /// are world coordinates, which are ignored.
+    /// three of 10 are world coordinates, which are ignored.
     pub(super) fn parse(line: &str, kind: RowKind) -> Result<Self, String> {
         let fields = Fields::of(line);
         fields.expect(6..=10)?;

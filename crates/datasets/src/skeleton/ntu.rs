@@ -154,8 +154,7 @@ impl Body {
 }
 
 /// Parses the text of a `.skeleton` file: `[1, 3, frames, 25, 2]` in metres. Of more than two bodies, those that
-/// move most
-/// are kept; missing ones are 0.
+/// move most are kept; missing ones are 0.
 ///
 /// # Errors
 /// The line number and a message.

@@ -14,8 +14,7 @@ use crate::{Problems, WriteOptions, npy_from_f32, npy_from_i64};
 const MAX_NUMBERS: usize = 2 << 30;
 
 /// Writes `PART_data.npy`, `PART_label.npy` and, if classes have names, `label_map.txt`. All recordings must have
-/// the same
-/// channels, joints and persons; shorter ones are padded with zeros.
+/// the same channels, joints and persons; shorter ones are padded with zeros.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,

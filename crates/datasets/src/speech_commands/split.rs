@@ -34,8 +34,7 @@ const PERCENT: f64 = 10.0;
 const MAX_CLIPS_A_WORD: u64 = (1 << 27) - 1;
 
 /// Returns the speaker of a clip from its file name: the text before `_nohash_`, without the word that precedes it
-/// in the
-/// test files (`bird_653a48f5_nohash_0.wav`). Clips of noise, without a speaker, return their own name.
+/// in the test files (`bird_653a48f5_nohash_0.wav`). Clips of noise, without a speaker, return their own name.
 pub fn speaker_of_clip(file_name: &str) -> &str {
     match file_name.split_once("_nohash_") {
         Some((speaker, _)) => speaker.rsplit('_').next().unwrap_or(speaker),
@@ -44,8 +43,7 @@ pub fn speaker_of_clip(file_name: &str) -> &str {
 }
 
 /// Returns the part of a clip from its file name. The SHA-1 of its [speaker](speaker_of_clip) decides, so that a
-/// speaker
-/// stays in one part when the data set grows (`which_set` of the paper's code).
+/// speaker stays in one part when the data set grows (`which_set` of the paper's code).
 pub fn split_of_clip(file_name: &str) -> SpeechSplit {
     let [.., a, b, c, d] = sha1(speaker_of_clip(file_name).as_bytes());
     let last = u64::from(u32::from_be_bytes([a, b, c, d])) & MAX_CLIPS_A_WORD;

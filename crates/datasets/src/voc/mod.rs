@@ -47,8 +47,7 @@ pub(crate) const CLASSES: [&str; 20] = [
 ];
 
 /// A Pascal VOC data set: boxes (with masks from `SegmentationObject`; difficult ones are crowds), or semantic
-/// masks (255 is
-/// ignored).
+/// masks (255 is ignored).
 #[derive(Debug)]
 pub struct Voc {
     layout: Layout,

@@ -6,12 +6,10 @@ use crate::wfdb::header::WfdbSignal;
 type ByteError = (u64, String);
 
 /// Decodes the signals that share a file (`group`, in the order of the header), in physical units, and returns them
-/// with
-/// their number of samples; invalid samples are NaN. Without a `length`, all samples are decoded.
+/// with their number of samples; invalid samples are NaN. Without a `length`, all samples are decoded.
 ///
 /// Signals with several samples per frame are averaged (in whole steps), delayed signals are shifted (with NaN at
-/// the end),
-/// like PhysioNet's `rdsamp` without `-H`.
+/// the end), like PhysioNet's `rdsamp` without `-H`.
 ///
 /// # Errors
 /// The byte offset and a message.
@@ -206,8 +204,7 @@ impl Packing {
 }
 
 /// Returns the bytes of format 16 and, for each signal, gain, baseline and checksum, for values `[time, signals]`.
-/// Each
-/// signal uses the whole range of 16 bits; NaN becomes the invalid sample.
+/// Each signal uses the whole range of 16 bits; NaN becomes the invalid sample.
 pub fn wfdb_from_timeseries(numbers: &[f32], signals: usize) -> (Vec<u8>, Vec<(f64, i64, u16)>) {
     let signals = signals.max(1);
     let scale = |signal: usize| {

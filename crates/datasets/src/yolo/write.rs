@@ -17,8 +17,7 @@ use crate::{Problems, WriteOptions};
 /// Writes `images/SPLIT/*`, `labels/SPLIT/*.txt` and `data.yaml`.
 ///
 /// Trainers expect either boxes or polygons in all files of a data set. Polygons are written if every object of the
-/// first image
-/// with objects has polygons. YOLO does not support crowds; they are skipped.
+/// first image with objects has polygons. YOLO does not support crowds; they are skipped.
 pub(super) fn write(
     dataset: &dyn DatasetIterator,
     path: &Path,

@@ -1,6 +1,5 @@
 //! Transform between the frame of the points (lidar: x ahead, y left, z up) and that of the boxes (camera: x right,
-//! y
-//! down, z ahead).
+//! y down, z ahead).
 
 use opendr_engine::data::Calibration;
 use opendr_engine::{Error, Result, Value};

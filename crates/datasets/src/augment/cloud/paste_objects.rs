@@ -12,8 +12,7 @@ use crate::augment::cloud::points::{change_points, cloud, cloud_mut, no_cloud};
 use crate::augment::{Augment, Augmentation, Others};
 
 /// Copies annotated objects with their points from other scenes, at their original location. Objects that would
-/// overlap
-/// existing ones are skipped; existing points inside a pasted box are removed.
+/// overlap existing ones are skipped; existing points inside a pasted box are removed.
 #[derive(Debug, Clone, Params)]
 pub struct PasteObjects {
     /// Number of other scenes.

@@ -14,8 +14,7 @@ use crate::augment::cloud::points::{change_points, cloud, cloud_mut, no_cloud};
 /// A transformation of the scene about the lidar, in the camera frame: first mirrored, then rotated, then scaled.
 ///
 /// Boxes are defined in the camera frame, whose vertical axis differs slightly from the lidar's. The points are
-/// therefore
-/// changed in that frame too, which keeps every point exactly in its box.
+/// therefore changed in that frame too, which keeps every point exactly in its box.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SceneChange {
     /// Whether left and right are swapped.
@@ -98,8 +97,7 @@ fn within_pi(angle: f32) -> f32 {
 }
 
 /// Returns the box in the image of the camera, `[x0, y0, x1, y1]` in pixels, clipped at its border; `None` if a
-/// corner
-/// is behind the camera.
+/// corner is behind the camera.
 fn box_in_image(object: &BoundingBox3D, scan: &PointCloudWithCalibration) -> Option<[f32; 4]> {
     let [height, width] = scan.image_shape.map_or([f32::MAX; 2], |shape| shape.map(|side| side as f32));
     let mut around = [f32::MAX, f32::MAX, f32::MIN, f32::MIN];

@@ -35,8 +35,7 @@ pub(super) fn map_box(object: &mut BoundingBox, map: &PictureMap, border: &Borde
 }
 
 /// Returns the transformed box without clipping: around its outline if it has one and the map rotates, otherwise
-/// around
-/// its corners.
+/// around its corners.
 fn whole_box(object: &BoundingBox, map: &PictureMap) -> [f64; 4] {
     let outline = match object.segment.as_deref() {
         Some(Segment { segmentation: Segmentation::Polygons(outlines), .. })

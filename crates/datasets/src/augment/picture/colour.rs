@@ -10,8 +10,7 @@ use crate::augment::{Augment, Augmentation, Others};
 /// Changes brightness, contrast, saturation and hue at random, in this order, in one pass over the pixels.
 ///
 /// Levels are clipped to 0 and 255 once, at the end. Contrast is relative to the image's mean luminance. Hue is
-/// rotated
-/// about the grey axis at constant luminance (BT.601).
+/// rotated about the grey axis at constant luminance (BT.601).
 #[derive(Debug, Clone, Params)]
 pub struct Colour {
     /// Largest relative change of brightness: the factor is within 1 +- this.

@@ -12,8 +12,7 @@ pub struct PictureMap {
 
 impl PictureMap {
     /// Creates the map by `matrix` (x' = m00 x + m01 y + m02, y' = m10 x + m11 y + m12) from an image of
-    /// `input_size` (width
-    /// and height) to one of `output_size`.
+    /// `input_size` (width and height) to one of `output_size`.
     pub fn new(matrix: [[f64; 3]; 2], input_size: [usize; 2], output_size: [usize; 2]) -> Self {
         Self { matrix, input_size, output_size }
     }

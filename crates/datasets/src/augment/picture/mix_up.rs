@@ -11,8 +11,7 @@ use crate::augment::picture::{Border, PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
 
 /// Blends an image with another, which is resized to its size. Boxes and poses of both are kept; classes become the
-/// shares
-/// of the images as probabilities.
+/// shares of the images as probabilities.
 #[derive(Debug, Clone, Params)]
 pub struct MixUp {
     /// Both parameters of the Beta distribution of the share: large values blend half and half, small ones hardly

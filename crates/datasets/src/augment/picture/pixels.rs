@@ -15,8 +15,7 @@ pub(super) struct Bytes<'a> {
 }
 
 /// Calls `change` with each image of `u8` samples, as grey or RGB. Other images hold measurements (depth,
-/// temperature) and
-/// are not changed.
+/// temperature) and are not changed.
 pub(super) fn for_each_u8_image(sample: &mut Sample, mut change: impl FnMut(Bytes<'_>)) -> Result<()> {
     let mut changed = false;
     for image in sample.data.iter_mut().filter_map(picture_mut) {

@@ -43,8 +43,7 @@ impl RandomResizedCrop {
         for _ in 0..TRIES {
             let area = width * height * random.uniform(self.min_area, self.max_area);
             // A uniform logarithm would treat r and 1/r alike. Drawing the inverse half of the time does so, too,
-            // and rounds the
-            // same on every platform.
+            // and rounds the same on every platform.
             let ratio = match random.chance(0.5) {
                 true => random.uniform(self.min_ratio, self.max_ratio),
                 false => 1.0 / random.uniform(1.0 / self.max_ratio, 1.0 / self.min_ratio),

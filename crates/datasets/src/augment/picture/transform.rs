@@ -14,8 +14,7 @@ use crate::augment::picture::warp::warp;
 ///
 /// # Errors
 /// `InvalidInput` if the sample has no image, or one of another size than the map's; `Unsupported` if a target
-/// cannot be
-/// transformed; `InvalidParam` if the result would be too large.
+/// cannot be transformed; `InvalidParam` if the result would be too large.
 pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Result<()> {
     let size = picture_size(sample)?;
     if size != map.input_size() {

@@ -13,8 +13,7 @@ const MAX_SAMPLES: usize = 1 << 28;
 /// Transforms an image by `map`. Pixels outside of the input are `level` for `u8` samples, otherwise 0.
 ///
 /// Shifts and mirroring are exact for every kind of image. Otherwise `u8` pixels are interpolated bilinearly (and
-/// become
-/// RGB or grey, `HWC`), and other samples, which are measurements, are taken from the nearest pixel.
+/// become RGB or grey, `HWC`), and other samples, which are measurements, are taken from the nearest pixel.
 pub(super) fn warp(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
     let [width, height] = map.output_size();
     check_size([width, height], image.channels())?;
