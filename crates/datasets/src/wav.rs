@@ -14,7 +14,7 @@ const FLOAT: u16 = 3;
 const A_LAW: u16 = 6;
 const MU_LAW: u16 = 7;
 const EXTENSIBLE: u16 = 0xfffe;
-/// Length that a writer to a pipe states, since it does not know the length in advance.
+/// Length that a writer to a pipe states, since the length is unknown in advance.
 const UNKNOWN_LENGTH: u32 = u32::MAX;
 
 /// Encoding of the samples of a WAVE file.
