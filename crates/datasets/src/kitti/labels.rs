@@ -8,7 +8,7 @@ use opendr_engine::target::{
 
 use crate::fields::Fields;
 
-/// Classes of KITTI; `Person` is `Person_sitting` in the tracking benchmark.
+/// Classes of KITTI. The tracking benchmark has `Person` in place of `Person_sitting`.
 const CLASSES: [&str; 10] =
     ["Car", "Van", "Truck", "Pedestrian", "Person_sitting", "Person", "Cyclist", "Tram", "Misc", IGNORED];
 /// Class of a region in which objects are not labelled.
