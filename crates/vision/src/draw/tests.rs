@@ -103,7 +103,7 @@ fn masks_of_both_kinds_cover_the_same_pixels() {
         draw_mask(&mut image, mask, [255, 0, 0], &style);
         let wrong = (0..40 * 40_usize).filter(|at| {
             let (x, y) = (at % 40, at / 40);
-            // The outline's own line is one pixel wide.
+            // The polygon's border is one pixel wide.
             x.abs_diff(29usize.saturating_sub(y)) > 2 && (pixel(&image, x, y) == [255, 0, 0]) != inside(x, y)
         });
         assert_eq!(wrong.count(), 0, "{mask:?}");
@@ -206,7 +206,7 @@ fn edges_of_coarse_label_maps_are_smooth() {
     let map = Heatmap::from_labels(vec![1, 1, 1, 2], &[2, 2]).unwrap();
     let mut image = grey(80, 80);
     draw(&mut image, &map, &Style { opacity: 1.0, labels: false, ..Style::default() });
-    // The inner corner of the square of number 2 is cut.
+    // The inner corner of the square of class 2 is cut.
     let at = |x, y| pixel(&image, x, y);
     assert_eq!((at(41, 41), at(47, 47)), (colour_of_index(1), colour_of_index(1)));
     assert_eq!((at(60, 60), at(79, 79)), (colour_of_index(2), colour_of_index(2)));

@@ -6,13 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A folder of its own that goes when the test ends; `None` where ffmpeg is not installed.
+/// A temporary folder that is removed on drop; `None` where ffmpeg is not installed.
 struct Folder(PathBuf);
 
 impl Folder {
     fn new(name: &str) -> Option<Self> {
         if Command::new("ffmpeg").arg("-version").output().is_err() {
-            assert!(std::env::var_os("CI").is_none(), "the tests take ffmpeg; install it");
+            assert!(std::env::var_os("CI").is_none(), "the tests need ffmpeg; install it");
             println!("skipped: no ffmpeg");
             return None;
         }
@@ -22,7 +22,7 @@ impl Folder {
         Some(Self(path))
     }
 
-    /// A test picture with a running clock.
+    /// Writes a test video with a running clock.
     fn video(&self, name: &str, arguments: &[&str]) -> PathBuf {
         let path = self.0.join(name);
         let made = Command::new("ffmpeg")
@@ -101,7 +101,7 @@ fn damaged_videos_say_what_ffmpeg_says() {
     let cases = [
         ("empty.mp4", &b""[..], "Invalid data"),
         ("text.mp4", b"just text, and more of it", "Invalid data"),
-        ("header.mp4", &whole[..whole.len() / 10], "ffprobe says"),
+        ("header.mp4", &whole[..whole.len() / 10], "ffprobe reports"),
     ];
     for (name, bytes, wanted) in cases {
         let path = folder.0.join(name);
@@ -118,7 +118,7 @@ fn damaged_videos_say_what_ffmpeg_says() {
     let (last, before) = items.split_last().unwrap();
     assert!(before.len() > 3 && before.iter().all(Result::is_ok), "{}", before.len());
     let text = last.as_ref().unwrap_err().to_string();
-    assert!(text.contains("of 20 frames") && text.contains("ffmpeg says"), "{text}");
+    assert!(text.contains("of 20 frames") && text.contains("ffmpeg reports"), "{text}");
 }
 
 #[test]
@@ -215,7 +215,7 @@ fn dropping_early_ends_the_child() {
 #[test]
 fn what_is_written_is_read_again() {
     let Some(folder) = Folder::new("written") else { return };
-    // Odd sides, and a picture that is not RGB.
+    // Odd sides, and an image that is not RGB.
     let path = folder.0.join("-out.mp4");
     let mut writer = VideoWriter::create(&path, 12.5).unwrap();
     for level in [0u8, 80, 160, 240] {
@@ -256,5 +256,5 @@ fn writers_refuse_what_they_cannot_write() {
         assert_eq!(kind("out.mp4", rate), ErrorKind::InvalidParam);
     }
     let error = VideoWriter::create("out.mp4", 25.0).unwrap().finish().unwrap_err();
-    assert!(error.to_string().contains("no picture"), "{error}");
+    assert!(error.to_string().contains("no frame"), "{error}");
 }
