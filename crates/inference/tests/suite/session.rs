@@ -1,4 +1,4 @@
-//! What a session adds to an engine: checks, sharing between threads, timing, and no allocation.
+//! Checks, sharing between threads, timing, and the absence of allocations in a session.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use opendr_engine::{Error, ErrorKind, Result};
 use opendr_inference::{Element, ElementType, Engine, Session, Sink, TensorInfo, TensorView, timing};
 use opendr_test_allocator::allocations_of_thread;
 
-/// Adds one to each element, twice: in two outputs.
+/// An engine that adds one to each element, in two outputs.
 struct AddOne {
     infos: [TensorInfo; 3],
     sum: Vec<f32>,
@@ -75,17 +75,19 @@ fn what_does_not_fit_is_told() {
     let session = AddOne::session();
     let run = |inputs: &[TensorView<'_>]| session.run(inputs, |_| Ok(())).unwrap_err();
     for (inputs, says) in [
-        (&[][..], "the model takes 1 inputs, was given 0"),
-        (&[view(&[1_u8])], "model input x: f32[1, ?] was given u8[1, 1]"),
-        (&[TensorView::new(&[2, 1], &[1.0_f32; 2]).unwrap()], "was given f32[2, 1]"),
-        (&[TensorView::new(&[1], &[1.0_f32]).unwrap()], "was given f32[1]"),
+        (&[][..], "the model has 1 inputs, but received 0"),
+        (&[view(&[1_u8])], "model input x: f32[1, ?] received u8[1, 1]"),
+        (&[TensorView::new(&[2, 1], &[1.0_f32; 2]).unwrap()], "received f32[2, 1]"),
+        (&[TensorView::new(&[1], &[1.0_f32]).unwrap()], "received f32[1]"),
     ] {
         let error = run(inputs);
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert!(error.to_string().contains(says), "{error}");
     }
     assert_eq!(session.output_index("z").unwrap(), 1);
-    assert!(session.output_index("w").unwrap_err().to_string().contains("no output \"w\", only y, z"));
+    assert!(
+        session.output_index("w").unwrap_err().to_string().contains("no output \"w\"; its outputs are y, z")
+    );
 }
 
 #[test]
