@@ -84,7 +84,7 @@ fn dropping_joins() {
     let pool = WorkerPool::new(4);
     let shared = Arc::downgrade(&pool.shared);
     drop(pool);
-    assert!(shared.upgrade().is_none(), "a thread still holds the pool");
+    assert!(shared.upgrade().is_none(), "a thread still uses the pool");
 }
 
 #[test]
