@@ -1,4 +1,4 @@
-//! Convolutions, pools and resizes against their definitions.
+//! Convolutions, pooling and resizing against their definitions.
 
 use crate::tiny::{Tiny, conv, convolved_same, fused, noise};
 use serde_json::json;
