@@ -11,13 +11,13 @@ use crate::runtime::{Runtime, SessionOptions};
 
 /// Value of `OPENDR_RUNTIME`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Wish {
+enum RuntimeChoice {
     Auto,
     OnnxRuntime,
     Builtin,
 }
 
-impl Wish {
+impl RuntimeChoice {
     fn from_environment() -> Result<Self> {
         match std::env::var("OPENDR_RUNTIME").as_deref() {
             Err(_) | Ok("" | "auto") => Ok(Self::Auto),
@@ -43,10 +43,10 @@ pub fn runtimes() -> Vec<Arc<dyn Runtime>> {
 /// `NotFound` when ONNX Runtime is requested and missing, `Device` when the device needs ONNX Runtime and it is
 /// missing, `InvalidParam` when `OPENDR_RUNTIME` has an unknown value.
 pub fn default_runtime(device: Device) -> Result<Arc<dyn Runtime>> {
-    let found = match Wish::from_environment()? {
-        Wish::Builtin => return Ok(Arc::new(Builtin)),
-        Wish::OnnxRuntime => return Ok(OnnxRuntime::find()?),
-        Wish::Auto => OnnxRuntime::find(),
+    let found = match RuntimeChoice::from_environment()? {
+        RuntimeChoice::Builtin => return Ok(Arc::new(Builtin)),
+        RuntimeChoice::OnnxRuntime => return Ok(OnnxRuntime::find()?),
+        RuntimeChoice::Auto => OnnxRuntime::find(),
     };
     match found {
         Ok(runtime) => Ok(runtime),
@@ -87,7 +87,7 @@ pub fn describe(options: impl Into<SessionOptions>) -> Result<String> {
     let threads = options.thread_count()?;
     let plural = if threads == 1 { "" } else { "s" };
     let mut line = format!("{}, {device}, {threads} thread{plural}", runtime.describe());
-    if runtime.name() == Builtin.name() && Wish::from_environment()? == Wish::Auto {
+    if runtime.name() == Builtin.name() && RuntimeChoice::from_environment()? == RuntimeChoice::Auto {
         let [least, most] = SLOWER_THAN_ONNX_RUNTIME;
         line.push_str(&format!(
             "; ONNX Runtime is {least} to {most} times faster (measured on detectors): run \"opendr runtime install\""

@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn innermost_wish_counts_and_ends() {
+    fn innermost_with_threads_applies_and_ends() {
         with_threads(3, || {
             assert_eq!(default_threads().unwrap(), 3);
             assert_eq!(with_threads(1, || default_threads().unwrap()), 1);

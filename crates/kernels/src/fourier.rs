@@ -287,7 +287,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn power_is_that_of_the_definition() {
+    fn power_equals_the_definition() {
         for size in [2, 4, 6, 8, 10, 14, 22, 32, 60, 98, 128, 400, 512, 640, 1102] {
             let sample = |frame: usize, at: usize| ((at * at + (3 + frame) * at) as f32 * 0.37).sin();
             let frames = |at: usize| std::array::from_fn(|frame| sample(frame, at));

@@ -44,7 +44,7 @@ mod tests {
     }
 
     #[test]
-    fn every_half_comes_back_and_what_lies_between_goes_to_the_nearest() {
+    fn halves_round_trip_and_other_values_round_to_nearest() {
         for half in (0..=0x7bff_u16).chain(0x8000..=0xfbff) {
             assert_eq!(half_from_float(float_from_half(half)), half, "{half:#x}");
         }

@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn some_of_very_many_values_are_enough() {
+    fn large_tensors_are_sampled() {
         let mut histogram = Histogram::default();
         let many: Vec<f32> = (0..1_000_000).map(|at| (at % 640) as f32).collect();
         histogram.add(&many);

@@ -30,7 +30,7 @@ pub struct Measured {
 pub type Judge<'a> = dyn FnMut(&Model) -> Result<Measured> + 'a;
 
 /// One in this many layers returns to floats at a time.
-const BACK_AT_A_TIME: usize = 8;
+const FLOAT_LAYERS_DIVISOR: usize = 8;
 
 /// Writes `model` to `output` with its networks in the precision of `options`.
 ///
@@ -95,7 +95,7 @@ impl Network<'_> {
         match &mut self.kind {
             Kind::Half(_) => false,
             Kind::Bytes(quantiser) => {
-                let count = quantiser.layer_count().div_ceil(BACK_AT_A_TIME);
+                let count = quantiser.layer_count().div_ceil(FLOAT_LAYERS_DIVISOR);
                 quantiser.keep_worst(count)
             }
         }

@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn zero_and_the_ends_come_back() {
+    fn zero_and_the_limits_round_trip() {
         for (low, high) in [(-1.0, 3.0), (0.5, 2.0), (-4.0, -1.0), (0.0, 1e-3)] {
             let range = Range::over(low, high);
             assert_eq!(range.rounded(0.0), 0.0);
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn an_outlier_is_clipped_where_that_pays() {
+    fn outliers_are_clipped_where_that_reduces_the_error() {
         let mut histogram = Histogram::default();
         let bell: Vec<f32> = (1..100_000).map(|at| (at as f32 / 100_000.0).ln()).collect();
         (0..30).for_each(|_| histogram.add(&bell));

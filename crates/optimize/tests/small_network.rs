@@ -157,7 +157,7 @@ fn options(precision: Precision) -> OptimizeOptions {
 }
 
 #[test]
-fn int8_answers_nearly_the_same_on_every_engine() {
+fn int8_predicts_nearly_the_same_on_every_runtime() {
     let folder = Folder::new("int8");
     let model = container(&folder);
     let seen = recordings(&model, 16);
@@ -233,7 +233,7 @@ fn layers_go_back_to_floats_until_the_drop_is_small_enough() {
 }
 
 #[test]
-fn fp16_answers_the_same_on_every_engine() {
+fn fp16_predicts_the_same_on_every_runtime() {
     let folder = Folder::new("fp16");
     let model = container(&folder);
     let output = folder.0.join("out");
@@ -245,7 +245,7 @@ fn fp16_answers_the_same_on_every_engine() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told() {
+fn unsupported_cases_are_errors() {
     let folder = Folder::new("told");
     let model = container(&folder);
     let output = folder.0.join("out");

@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn a_u_is_one_and_corners_touch_when_told() {
+    fn u_shape_is_one_component_and_diagonals_connect_on_request() {
         let picture = ["#.#.", "#.#a", "###a", "...."];
         let (sides, areas) = labels(&picture, Touching::Sides);
         assert_eq!(sides, [1, 0, 1, 0, 1, 0, 1, 2, 1, 1, 1, 2, 0, 0, 0, 0]);
@@ -153,7 +153,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn as_flooding_says(width in 1usize..12, pixels in prop::collection::vec(0u8..3, 0..140), corners: bool) {
+        fn agrees_with_flood_fill(width in 1usize..12, pixels in prop::collection::vec(0u8..3, 0..140), corners: bool) {
             let height = pixels.len() / width;
             let touching = if corners { Touching::Corners } else { Touching::Sides };
             let mut components = Components::default();

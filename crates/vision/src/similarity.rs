@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_answer_is_none() {
+    fn degenerate_points_return_none() {
         assert!(Similarity::from_points(&[[1.0, 2.0]], &[[1.0, 2.0]]).is_none());
         assert!(Similarity::from_points(&[[1.0, 2.0]; 3], &[[1.0, 2.0]; 2]).is_none());
         assert!(Similarity::from_points(&[[1.0, 2.0]; 3], &[[1.0, 2.0], [2.0, 2.0], [3.0, 3.0]]).is_none());
@@ -194,7 +194,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn points_find_their_similarity(
+        fn similarity_is_recovered_from_points(
             scale in 0.05f32..20.0, angle in -3.1f32..3.1, origin in [-2e3f32..2e3, -2e3f32..2e3],
             points in prop::collection::vec([0.0f32..200.0, 0.0f32..200.0], 2..9),
         ) {

@@ -21,7 +21,7 @@ pub(crate) fn run(parts: usize, threads: usize, work: &(dyn Fn(usize) + Sync)) {
     if helpers == 0 {
         return task.drain();
     }
-    match Desk::global().post(&task, helpers) {
+    match TaskSlot::global().post(&task, helpers) {
         Some(posted) => {
             task.drain();
             drop(posted);
@@ -66,7 +66,7 @@ impl Task<'_> {
 }
 
 /// Slot for one task that the workers watch; a second caller works alone.
-struct Desk {
+struct TaskSlot {
     slot: Mutex<Slot>,
     posted: Condvar,
 }
@@ -78,17 +78,18 @@ struct Slot {
     seats: usize,
 }
 
-impl Desk {
+impl TaskSlot {
     fn global() -> &'static Self {
-        static DESK: Desk = Desk { slot: Mutex::new(Slot { task: None, seats: 0 }), posted: Condvar::new() };
+        static TASK_SLOT: TaskSlot =
+            TaskSlot { slot: Mutex::new(Slot { task: None, seats: 0 }), posted: Condvar::new() };
         static STARTED: OnceLock<()> = OnceLock::new();
         STARTED.get_or_init(|| {
             for _ in 1..available() {
                 // Without the thread the caller does all the work itself.
-                let _ = thread::Builder::new().name("opendr-vision".to_owned()).spawn(|| DESK.serve());
+                let _ = thread::Builder::new().name("opendr-vision".to_owned()).spawn(|| TASK_SLOT.serve());
             }
         });
-        &DESK
+        &TASK_SLOT
     }
 
     fn post<'a>(&'static self, task: &'a Task<'a>, helpers: usize) -> Option<Posted<'a>> {
@@ -105,7 +106,7 @@ impl Desk {
         for _ in 0..helpers {
             self.posted.notify_one();
         }
-        Some(Posted { desk: self, task })
+        Some(Posted { task_slot: self, task })
     }
 
     fn serve(&self) {
@@ -131,13 +132,13 @@ impl Desk {
 
 /// A posted task; dropping it ends the task.
 struct Posted<'a> {
-    desk: &'static Desk,
+    task_slot: &'static TaskSlot,
     task: &'a Task<'a>,
 }
 
 impl Drop for Posted<'_> {
     fn drop(&mut self) {
-        lock(&self.desk.slot).task = None;
+        lock(&self.task_slot.slot).task = None;
         let mut waited = 0u32;
         while self.task.active.load(Ordering::Acquire) != 0 {
             // A worker finishes its part within microseconds, unless the system preempts it.

@@ -196,7 +196,7 @@ fn headers_that_claim_too_much_are_refused() {
 }
 
 #[test]
-fn files_that_are_no_pictures_are_named() {
+fn errors_of_files_that_are_not_images_state_the_content() {
     let folder = Folder::new("others");
     for (name, content, kind, wanted) in [
         ("text.jpg", &b"Dear reader, this is no picture"[..], ErrorKind::InvalidInput, "text (\"Dear reader"),
@@ -215,7 +215,7 @@ fn files_that_are_no_pictures_are_named() {
 }
 
 #[test]
-fn what_cannot_be_saved_leaves_nothing_behind() {
+fn failed_saves_leave_no_files() {
     let folder = Folder::new("refused");
     let name = |name: &str| folder.0.join(name);
     assert_eq!(save(&quarters(), name("a.gif")).unwrap_err().kind(), ErrorKind::Unsupported);

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_lead_to_variables() {
+    fn names_map_to_variables() {
         let at = |name: &str| place(name).map(|place| (place.variable, place.part, place.parts));
         let whole = |variable: &str| Some((variable.to_owned(), 0, 1));
         assert_eq!(at("encoder.conv1.bias"), whole("encoder/conv1/bias"));

@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_of_layers_is_refused() {
+    fn invalid_param_files_are_rejected() {
         let cases = [
             "",
             "7767518\n0 0\n",

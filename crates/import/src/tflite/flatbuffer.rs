@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn offsets_that_are_odd_or_lead_nowhere_are_refused() {
+    fn invalid_offsets_are_rejected() {
         let with = |position: usize, value: u8| {
             let mut bytes = file();
             bytes[position] = value;

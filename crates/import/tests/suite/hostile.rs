@@ -108,7 +108,7 @@ fn weight_files_stay_in_their_folder() {
 }
 
 #[test]
-fn other_formats_are_told_apart() {
+fn other_formats_are_rejected_with_their_kind() {
     let import = |json: &str| onnx_from_tfjs(json.as_bytes(), &[], &ImportOptions::default()).unwrap_err();
     assert_eq!(import("not json").kind(), ErrorKind::Format);
     assert_eq!(import("{}").kind(), ErrorKind::Format);

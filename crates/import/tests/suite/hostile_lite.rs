@@ -39,7 +39,7 @@ fn model() -> TinyLite {
 }
 
 #[test]
-fn what_is_not_there_is_named() {
+fn errors_name_the_missing_part() {
     let mut missing = model();
     missing.operators.remove(1);
     refused(&missing, ErrorKind::Format, "tensor \"b\" is needed, but no preceding operator produces it");

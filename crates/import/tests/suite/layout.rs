@@ -120,7 +120,7 @@ fn shapes_are_those_of_tensorflow() {
 }
 
 #[test]
-fn images_stay_images_and_vectors_vectors() {
+fn image_outputs_are_channels_first_and_vectors_unchanged() {
     let mut model = stored_channels_first(2, 2, 1);
     model.ints("image", &[2], &[1, 2]);
     model.node("mask", "Sigmoid", &["map"], NONE()).output("mask");

@@ -78,7 +78,7 @@ fn a_product_may_keep_the_axes_in_front() {
 }
 
 #[test]
-fn rows_are_brought_to_length_one() {
+fn rows_are_l2_normalised() {
     let mut model = TinyLite::default();
     let x = model.input(&[2, 2], FLOAT32);
     let y = model.tensor("y", &[2, 2], FLOAT32);
@@ -136,7 +136,7 @@ fn quantised_numbers_are_rounded_where_the_original_rounds() {
 }
 
 #[test]
-fn integers_that_stand_for_themselves_stay() {
+fn unquantised_integers_are_unchanged() {
     let mut model = TinyLite::default();
     let x = model.input(&[4], FLOAT32);
     let axis = model.ints("axis", &[1], &[0]);
@@ -159,7 +159,7 @@ fn a_transposed_convolution_with_bias() {
 }
 
 #[test]
-fn what_no_output_needs_is_left_out() {
+fn unneeded_operators_are_omitted() {
     let mut model = TinyLite::default();
     let x = model.input(&[2], FLOAT32);
     let [y, z] = ["y", "z"].map(|name| model.tensor(name, &[2], FLOAT32));

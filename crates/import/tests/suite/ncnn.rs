@@ -62,7 +62,7 @@ fn wanted(x: &[f32; 12]) -> Vec<f32> {
 }
 
 #[test]
-fn layers_compute_what_they_say() {
+fn layers_compute_the_reference() {
     let (text, bin) = model();
     let x = [1.0, 2.0, -1.0, 0.5, 3.0, 0.0, -1.0, 0.5, 1.5, 1.0, 0.25, 0.75];
     let onnx = import(&text, &bin).unwrap();
@@ -73,7 +73,7 @@ fn layers_compute_what_they_say() {
 }
 
 #[test]
-fn outputs_are_what_nobody_takes_and_can_be_chosen() {
+fn unread_tensors_are_outputs_and_selectable() {
     let text = "7767517\n3 4\nInput in 0 1 in 0=4 1=1 2=1\nSplit s 1 2 in a b\nUnaryOp u 1 1 a c 0=7\n";
     run(import(text, &[]).unwrap(), &[1, 1, 4, 1], &[0.0; 4])[1].assert_near(&[1, 1, 1, 4], &[1.0; 4]);
     let options = ImportOptions { outputs: vec!["c".into()], ..ImportOptions::default() };
@@ -85,7 +85,7 @@ fn outputs_are_what_nobody_takes_and_can_be_chosen() {
 }
 
 #[test]
-fn what_is_wrong_is_named() {
+fn errors_name_the_cause() {
     let (text, bin) = model();
     let with = |from: &str, to: &str| {
         assert!(text.contains(from), "{from}");

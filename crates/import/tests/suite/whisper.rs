@@ -247,7 +247,7 @@ fn decoded(networks: &WhisperOnnx, tokens: &[i32], steps: &[usize]) -> Vec<f32> 
 }
 
 #[test]
-fn steps_give_what_all_at_once_gives() {
+fn incremental_decoding_equals_decoding_at_once() {
     let networks = whisper_from_ctranslate2(&tiny()).unwrap();
     let tokens = [3, 1, 4, 1, 5, 9];
     let whole = decoded(&networks, &tokens, &[6]);

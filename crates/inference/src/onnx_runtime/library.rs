@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn tells_the_library_from_its_neighbours() {
+    fn distinguishes_the_library_from_its_providers() {
         for name in ["libonnxruntime.so", "libonnxruntime.so.1", "libonnxruntime.so.1.31.1"] {
             assert!(is_library(name), "{name}");
         }

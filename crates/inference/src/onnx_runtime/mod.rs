@@ -260,7 +260,7 @@ mod tests {
     use crate::tensor::ElementType;
 
     #[test]
-    fn small_networks_are_told_by_inputs_and_weights() {
+    fn small_networks_are_recognised_by_inputs_and_weights() {
         let input = |dims: &[Option<usize>]| TensorInfo {
             name: String::new(),
             element_type: ElementType::F32,

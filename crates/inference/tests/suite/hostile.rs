@@ -91,7 +91,7 @@ fn the_plain_model_of_these_tests_runs() {
 }
 
 #[test]
-fn what_is_no_model_is_refused() {
+fn files_that_are_not_models_are_rejected() {
     for bytes in
         [&b""[..], b"hello, I am a text file", &[0; 1000], &[0xff; 1000], b"\x89PNG\r\n\x1a\n", b"RTEN"]
     {
@@ -100,7 +100,7 @@ fn what_is_no_model_is_refused() {
 }
 
 #[test]
-fn weights_that_are_not_there_are_refused() {
+fn missing_weights_are_rejected() {
     let add = node("Add", &["x", "w"], "y");
     for dims in [&[1 << 28][..], &[1 << 32, 1 << 32], &[u64::MAX], &[3]] {
         let weight = tensor("w", dims, 1, &[0; 8]);
@@ -128,14 +128,14 @@ fn graphs_nested_without_end_are_refused() {
 }
 
 #[test]
-fn an_unknown_operator_is_told() {
+fn unknown_operator_is_unsupported() {
     let kind = refused("an unknown operator", &model(&[node("Frobnicate", &["x"], "y")], &[]));
     assert_eq!(kind, ErrorKind::Unsupported);
 }
 
 /// Tensors of 2^40 elements: rejected when opened or run; the process survives.
 #[test]
-fn tensors_that_no_machine_holds_are_refused() {
+fn tensors_too_large_for_memory_are_rejected() {
     let sizes = |values: &[i64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>();
     let size = |values: &[i64]| tensor("s", &[values.len() as u64], 7, &sizes(values));
     let huge = [1 << 20, 1 << 20];

@@ -93,7 +93,7 @@ fn no_library_means_the_built_in_runtime_and_a_hint() {
 }
 
 #[test]
-fn wrong_wishes_are_told() {
+fn invalid_environment_variables_are_errors() {
     let place = Place::new("wishes");
     if system_has_one(&place) {
         return;
@@ -121,7 +121,7 @@ fn wrong_wishes_are_told() {
 }
 
 #[test]
-fn a_file_that_is_no_library_is_passed_over() {
+fn files_that_are_not_a_library_are_skipped() {
     let place = Place::new("text");
     if system_has_one(&place) {
         return;
@@ -139,7 +139,7 @@ fn a_file_that_is_no_library_is_passed_over() {
 
 #[cfg(unix)]
 #[test]
-fn an_old_one_of_python_is_passed_over_in_one_clear_line() {
+fn old_library_of_python_is_skipped_with_one_line() {
     let place = Place::new("old");
     if system_has_one(&place) {
         return;
@@ -154,7 +154,7 @@ fn an_old_one_of_python_is_passed_over_in_one_clear_line() {
 
 #[cfg(unix)]
 #[test]
-fn a_real_one_is_found_in_python_and_in_the_cache() {
+fn library_is_found_in_python_and_in_the_cache() {
     let onnx_runtime =
         OnnxRuntime::find().expect("set ORT_DYLIB_PATH to the library of ONNX Runtime 1.23 or later");
     let library = onnx_runtime.path();
@@ -177,7 +177,7 @@ fn a_real_one_is_found_in_python_and_in_the_cache() {
 }
 
 #[test]
-fn a_device_that_is_not_there_is_an_error_that_lists_those_that_are() {
+fn missing_device_is_an_error_that_lists_the_available_ones() {
     let Some(root) = test_data() else { return };
     let model = fs::read(root.join("models/face_detection/yunet_n_320_320.onnx")).unwrap();
     for runtime in runtimes() {

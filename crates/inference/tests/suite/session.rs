@@ -71,7 +71,7 @@ fn a_run_allocates_nothing_of_its_own() {
 }
 
 #[test]
-fn what_does_not_fit_is_told() {
+fn mismatched_inputs_are_errors() {
     let session = AddOne::session();
     let run = |inputs: &[TensorView<'_>]| session.run(inputs, |_| Ok(())).unwrap_err();
     for (inputs, says) in [
@@ -91,7 +91,7 @@ fn what_does_not_fit_is_told() {
 }
 
 #[test]
-fn the_sinks_error_comes_out_and_its_panic_leaves_the_session_whole() {
+fn errors_of_the_sink_are_returned_and_panics_leave_the_session_usable() {
     let session = AddOne::session();
     let error = session.run(&[view(&[1.0_f32])], |_| Err(Error::not_found("the sink"))).unwrap_err();
     assert_eq!((error.kind(), error.message()), (ErrorKind::NotFound, "the sink"));
@@ -126,7 +126,7 @@ fn one_session_serves_threads_one_at_a_time() {
 }
 
 #[test]
-fn the_time_of_the_sink_is_no_session_time() {
+fn session_time_excludes_the_sink() {
     let session = AddOne::session();
     timing::start();
     let start = Instant::now();

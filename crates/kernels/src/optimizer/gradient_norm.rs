@@ -48,7 +48,7 @@ mod tests {
     }
 
     #[test]
-    fn tells_of_nan() {
+    fn nan_norm_is_returned() {
         let mut a = [1.0, f32::NAN];
         assert!(clip_gradient_norm(&mut [&mut a], 1.0).is_nan());
         assert!(a[0].is_nan());

@@ -16,7 +16,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moves_its_share_of_the_way() {
+    fn interpolates_by_the_rate() {
         let mut target = [0.0, 4.0];
         move_towards(&mut target, &[1.0, 0.0], 0.25);
         assert_eq!(target, [0.25, 3.0]);

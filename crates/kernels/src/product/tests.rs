@@ -176,7 +176,7 @@ fn rows_do_not_depend_on_the_batch() {
 }
 
 #[test]
-fn nan_and_infinity_go_where_they_belong() {
+fn nan_and_infinity_propagate() {
     for compute in computes() {
         for (m, n) in [(1, 1), (7, 19), (40, 3), (33, 65)] {
             let (mut a, mut b) = (random(m * 5, 1), random(5 * n, 2));

@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_slope_of_channels_stays() {
+    fn other_slopes_are_unchanged() {
         for (rank, dims) in
             [(3, &[3, 1, 1][..]), (5, &[3, 1, 1]), (4, &[3]), (4, &[3, 2, 1]), (4, &[2, 3, 1, 1])]
         {

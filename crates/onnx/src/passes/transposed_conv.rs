@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stride_of_two_is_four_kinds_of_places() {
+    fn stride_of_two_has_four_phases() {
         let mut graph = graph(transposed().ints("strides", [2, 2]).ints("pads", [1, 1, 1, 1]));
         assert!(transposed_conv_to_conv(&mut graph));
         assert_eq!(operators(&graph), ["Conv", "DepthToSpace", "Slice"]);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn others_stay() {
+    fn unsupported_variants_are_unchanged() {
         for operator in [
             transposed().int("group", 2),
             transposed().ints("dilations", [2, 2]),

@@ -27,14 +27,14 @@ const AC_VALUES: [[u8; 162]; 2] = [[
 /// Returns the frame as a complete JPEG; the standard Huffman tables are inserted before the scan where the frame has
 /// none.
 pub(super) fn jpeg_from_mjpeg(frame: &[u8]) -> Cow<'_, [u8]> {
-    match place_for_tables(frame) {
+    match scan_offset(frame) {
         Some(at) => [&frame[..at], &standard_tables(), &frame[at..]].concat().into(),
         None => frame.into(),
     }
 }
 
 /// Returns the byte offset of the scan of a frame without Huffman tables.
-fn place_for_tables(frame: &[u8]) -> Option<usize> {
+fn scan_offset(frame: &[u8]) -> Option<usize> {
     let mut at = 2;
     loop {
         let &[0xff, marker, high, low] = frame.get(at..at + 4)? else { return None };
@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn junk_stays_junk() {
+    fn invalid_frames_are_unchanged() {
         for junk in
             [&b""[..], b"\xff\xd8", b"\xff\xd8\xff\xe0\xff\xff\x00", b"not a JPEG at all", &[0xff; 40]]
         {

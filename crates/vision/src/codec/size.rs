@@ -51,7 +51,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn headers_tell_the_size() {
+    fn sizes_are_read_from_headers() {
         let folder = std::env::temp_dir().join(format!("opendr-size-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let image = Image::from_rgb8(vec![90; 31 * 17 * 3], 31, 17).unwrap();

@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_of_any_shape_find_their_place() {
+    fn images_of_any_shape_are_arranged() {
         let picture = |width: usize, height: usize, grey: u8| {
             Image::from_rgb8(vec![grey; width * height * 3], width, height).unwrap()
         };

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn between_cells_lies_the_mean() {
+    fn values_between_cells_are_interpolated() {
         let grid = Grid::new(&[0.0, 1.0, 2.0, 5.0], [2, 2]).unwrap();
         assert_eq!(grid.sample(0.5, 0.5)[0], 0.0);
         assert_eq!(grid.sample(1.0, 1.0), [2.0, 2.0, 3.0]);
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn wrong_sizes_are_no_grid() {
+    fn grids_of_wrong_size_are_none() {
         for size in [[3, 1], [0, 0], [usize::MAX, 2]] {
             assert!(Grid::new(&[0.0; 4], size).is_none(), "{size:?}");
         }

@@ -5,7 +5,7 @@ use crate::draw::palette::{Colour, ink_on};
 use crate::draw::text::Text;
 
 /// Maximum number of labels that a new label avoids; older ones are ignored.
-const REMEMBERED: usize = 128;
+const MAX_AVOIDED: usize = 128;
 
 /// Space between the text and the edge of its background, in grid units of the font.
 const PADDING: f32 = 2.0;
@@ -73,7 +73,7 @@ impl Labels {
         let chips = tops.map(|top| [left, top.round(), left + width, top.round() + height]);
         let fits = |chip: &&Corners| chip[1] >= 0.0 && chip[3] <= bottom;
         let free = |chip: &&Corners| {
-            let recent = self.placed.iter().rev().take(REMEMBERED);
+            let recent = self.placed.iter().rev().take(MAX_AVOIDED);
             !recent.clone().any(|other| {
                 chip[0] < other[2] && other[0] < chip[2] && chip[1] < other[3] && other[1] < chip[3]
             })

@@ -69,7 +69,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_keep_apart() {
+    fn colours_are_distinguishable() {
         let colours: Vec<Colour> = (0..COLOURS as i64).map(colour_of_index).collect();
         for (index, one) in colours.iter().enumerate() {
             for other in &colours[..index] {

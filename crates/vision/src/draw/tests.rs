@@ -15,7 +15,7 @@ fn pixel(image: &Image, x: usize, y: usize) -> Colour {
 }
 
 #[test]
-fn box_has_its_classes_colour_on_its_edge_and_nothing_within() {
+fn box_has_its_class_colour_on_the_edge_and_no_fill() {
     let mut image = grey(100, 100);
     let boxes = BoundingBoxList::from(vec![BoundingBox::new(2, 20.0, 30.0, 40.0, 50.0, 0.9)]);
     draw(&mut image, &boxes, &Style { labels: false, ..Style::default() });
@@ -26,7 +26,7 @@ fn box_has_its_classes_colour_on_its_edge_and_nothing_within() {
 }
 
 #[test]
-fn label_stands_above_the_box_or_where_there_is_room() {
+fn label_is_above_the_box_or_where_space_is_free() {
     for (top, rows) in [(50.0, 35..50), (0.0, 0..15)] {
         let mut image = grey(200, 100);
         let boxes = BoundingBoxList::from(vec![BoundingBox::new("dog", 20.0, top, 100.0, 40.0, 0.9)]);
@@ -213,7 +213,7 @@ fn edges_of_coarse_label_maps_are_smooth() {
 }
 
 #[test]
-fn tails_have_one_colour_all_along() {
+fn trails_have_a_single_colour() {
     let at = |left: f32| -> TrackingAnnotationList {
         let bounding_box = BoundingBox::new(0, left, 50.5, 40.0, 40.0, 1.0);
         vec![TrackingAnnotation { bounding_box, id: 4, frame: None }].into()

@@ -87,7 +87,7 @@ mod tests {
     use opendr_engine::target::BoundingBox;
 
     #[test]
-    fn tails_are_bounded_and_forgotten() {
+    fn trails_are_bounded_and_dropped() {
         let mut trails = Trails::default();
         for step in 0..200 {
             let at = |id, left| TrackingAnnotation {

@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 /// Number of cached plans: enough for a few cameras or crops at once.
-const KEPT: usize = 8;
+const CACHE_SIZE: usize = 8;
 
 /// Sum of the two fixed-point weights of a column.
 pub(super) const ONE: u32 = 1 << 14;
@@ -135,7 +135,7 @@ impl Plans {
         let mut free = self.free.lock().unwrap_or_else(PoisonError::into_inner);
         match free.iter().rposition(|plan| plan.sizes == sizes) {
             Some(index) => free.remove(index),
-            None if free.len() < KEPT => Plan::default(),
+            None if free.len() < CACHE_SIZE => Plan::default(),
             None => free.remove(0),
         }
     }
@@ -180,6 +180,6 @@ mod tests {
                 );
             });
         }
-        assert_eq!(plans.free.lock().unwrap().len(), KEPT);
+        assert_eq!(plans.free.lock().unwrap().len(), CACHE_SIZE);
     }
 }

@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cameras_are_known_by_their_text() {
+    fn camera_inputs_are_recognised() {
         let device = |text: &str| camera_of_text(Path::new(text));
         assert_eq!(device("camera:0"), Some("/dev/video0".into()));
         assert_eq!(device("camera:/dev/v4l/by-id/x"), Some("/dev/v4l/by-id/x".into()));

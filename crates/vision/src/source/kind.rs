@@ -72,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell() {
+    fn extensions_determine_the_kind() {
         assert_eq!(kind_of_name(Path::new("a/B.JPEG")), Some(FileKind::Picture));
         assert_eq!(kind_of_name(Path::new("a.b.mp4")), Some(FileKind::Video));
         assert_eq!(kind_of_name(Path::new("jpg")), None);
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_tell() {
+    fn first_bytes_determine_the_kind() {
         assert!(is_video(b"\x00\x00\x00\x20ftypisom"));
         assert!(is_video(b"RIFF\x00\x00\x00\x00AVI "));
         assert!(!is_video(b"RIFF\x00\x00\x00\x00WEBP"));

@@ -141,7 +141,7 @@ fn a_file_whose_name_looks_like_a_pattern_is_that_file() {
 }
 
 #[test]
-fn nothing_to_read_is_said() {
+fn inputs_without_images_are_errors() {
     let folder = Folder::new("empty");
     fs::write(folder.0.join("notes.txt"), "").unwrap();
     let kind_and_text = |input: &Path| {
@@ -166,7 +166,7 @@ fn several_inputs_follow_each_other() {
 }
 
 #[test]
-fn content_tells_where_the_name_does_not() {
+fn image_without_extension_is_detected_by_content() {
     let folder = Folder::new("content");
     let path = folder.picture("picture", 9);
     assert_eq!(level(&Source::open(path).unwrap().next().unwrap().unwrap()), 9);

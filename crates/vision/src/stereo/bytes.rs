@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn every_register_does_the_same() {
+    fn all_register_types_agree() {
         check::<Portable>();
         #[cfg(target_arch = "x86_64")]
         {

@@ -28,7 +28,7 @@ use brightness::Brightness;
 use bytes::Bytes;
 use census::Census;
 use paths::{MOST_PENALTY, Pass, Penalties};
-use winner::{Doubts, UNKNOWN, Winner};
+use winner::{ConfidenceChecks, UNKNOWN, Winner};
 
 /// Options of stereo matching.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -170,7 +170,10 @@ impl StereoMatcher {
             count,
             from: options.min_disparity / shrink,
             penalties: Penalties { small: options.small_penalty.min(large), large },
-            doubts: Doubts { uniqueness: options.uniqueness.into(), disagreement: options.left_right },
+            checks: ConfidenceChecks {
+                uniqueness: options.uniqueness.into(),
+                disagreement: options.left_right,
+            },
         };
         let middle = height / 2;
         let words = [&self.left, &self.right]
@@ -242,7 +245,7 @@ struct Plan {
     count: usize,
     from: usize,
     penalties: Penalties,
-    doubts: Doubts,
+    checks: ConfidenceChecks,
 }
 
 /// The rows of a pass, and the disparities for the rows that the other pass has already processed.
@@ -262,11 +265,11 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 fn both(first: Job<'_>, second: Job<'_>) {
     let jobs = [first, second].map(Mutex::new);
-    workers::run(2, 2, &|part| go_fastest(&mut lock(&jobs[part])));
+    workers::run(2, 2, &|part| run_with_best_isa(&mut lock(&jobs[part])));
 }
 
 #[cfg(target_arch = "x86_64")]
-fn go_fastest(job: &mut Job<'_>) {
+fn run_with_best_isa(job: &mut Job<'_>) {
     #[target_feature(enable = "avx2,popcnt")]
     unsafe fn go_avx2<B: Bytes>(job: &mut Job<'_>) {
         // SAFETY: the caller guarantees the instruction set and the number of disparities.
@@ -284,7 +287,7 @@ fn go_fastest(job: &mut Job<'_>) {
 }
 
 #[cfg(not(target_arch = "x86_64"))]
-fn go_fastest(job: &mut Job<'_>) {
+fn run_with_best_isa(job: &mut Job<'_>) {
     // SAFETY: every machine supports this type; the number of disparities is a multiple of 16.
     unsafe { go::<bytes::Portable>(job) }
 }
@@ -293,7 +296,7 @@ fn go_fastest(job: &mut Job<'_>) {
 /// The CPU supports the instructions of `B`, and the number of disparities is a multiple of `B::COUNT`.
 #[inline(always)]
 unsafe fn go<B: Bytes>(job: &mut Job<'_>) {
-    let Plan { width, count, from, penalties, doubts } = job.plan;
+    let Plan { width, count, from, penalties, checks } = job.plan;
     let [left, right] = job.words;
     let height = left.len() / width;
     for step in 0..height {
@@ -305,7 +308,7 @@ unsafe fn go<B: Bytes>(job: &mut Job<'_>) {
         // SAFETY: the caller guarantees the instruction set and the number of disparities.
         unsafe { job.pass.row::<B>(left, right, sums, from, penalties, [job.is_backward, is_first]) };
         if let Some((winner, found)) = &mut job.found {
-            winner.row(sums, count, from, doubts, &mut found[row]);
+            winner.row(sums, count, from, checks, &mut found[row]);
         }
     }
 }

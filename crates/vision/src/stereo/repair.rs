@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn islands_vanish_and_the_background_fills() {
+    fn speckles_are_removed_and_holes_filled_from_the_background() {
         let mut map = [9.0, 9.0, -1.0, 4.0, 4.0, 4.5, 9.0, 20.0, 4.0, 4.0];
         remove_speckles(&mut map, [5, 2], 1, 1.0, &mut Components::default());
         assert_eq!(map, [9.0, 9.0, -1.0, 4.0, 4.0, -1.0, 9.0, -1.0, 4.0, 4.0]);

@@ -44,7 +44,7 @@ fn share(map: &[f32], places: impl Fn(usize, usize) -> bool, is_right: impl Fn(f
 }
 
 #[test]
-fn a_board_stands_before_a_wall() {
+fn board_and_wall_have_their_disparities() {
     let map = disparities(&pair(), &StereoOptions { disparities: 32, ..StereoOptions::default() });
     let board =
         share(&map, |x, y| (64..106).contains(&x) && (24..56).contains(&y), |d| (d - 20.0).abs() < 0.5);
@@ -61,7 +61,7 @@ fn a_board_stands_before_a_wall() {
 }
 
 #[test]
-fn the_first_disparity_and_memory_used_again_change_nothing_else() {
+fn minimum_disparity_and_reused_memory_do_not_change_results() {
     let pair = pair();
     let options = StereoOptions { disparities: 32, ..StereoOptions::default() };
     let map = disparities(&pair, &options);
@@ -81,7 +81,7 @@ fn the_first_disparity_and_memory_used_again_change_nothing_else() {
 }
 
 #[test]
-fn nothing_to_see_is_not_known() {
+fn textureless_images_have_unknown_disparities() {
     let black = || grey(64, 48, |_, _| 0);
     assert!(disparities(&[black(), black()], &StereoOptions::default()).iter().all(|d| *d == 0.0));
     let nan = || Image::new(vec![f32::NAN; 64 * 48], 64, 48, PixelFormat::Grey, Layout::Hwc).unwrap();
@@ -144,7 +144,7 @@ fn metres_follow_from_disparities() {
 }
 
 #[test]
-fn a_pair_shrunk_is_matched_as_a_small_one() {
+fn shrink_equals_matching_a_reduced_pair() {
     let small = pair();
     let [width, height] = SIZE;
     let large = small.each_ref().map(|image| {

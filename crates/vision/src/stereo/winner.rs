@@ -2,7 +2,7 @@
 
 /// Thresholds of the confidence checks.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Doubts {
+pub(super) struct ConfidenceChecks {
     /// Margin in percent by which the second best must be worse.
     pub uniqueness: u16,
     /// Maximum difference to the right image's disparity, in pixels; `None` skips the check.
@@ -26,7 +26,14 @@ impl Winner {
     /// Writes the disparities of a row, or [`UNKNOWN`]. `sums` are `[width, disparities]`; `from` is the first
     /// disparity.
     #[inline(always)]
-    pub fn row(&mut self, sums: &[u16], disparities: usize, from: usize, doubts: Doubts, out: &mut [f32]) {
+    pub fn row(
+        &mut self,
+        sums: &[u16],
+        disparities: usize,
+        from: usize,
+        checks: ConfidenceChecks,
+        out: &mut [f32],
+    ) {
         let width = out.len();
         let Self { right_least, right_best, best } = self;
         for (values, start) in [(&mut *right_least, u16::MAX), (right_best, 0), (best, 0)] {
@@ -48,7 +55,7 @@ impl Winner {
             let least = sums.iter().copied().fold(u16::MAX, u16::min);
             let Some(at) = sums.iter().position(|sum| *sum == least) else { continue };
             best[x] = at as u16;
-            let bound = u32::from(least) * 100 / u32::from(100 - doubts.uniqueness.min(99));
+            let bound = u32::from(least) * 100 / u32::from(100 - checks.uniqueness.min(99));
             let bound = u16::try_from(bound).unwrap_or(u16::MAX);
             let rivals = sums.iter().map(|sum| u16::from(*sum < bound)).sum::<u16>();
             let near = sums[at.saturating_sub(1)..(at + 2).min(sums.len())].iter();
@@ -57,7 +64,7 @@ impl Winner {
             }
             *out = (at + from) as f32 + between(sums, at);
         }
-        let Some(most) = doubts.disagreement else { return };
+        let Some(most) = checks.disagreement else { return };
         for (x, out) in out.iter_mut().enumerate().filter(|(_, out)| **out >= 0.0) {
             let there = width - 1 - x + from + usize::from(best[x]);
             if right_best[there].abs_diff(best[x]) > most {

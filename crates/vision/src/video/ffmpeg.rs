@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn last_complaint_is_kept() {
+    fn last_error_message_is_kept() {
         let output = "[info] a\n[h264 @ 0x5] [error] first\n[fatal] file:x: Invalid data \nplain\n";
         let mut complaints = Complaints::read(output.as_bytes(), |_| {});
         assert_eq!(complaints.finish().as_deref(), Some("file:x: Invalid data"));

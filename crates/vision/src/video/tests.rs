@@ -86,7 +86,7 @@ fn rotated_video_is_turned_upright() {
 }
 
 #[test]
-fn content_tells_a_video_without_extension() {
+fn video_without_extension_is_detected_by_content() {
     let Some(folder) = Folder::new("content") else { return };
     let path = folder.video("clip.mkv", &[]);
     let bare = folder.0.join("clip");
@@ -95,7 +95,7 @@ fn content_tells_a_video_without_extension() {
 }
 
 #[test]
-fn damaged_videos_say_what_ffmpeg_says() {
+fn errors_of_damaged_videos_include_the_message_of_ffmpeg() {
     let Some(folder) = Folder::new("damaged") else { return };
     let whole = fs::read(folder.video("whole.mp4", &["-movflags", "+faststart"])).unwrap();
     let cases = [
@@ -122,7 +122,7 @@ fn damaged_videos_say_what_ffmpeg_says() {
 }
 
 #[test]
-fn sound_without_pictures_is_refused() {
+fn audio_without_video_is_rejected() {
     let Some(folder) = Folder::new("sound") else { return };
     let path = folder.0.join("sound.mkv");
     let made = Command::new("ffmpeg")
@@ -213,7 +213,7 @@ fn dropping_early_ends_the_child() {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn written_videos_are_read_back() {
     let Some(folder) = Folder::new("written") else { return };
     // Odd sides, and an image that is not RGB.
     let path = folder.0.join("-out.mp4");
@@ -248,7 +248,7 @@ fn a_writer_that_is_dropped_leaves_nothing() {
 }
 
 #[test]
-fn writers_refuse_what_they_cannot_write() {
+fn writers_reject_invalid_input() {
     let kind = |path: &str, rate| VideoWriter::create(path, rate).unwrap_err().kind();
     assert_eq!(kind("out.gif", 25.0), ErrorKind::Unsupported);
     assert_eq!(kind("/no/such/folder/out.mp4", 25.0), ErrorKind::NotFound);

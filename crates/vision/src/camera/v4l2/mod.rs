@@ -35,7 +35,7 @@ const MJPEG: u32 = u32::from_le_bytes(*b"MJPG");
 const BUFFERS: u32 = 4;
 
 /// Longest wait for a frame; after it the camera counts as failed.
-const PATIENCE: Duration = Duration::from_secs(5);
+const FRAME_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Longest delay until an interruption takes effect, in milliseconds.
 const POLL_MS: libc::c_int = 100;
@@ -161,10 +161,10 @@ impl Camera {
                     return Err(failed("the stream failed; check that the camera is still connected", error));
                 }
             }
-            if start.elapsed() > PATIENCE {
+            if start.elapsed() > FRAME_TIMEOUT {
                 return Err(Error::device(format!(
                     "no frame for {} seconds; close other programs that use the camera, or reconnect it",
-                    PATIENCE.as_secs()
+                    FRAME_TIMEOUT.as_secs()
                 )));
             }
         }
@@ -218,7 +218,7 @@ fn check_capabilities(file: &File) -> Result<()> {
     if able & CAN_CAPTURE == 0 || able & CAN_STREAM == 0 {
         return Err(Error::device(format!(
             "the device captures no images (many cameras have a second device for metadata); {}",
-            devices_there()
+            list_cameras()
         )));
     }
     Ok(())
@@ -297,7 +297,7 @@ fn stamp_ns(buffer: &Buffer) -> i64 {
     let taken_ns =
         buffer.seconds.saturating_mul(1_000_000_000).saturating_add(buffer.microseconds.saturating_mul(1000));
     let age_ns = (monotonic.tv_sec * 1_000_000_000 + monotonic.tv_nsec).saturating_sub(taken_ns);
-    now_ns - age_ns.clamp(0, PATIENCE.as_nanos() as i64)
+    now_ns - age_ns.clamp(0, FRAME_TIMEOUT.as_nanos() as i64)
 }
 
 fn failed(what: &str, error: io::Error) -> Error {
@@ -307,7 +307,7 @@ fn failed(what: &str, error: io::Error) -> Error {
 fn cannot_open(path: &Path, error: &io::Error) -> Error {
     match error.kind() {
         io::ErrorKind::NotFound => {
-            Error::not_found(format!("no camera {}; {}", path.display(), devices_there()))
+            Error::not_found(format!("no camera {}; {}", path.display(), list_cameras()))
         }
         io::ErrorKind::PermissionDenied => Error::io(format!(
             "no permission to open the camera {}; add your user to its group (usermod -aG video USER) and log in again",
@@ -320,7 +320,7 @@ fn cannot_open(path: &Path, error: &io::Error) -> Error {
 }
 
 /// Lists the cameras: `cameras on this machine: /dev/video0, /dev/video2`.
-fn devices_there() -> String {
+fn list_cameras() -> String {
     let mut found: Vec<String> = std::fs::read_dir("/dev")
         .into_iter()
         .flatten()
