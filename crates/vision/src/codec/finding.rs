@@ -40,7 +40,7 @@ pub(super) fn name(format: ImageFormat) -> &'static str {
         ImageFormat::Png => "PNG",
         ImageFormat::Bmp => "BMP",
         ImageFormat::WebP => "WebP",
-        other => other.extensions_str().first().copied().unwrap_or("picture"),
+        other => other.extensions_str().first().copied().unwrap_or("image"),
     }
 }
 
