@@ -5,14 +5,14 @@ use opendr_perception_common::suppression::{Candidate, keep_best, merge_overlapp
 use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
 use opendr_vision::InputGeometry;
 
-/// Numbers of a palm: centre, size and seven key points, `x, y` each, in input pixels from the anchor.
+/// Number of values of a palm: centre, size and seven keypoints, `x, y` each, in input pixels relative to the anchor.
 pub(super) const ROW: usize = 18;
-/// Key points at the wrist and where the middle finger begins.
+/// Indices of the keypoints at the wrist and at the base of the middle finger.
 const WRIST: usize = 0;
 const MIDDLE: usize = 2;
-/// Cells of the feature maps a side, and anchors in each cell.
+/// Feature maps: cells along a side, and anchors per cell.
 const MAPS: [(usize, usize); 2] = [(24, 2), (12, 6)];
-/// Palms that are looked at: more are noise.
+/// Number of candidates with the highest scores that are processed; more are noise.
 const CONSIDERED: usize = 100;
 
 /// Centres of the detector's anchors, in shares of the input's side.

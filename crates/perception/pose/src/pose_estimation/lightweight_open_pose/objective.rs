@@ -70,9 +70,9 @@ impl Objective for PoseObjective {
         let heat = tensor(&batch.heat, [count, HEAT_MAPS, cells, cells]);
         let fields = tensor(&batch.fields, [count, FIELDS, cells, cells]);
         let mask = tensor(&batch.mask, [count, 1, cells, cells]);
-        let squared_error = |answer: Tensor<4>, target_maps: &Tensor<4>| {
-            let squared_error = (answer - target_maps.clone()) * mask.clone();
-            (squared_error.clone() * squared_error).sum() / (2 * count) as f64
+        let squared_error = |output: Tensor<4>, target_maps: &Tensor<4>| {
+            let difference = (output - target_maps.clone()) * mask.clone();
+            (difference.clone() * difference).sum() / (2 * count) as f64
         };
         let zero = || Tensor::<1>::zeros([1], device);
         let (mut heat_loss, mut field_loss) = (zero(), zero());
