@@ -1,7 +1,9 @@
 //! Trains a Seq2Seq-NMS on the persons of COCO128 and compares it with greedy suppression of the same boxes.
 //!
-//! `cargo run --release -p opendr-detection --features training --example train_seq2seq_nms -- DATA DETECTOR OUTPUT
-//! [PARAMETER=VALUE ...]`
+//! ```console
+//! $ cargo run --release -p opendr-detection --features training --example train_seq2seq_nms -- DATA DETECTOR \
+//!     OUTPUT [PARAMETER=VALUE ...]
+//! ```
 //!
 //! DATA contains `coco128`: its train split is for training, its val split for evaluation. DETECTOR is a container from
 //! `opendr download`, such as NanoDet's; its suppression is switched off.

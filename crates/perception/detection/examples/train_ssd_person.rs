@@ -1,7 +1,9 @@
 //! Trains `ssd_default_person` on annotated images and on images that a teacher annotates, from PoseNet's backbone.
 //!
-//! `cargo run --release -p opendr-detection --features training --example train_ssd_person -- DATA POSENET CENTERNET OUTPUT
-//! [FOLDER ...] [PARAMETER=VALUE ...]`
+//! ```console
+//! $ cargo run --release -p opendr-detection --features training --example train_ssd_person -- DATA POSENET CENTERNET \
+//!     OUTPUT [FOLDER ...] [PARAMETER=VALUE ...]
+//! ```
 //!
 //! POSENET and CENTERNET are containers from `opendr download`. DATA contains `coco128` (its train split is annotated) and
 //! folders of photos without annotations, as each FOLDER is. The images of the evaluation, coco128's val split, `bus.jpg`

@@ -79,8 +79,8 @@ struct Scratch {
     described: Described,
 }
 
-/// File name of the network in a container. Inputs: `own` `[boxes, 14]`, `pairs` `[boxes, 16, 14]`, `neighbours` `[boxes,
-/// 16]`, `mask` `[boxes, 16]`, `appearance` `[boxes, values]`. Output: `change` `[boxes, 1]`.
+/// File name of the network in a container. Inputs: `own` `[boxes, 14]`, `pairs` `[boxes, 16, 14]`, `neighbours`
+/// `[boxes, 16]`, `mask` `[boxes, 16]`, `appearance` `[boxes, values]`. Output: `change` `[boxes, 1]`.
 const FILE: &str = "model.onnx";
 /// Key of the variant in the `inputs` of the manifest.
 const VARIANT: &str = "variant";

@@ -61,8 +61,8 @@ pub struct ProgressiveSpatioTemporalBln {
     work: Pool<ClipWork>,
 }
 
-/// File name of the network in a container. Input: `clip` `[1, features, frames, landmarks]`. Output: `logits` `[1,
-/// classes]`.
+/// File name of the network in a container. Input: `clip` `[1, features, frames, landmarks]`. Output: `logits`
+/// `[1, classes]`.
 const FILE: &str = "model.onnx";
 /// Features per coordinate: position and motion.
 const KINDS: usize = 2;

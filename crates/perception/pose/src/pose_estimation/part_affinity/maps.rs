@@ -44,8 +44,8 @@ pub struct PartMaps<'a> {
 }
 
 impl<'a> PartMaps<'a> {
-    /// Creates maps from heat maps `[19, rows, columns]`, of which the background may be missing, and fields `[38, rows,
-    /// columns]`: x and y of each of [`LIMBS`](super::LIMBS).
+    /// Creates maps from heat maps `[19, rows, columns]`, of which the background may be missing, and fields
+    /// `[38, rows, columns]`: x and y of each of [`LIMBS`](super::LIMBS).
     ///
     /// # Errors
     /// `Format` when the sizes do not fit.
