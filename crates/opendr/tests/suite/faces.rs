@@ -186,7 +186,7 @@ fn persons_are_known_after_references_and_others_are_not() {
     opendr::vision::save(&black(), folder.0.join("more/nobody/black.png")).unwrap();
     let dataset = ExternalDataset::new(folder.0.join("more"), "imagenet");
     let error = fit(&mut *learner, "faceless", &dataset, false).unwrap_err();
-    assert!(error.to_string().contains("no picture shows a face of nobody"), "{error}");
+    assert!(error.to_string().contains("no image has a face of nobody"), "{error}");
     fs::remove_dir_all(folder.0.join("more/nobody")).unwrap();
     fit(&mut *learner, "second", &dataset, false).unwrap();
     assert_eq!(learner.classes().len(), known.len() + 1);
