@@ -150,7 +150,8 @@ impl Learner for CoStGcn {
         let wanted = params.sizes().state()?;
         if numbers != wanted {
             return Err(Error::invalid_param(format!(
-                "{FILE} has a state of {numbers} values, but sequence_len, channels and temporal_kernel specify {wanted}; omit these parameters"
+                "{FILE} has a state of {numbers} values, but sequence_len, channels and temporal_kernel specify {wanted}; \
+                 omit these parameters"
             )));
         }
         check_classes("num_classes", params.num_classes, classes)?;

@@ -64,7 +64,8 @@ impl Collate for ScanCollator {
                 HeatmapValues::Labels(labels) if labels.len() == scan.cloud().len() => labels,
                 _ => {
                     return Err(Error::invalid_input(format!(
-                        "the sample has a map of {:?} for {} points; each point needs a label, 1000 times its class plus the index of its object",
+                        "the sample has a map of {:?} for {} points; each point needs a label, 1000 times its class \
+                         plus the index of its object",
                         map.shape(),
                         scan.cloud().len()
                     )));
