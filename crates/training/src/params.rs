@@ -5,8 +5,8 @@ use opendr_engine::params::Params;
 use crate::optimizer::OptimizerKind;
 use crate::schedule::ScheduleKind;
 
-/// Parameters common to all trainings. Learners include them with their own defaults: `#[param(flatten, lr = 0.001, epochs =
-/// 120)]`.
+/// Parameters common to all trainings. Learners include them with their own defaults:
+/// `#[param(flatten, lr = 0.001, epochs = 120)]`.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct TrainingParams {
     /// Number of epochs.

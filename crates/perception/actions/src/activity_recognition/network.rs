@@ -11,8 +11,8 @@ use burn::tensor::{Device, Tensor};
 use super::Sizes;
 use super::time::Time;
 
-/// X3D (Feichtenhofer, X3D: Expanding Architectures for Efficient Video Recognition, CVPR 2020): frames `[batch * time, 3,
-/// side, side]`, the frames of each clip in sequence, to logits `[batch, classes]`.
+/// X3D (Feichtenhofer, X3D: Expanding Architectures for Efficient Video Recognition, CVPR 2020): frames
+/// `[batch * time, 3, side, side]`, the frames of each clip in sequence, to logits `[batch, classes]`.
 ///
 /// Two differences from the paper: convolutions through time are causal, and squeeze and excitation covers one frame. The first
 /// frame of a clip is repeated for the time before it. The network therefore runs frame by frame with the same result.

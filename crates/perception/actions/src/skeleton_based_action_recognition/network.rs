@@ -9,8 +9,8 @@ use opendr_engine::Result;
 
 use super::sizes::NetworkSizes;
 
-/// Spatio-temporal graph convolutions (Yan et al., AAAI 2018): features `[batch, features, frames, joints]` to logits `[batch,
-/// classes]`.
+/// Spatio-temporal graph convolutions (Yan et al., AAAI 2018): features `[batch, features, frames, joints]` to logits
+/// `[batch, classes]`.
 ///
 /// Different from the paper, no block pads or strides in time, so [`ActionNetwork::step`] computes frame by frame what
 /// [`ActionNetwork::forward`] computes for the clip that ends with the frame (Hedegaard et al., Continual Spatio-Temporal Graph

@@ -33,8 +33,8 @@ pub struct MfccOptions {
 pub enum Edges {
     /// Frames within the audio only: `1 + (samples - window) / hop` frames.
     Inside,
-    /// Frame `i` is centred on sample `i * hop`; the audio is padded by reflection (`librosa` with `center=True,
-    /// pad_mode="reflect"`): `1 + samples / hop` frames.
+    /// Frame `i` is centred on sample `i * hop`; the audio is padded by reflection (`librosa` with
+    /// `center=True, pad_mode="reflect"`): `1 + samples / hop` frames.
     Reflected,
     /// As `Reflected`, but padded with silence.
     Silent,
@@ -130,8 +130,9 @@ impl MfccOptions {
         }
     }
 
-    /// Returns the options of `librosa.feature.mfcc(y, sr=sample_rate, n_mfcc=coefficients, n_fft=window, hop_length=hop,
-    /// pad_mode="reflect")`: librosa's defaults, with the reflection that was its default before 0.10.
+    /// Returns the options of
+    /// `librosa.feature.mfcc(y, sr=sample_rate, n_mfcc=coefficients, n_fft=window, hop_length=hop, pad_mode="reflect")`:
+    /// librosa's defaults, with the reflection that was its default before 0.10.
     pub fn librosa(sample_rate: u32, window: usize, hop: usize, coefficients: usize) -> Self {
         Self {
             sample_rate,
@@ -154,9 +155,9 @@ impl MfccOptions {
         }
     }
 
-    /// Returns the options of Whisper's spectrogram in decibels, with the bands of `librosa.filters.mel(sr=16000, n_fft=400,
-    /// n_mels=bands)`: 25 ms every 10 ms. Whisper uses the bands [before](crate::mfcc::Mfcc::log_mel_into) the cosine
-    /// transform.
+    /// Returns the options of Whisper's spectrogram in decibels, with the bands of
+    /// `librosa.filters.mel(sr=16000, n_fft=400, n_mels=bands)`: 25 ms every 10 ms. Whisper uses the bands
+    /// [before](crate::mfcc::Mfcc::log_mel_into) the cosine transform.
     pub fn whisper(bands: usize) -> Self {
         let librosa = Self::librosa(16_000, 400, 160, 1);
         Self { bands: MelBands { count: bands, ..librosa.bands }, ..librosa }

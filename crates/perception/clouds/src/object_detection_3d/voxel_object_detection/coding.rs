@@ -37,7 +37,7 @@ pub fn box_from_offsets(offsets: [f32; NUMBERS], back: f32, anchor: &LidarBox) -
     let diagonal = length.hypot(width);
     let [x, y, z, longer, wider, higher, turn] = offsets.map(f64::from);
     let side = |log: f64| log.clamp(-MOST_LOG, MOST_LOG).exp();
-    // The half turn is cut at 45 degrees, where cars neither along nor across the road are.
+    // The half turn is cut at 45 degrees, far from cars along and across the road.
     let yaw = (anchor.yaw + turn - FRAC_PI_4).rem_euclid(PI) + FRAC_PI_4 + if back > 0.0 { PI } else { 0.0 };
     LidarBox {
         center: [

@@ -62,8 +62,8 @@ impl AudiovisualNetwork {
         }
     }
 
-    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, time steps]` and faces `[batch * frames, 3, side,
-    /// side]`.
+    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, time steps]` and faces
+    /// `[batch * frames, 3, side, side]`.
     pub fn forward(&self, cepstra: Tensor<3>, faces: Tensor<4>) -> Tensor<2> {
         let [batch, ..] = cepstra.dims();
         let faces = self.faces.forward(faces);
