@@ -73,7 +73,7 @@ impl Learner for Bisenet {
         .about("BiSeNet predicts the class of every pixel; trainable on your own masks.")
         .without_effect(&[
             ("context_path", "the context path is a small residual network of its own"),
-            ("drop_last", "the last batch of an epoch is always used"),
+            ("drop_last", "an incomplete last batch is always dropped"),
             ("pin_memory", "page-locked memory is not used"),
         ]);
     type Params = BisenetParams;
