@@ -6,6 +6,7 @@ mod dataset_flags;
 mod environment_flags;
 mod exit;
 mod inputs;
+mod item;
 mod learner_flags;
 mod loading;
 mod named_value;
@@ -13,6 +14,7 @@ mod peak_memory;
 mod port_file;
 mod progress_bar;
 mod progress_lines;
+mod recorded_set;
 #[cfg_attr(not(feature = "ros"), path = "recordings_absent.rs")]
 mod recordings;
 mod report;

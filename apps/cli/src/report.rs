@@ -10,7 +10,7 @@ use opendr::learner::Outputs;
 use opendr::{Error, Result, ResultExt, Value};
 use serde::Serialize;
 
-use crate::inputs::Item;
+use crate::item::Item;
 use crate::progress_bar::Bar;
 use crate::stdout;
 use crate::timings::Timings;

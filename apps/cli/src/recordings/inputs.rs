@@ -5,30 +5,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use opendr::bags::{Recorded, Recording, Set, Sets, is_recording};
+use opendr::bags::{Recording, Set, Sets, is_recording};
 use opendr::learner::Entry;
 use opendr::vision::{Frame, VideoInfo};
 use opendr::{Error, Result, Value};
 
 use super::flags::port_topics;
-use crate::inputs::{Datum, Item, Next};
+use crate::item::{Datum, Item, Next};
+use crate::recorded_set::RecordedSet;
 use crate::report::Report;
 
 /// Frames a second of a recording that does not tell.
 const RATE: f64 = 25.0;
-
-/// What a recording has beside the datum of the first port.
-pub struct RecordedSet {
-    /// The further ports' values by their names.
-    pub further: Vec<(&'static str, Value)>,
-    /// When the first port's message was recorded, nanoseconds.
-    pub log_time_ns: i64,
-    /// Whether nothing follows in its recording.
-    pub is_last: bool,
-    /// The messages that the values were read from.
-    pub messages: Vec<Recorded>,
-    pub recording: Arc<Recording>,
-}
 
 /// Recordings, one after the other.
 pub struct Recordings {

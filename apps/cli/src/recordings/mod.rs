@@ -5,5 +5,5 @@ mod inputs;
 mod sink;
 
 pub use flags::{flags, ports_by_topic};
-pub use inputs::{RecordedSet, Recordings};
+pub use inputs::Recordings;
 pub use sink::RecordingSink;

@@ -10,7 +10,7 @@ use opendr::ros::default_topics;
 use opendr::target::Classes;
 use opendr::{Error, Result, ResultExt, Value};
 
-use crate::inputs::Item;
+use crate::item::Item;
 
 /// Between two pictures that have no stamps, and after each file: 25 a second.
 const STEP_NS: i64 = 40_000_000;

@@ -4,7 +4,7 @@ use clap::ArgMatches;
 use opendr::{Error, Pipeline, Result};
 
 use super::{Answer, Job, Stream, of_item};
-use crate::inputs::Next;
+use crate::item::Next;
 use crate::timings::Timings;
 
 /// Refuses flags that belong to a single learner.

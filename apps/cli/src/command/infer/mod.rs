@@ -11,7 +11,8 @@ use opendr::target::Classes;
 use opendr::{Error, ErrorKind, Pipeline, Progress, Result, Unit, ValueType, map_in_order};
 
 use crate::exit::Outcome;
-use crate::inputs::{Datum, Inputs, Item, Next};
+use crate::inputs::Inputs;
+use crate::item::{Datum, Item, Next};
 use crate::port_file::PortFile;
 use crate::progress_bar::{Bar, interrupted};
 use crate::recordings::RecordingSink;

@@ -8,7 +8,7 @@ use opendr::simulation::RegisteredSource;
 use opendr::{Error, Result};
 
 use super::participant::{self, start_ros2};
-use super::run::{ROS_ARGS, Ros};
+use super::version::{ROS_ARGS, Ros};
 use crate::environment_flags;
 use crate::exit::Outcome;
 use crate::progress_bar::interrupted;

@@ -4,12 +4,13 @@ mod environment;
 mod node;
 mod participant;
 mod run;
+mod version;
 
 use clap::{ArgMatches, Command};
 use opendr::Result;
 
 use crate::exit::Outcome;
-use run::Ros;
+use version::Ros;
 
 pub fn ros2() -> Command {
     grammar(Ros::Two, "Learners as nodes of ROS 2; no ROS is needed where they run")

@@ -7,7 +7,7 @@ use opendr::ros::{NodeOptions, NodeParams, default_topics};
 use opendr::{Error, Result, ResultExt};
 
 use super::participant;
-use super::run::Ros;
+use super::version::Ros;
 use crate::{learner_flags, loading};
 
 /// The grammar of one node; with a learner its topics and parameters are flags.

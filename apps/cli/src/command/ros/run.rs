@@ -12,54 +12,15 @@ use opendr::ros::{
 
 use super::node::{node_grammar, options, set_parameters};
 use super::participant;
+use super::version::{ROS_ARGS, Ros};
 use crate::exit::Outcome;
 use crate::progress_bar::{Bar, interrupted};
 use crate::{learner_flags, loading};
-
-/// Which ROS.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Ros {
-    One,
-    Two,
-}
-
-impl Ros {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::One => "ros1",
-            Self::Two => "ros2",
-        }
-    }
-
-    pub const fn examples(self) -> &'static str {
-        match self {
-            Self::One => {
-                "\
-Examples:
-  opendr ros1 run nanodet --image /camera/image_raw
-  opendr ros1 run nanodet --threshold 0.5 + yunet       two nodes; the picture is decoded once
-  opendr ros1 run nanodet --ros-args -r __ns:=/robot -r image_raw:=/camera/image_raw
-  opendr ros1 run LEARNER --help                        its topics and parameters"
-            }
-            Self::Two => {
-                "\
-Examples:
-  opendr ros2 run nanodet --image /camera/image_raw
-  opendr ros2 run nanodet --image /cam/compressed --image-message sensor_msgs/msg/CompressedImage
-  opendr ros2 run nanodet --threshold 0.5 + yunet       two nodes; the picture is decoded once
-  opendr ros2 run nanodet --ros-args -r __ns:=/robot -r image_raw:=/camera/image_raw -p threshold:=0.5
-  opendr ros2 run LEARNER --help                        its topics and parameters"
-            }
-        }
-    }
-}
 
 /// The id of the argument that holds everything after `run`.
 const WORDS: &str = "words";
 /// What stands between the nodes of one process.
 const NEXT: &str = "+";
-/// What begins the words that ROS's own tools write.
-pub const ROS_ARGS: &str = "--ros-args";
 
 pub fn grammar(ros: Ros) -> Command {
     Command::new("run")
