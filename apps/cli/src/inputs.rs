@@ -1,4 +1,4 @@
-//! What `opendr infer` is given: frames for a learner of pictures, else a file for each call; or recordings.
+//! Inputs of `opendr infer`: frames for a learner of images, one file per call for other learners, or recordings.
 
 use std::path::{Path, PathBuf};
 
@@ -12,28 +12,26 @@ use crate::item::{Datum, Item, Next};
 use crate::recordings::Recordings;
 use crate::report::Report;
 
-/// Everything that one call of the command reads, in order.
+/// All inputs of one command, in order.
 pub enum Inputs {
-    /// Pictures, videos, cameras.
+    /// Images, videos, cameras.
     Frames(Source),
-    /// Sounds, series, point clouds: a value a file.
+    /// Audio, time series, point clouds: one value per file.
     Files {
         kind: ValueType,
         paths: Vec<PathBuf>,
-        /// How many were given out.
+        /// Number of files already read.
         given: usize,
     },
-    /// Recordings of robots.
+    /// ROS recordings.
     Recordings(Recordings),
 }
 
 impl Inputs {
-    /// Opens all inputs for the ports of a learner. Those that cannot be opened are reported and left out, unless there
-    /// is only one.
+    /// Opens all inputs for the ports of a learner. Inputs that cannot be opened are reported and skipped, unless there is only one.
     ///
     /// # Errors
-    /// `NotFound` when nothing is left, else what kept the only input from being opened, or the report from being
-    /// written.
+    /// `NotFound` when no input can be opened; the error of the only input, or of writing the report.
     pub fn open(
         entry: &'static Entry,
         inputs: &[&PathBuf],
@@ -56,12 +54,12 @@ impl Inputs {
             }
         }
         if paths.is_empty() {
-            return Err(Error::not_found("none of the inputs can be read; the reasons are above"));
+            return Err(Error::not_found("none of the inputs can be read; the errors are above"));
         }
         Ok(Self::Files { kind, paths, given: 0 })
     }
 
-    /// How many items there will be, as far as that is known.
+    /// Returns the number of remaining items, if it is known.
     pub fn len_hint(&self) -> Option<u64> {
         match self {
             Self::Frames(source) => source.len_hint(),
@@ -70,8 +68,8 @@ impl Inputs {
         }
     }
 
-    /// Whether items have nothing to do with each other, as frames of a video have.
-    pub fn are_separate(&self) -> bool {
+    /// Returns whether the items are independent, unlike frames of a video.
+    pub fn are_independent(&self) -> bool {
         match self {
             Self::Frames(source) => source.is_pictures(),
             Self::Files { .. } => true,

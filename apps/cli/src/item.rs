@@ -8,36 +8,36 @@ use opendr::{Error, Value, ValueRef};
 
 use crate::recorded_set::RecordedSet;
 
-/// What one call is given.
+/// Input of one call.
 pub struct Item {
-    /// What goes into the first port.
+    /// Value of the first port.
     pub datum: Datum,
-    /// What files have for further ports, by their names.
+    /// Values of further ports that were read from files, by port name.
     pub from_files: Vec<(&'static str, Value)>,
-    /// What a recording has besides.
+    /// Further values and messages of a recording.
     pub recorded: Option<Box<RecordedSet>>,
 }
 
-/// What goes into the first port in one call.
+/// Value of the first port, with its origin.
 pub enum Datum {
     Frame(Frame),
     Value {
         value: Box<Value>,
         path: Arc<Path>,
-        /// Among all that is read.
+        /// Index among all values of all inputs.
         index: u64,
-        /// Within its file.
+        /// Index within its file.
         number: u64,
-        /// Whether it is a piece of a recording, not a file of its own.
+        /// Whether the value belongs to a stream, such as a message of a recording.
         is_of_stream: bool,
     },
 }
 
-/// The next item, or why it could not be read, with its file where there is one.
+/// The next item, or an error with its file, if there is one.
 pub type Next = std::result::Result<Item, (Option<PathBuf>, Error)>;
 
 impl Item {
-    /// The file or device it came from.
+    /// Returns the file or device of the item.
     pub fn path(&self) -> &Arc<Path> {
         match &self.datum {
             Datum::Frame(frame) => &frame.path,
@@ -45,7 +45,7 @@ impl Item {
         }
     }
 
-    /// What is given to the learner's first port.
+    /// Returns the value of the learner's first port.
     pub fn value(&self) -> ValueRef<'_> {
         match &self.datum {
             Datum::Frame(frame) => ValueRef::Image(&frame.image),
@@ -53,12 +53,12 @@ impl Item {
         }
     }
 
-    /// What a recording has for further ports, by their names.
+    /// Returns the values of further ports in a recording, by port name.
     pub fn further(&self) -> &[(&'static str, Value)] {
         self.recorded.as_deref().map_or(&[], |recorded| &recorded.further)
     }
 
-    /// Its number among all that was read, from 0.
+    /// Returns the index of the item among all inputs, from 0.
     pub fn index(&self) -> u64 {
         match &self.datum {
             Datum::Frame(frame) => frame.index,
@@ -66,7 +66,7 @@ impl Item {
         }
     }
 
-    /// Its number within its file, from 0.
+    /// Returns the index of the item within its file, from 0.
     pub fn number(&self) -> u64 {
         match &self.datum {
             Datum::Frame(frame) => frame.number,
@@ -74,7 +74,7 @@ impl Item {
         }
     }
 
-    /// When it was taken, where that is known, nanoseconds.
+    /// Returns the stamp in nanoseconds, if it is known.
     #[cfg(feature = "ros")]
     pub fn stamp_ns(&self) -> Option<i64> {
         match &self.datum {
@@ -83,7 +83,7 @@ impl Item {
         }
     }
 
-    /// Whether it is a frame of a video or camera, or of a recording.
+    /// Returns whether the item is a frame of a video, a camera or a recording.
     pub fn is_of_stream(&self) -> bool {
         match &self.datum {
             Datum::Frame(frame) => frame.video.is_some(),

@@ -1,4 +1,4 @@
-//! In the place of recordings in a build without them: there are none.
+//! Replacement of the module `recordings` in builds without the feature `ros`.
 
 use std::convert::Infallible;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Recordings of robots as what `opendr infer` reads and writes.
+//! ROS recordings as inputs and outputs of `opendr infer`.
 
 mod flags;
 mod inputs;

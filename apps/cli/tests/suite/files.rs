@@ -52,7 +52,7 @@ fn what_is_none_is_told_and_the_rest_goes_on() {
     let empty = place.run(["infer", LEARNER, "empty"]).ends_with(13);
     assert!(empty.stderr.contains("no file .csv"), "{}", empty.stderr);
     let drawn = place.run(["infer", LEARNER, "1.csv", "--out", "seen.png"]).ends_with(12);
-    assert!(drawn.stderr.contains("--out draws on pictures"), "{}", drawn.stderr);
+    assert!(drawn.stderr.contains("--out draws on images"), "{}", drawn.stderr);
 }
 
 #[test]
@@ -74,7 +74,7 @@ fn a_bare_network_becomes_a_container_that_its_learner_takes() {
     assert!(["healthy", "ill"].iter().any(|name| own.to_string().contains(name)), "{own}");
     // What another learner does not take replaces nothing.
     let refused = place.run(["import", "matchboxnet", "net.onnx", "--out", "mine"]);
-    assert!(refused.stderr.contains("matchboxnet does not take this model"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("matchboxnet cannot load this model"), "{}", refused.stderr);
     refused.ends_with(17);
     assert_eq!(answer(&["--model", "mine"]), own);
     place.write("notes.txt", "no model");

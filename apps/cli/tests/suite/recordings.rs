@@ -69,7 +69,7 @@ fn topics_are_named_where_several_fit() {
     for topic in ["/left", "right", "timeseries=/right"] {
         assert_eq!(place.run(named.iter().chain(&[topic])).ends_with(0).lines().len(), 20);
     }
-    let cases = [("/none", 13, "/left"), ("x=/left", 12, "there are timeseries")];
+    let cases = [("/none", 13, "/left"), ("x=/left", 12, "the learner has timeseries")];
     for (topic, code, wanted) in cases {
         let done = place.run(named.iter().chain(&[topic])).ends_with(code);
         assert!(done.stderr.contains(wanted), "{done:?}");
@@ -85,10 +85,10 @@ fn nothing_is_lost_by_a_name() {
     let before = std::fs::read(place.path("a.bag")).unwrap();
     let cases: &[(&[&str], &str)] = &[
         (&["--out", "a.bag", "--overwrite"], "is the input itself"),
-        (&["--out", "b.mcap"], "is there already"),
-        (&["--out", "seen.png"], "--out draws on pictures"),
+        (&["--out", "b.mcap"], "already exists"),
+        (&["--out", "seen.png"], "--out draws on images"),
         (&["--out", "x.db3"], "name its folder"),
-        (&["--out", "x", "--with-input"], "is no recording"),
+        (&["--out", "x", "--with-input"], "has no recording format"),
     ];
     place.write("b.mcap", "mine");
     for (flags, wanted) in cases {
@@ -188,7 +188,7 @@ fn further_inputs_come_from_topics() {
     assert_eq!([messages("/image"), messages("/boxes"), messages("/first")], [5, 5, 2]);
     assert_eq!(messages("/counter/count"), 3);
     let unclear = place.run(infer.iter().chain(&["--topic", "first=/first"])).ends_with(11);
-    assert!(unclear.stderr.contains("--topic detections=TOPIC chooses"), "{unclear:?}");
+    assert!(unclear.stderr.contains("choose one with --topic detections=TOPIC"), "{unclear:?}");
     let missing = place.run(infer).ends_with(2);
     assert!(missing.stderr.contains("--detections"), "{missing:?}");
 }

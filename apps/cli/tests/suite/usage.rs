@@ -90,7 +90,7 @@ fn wrong_usage_says_what_is_wrong() {
         (&["infer", &format!("{learner}/nonsense"), picture], 13, "no variant"),
         (&["infer", learner, "/no/such.jpg"], 13, "/no/such.jpg"),
         (&["infer", learner, picture, "--model", "/no/such/model"], 13, "/no/such/model"),
-        (&["infer", learner, picture, picture, "--out", "one.png"], 12, "one.png is one picture"),
+        (&["infer", learner, picture, picture, "--out", "one.png"], 12, "one.png is one image"),
         (&["infer", learner, picture, "--json=/no/such/folder/x"], 13, "/no/such/folder/x"),
         (&["bench", learner, "--frames", "0"], 2, "--frames"),
         (&["download"], 2, "LEARNER"),
