@@ -1,4 +1,4 @@
-//! Learners that take a stream of sound, with the models of the zoo.
+//! Learners of audio streams, with the models of the zoo.
 
 use std::path::{Path, PathBuf};
 
