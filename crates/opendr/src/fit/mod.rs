@@ -23,7 +23,7 @@ pub use options::FitOptions;
 pub use samples::{Opening, Samples};
 
 use crate::{learner_with, registry};
-use samples::{limited, wanted};
+use samples::{annotation_type, limited};
 
 /// Default score below which a teacher's predictions are dropped.
 const TEACHER_THRESHOLD: f32 = 0.5;
@@ -183,7 +183,7 @@ impl Preparation<'_> {
     fn lesson(&self, dataset: String) -> Result<Lesson<'_>> {
         Ok(Lesson {
             dataset,
-            wanted: wanted(self.entry).ok_or_else(|| Error::internal("a learner without outputs"))?,
+            wanted: annotation_type(self.entry).ok_or_else(|| Error::internal("a learner without outputs"))?,
             threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
             classes: self.options.teacher_classes.iter().cloned().collect(),
             class_matching: self.options.class_matching(),

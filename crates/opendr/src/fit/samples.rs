@@ -13,7 +13,7 @@ const TRAINING_SPLITS: [&str; 4] = ["train", "training", "trainval", "train2017"
 pub type Samples<'a> = Box<dyn DatasetIterator + 'a>;
 
 /// Returns the type of annotation on which a learner trains: the one that its task's metric compares with.
-pub fn wanted(entry: &Entry) -> Option<ValueType> {
+pub fn annotation_type(entry: &Entry) -> Option<ValueType> {
     let metric = metric_of(entry.spec.task).and_then(opendr_metrics::find).ok();
     metric.map(|metric| metric.truth).or_else(|| entry.outputs.first().map(|output| output.value_type))
 }
@@ -83,7 +83,7 @@ impl Opening<'_> {
         format: &FormatEntry,
         split: Option<&str>,
     ) -> Result<Samples<'d>> {
-        let wanted = wanted(self.entry).filter(|_| self.annotated);
+        let wanted = annotation_type(self.entry).filter(|_| self.annotated);
         if let Some(wanted) = wanted.filter(|wanted| !format.targets.contains(wanted)) {
             let has: Vec<_> = format.targets.iter().map(|target| target.name()).collect();
             return Err(Error::invalid_input(format!(
