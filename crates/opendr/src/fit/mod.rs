@@ -183,7 +183,8 @@ impl Preparation<'_> {
     fn lesson(&self, dataset: String) -> Result<Lesson<'_>> {
         Ok(Lesson {
             dataset,
-            wanted: annotation_type(self.entry).ok_or_else(|| Error::internal("a learner without outputs"))?,
+            wanted: annotation_type(self.entry)
+                .ok_or_else(|| Error::internal("a learner without outputs"))?,
             threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
             classes: self.options.teacher_classes.iter().cloned().collect(),
             class_matching: self.options.class_matching(),

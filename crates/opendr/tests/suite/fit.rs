@@ -167,7 +167,10 @@ fn invalid_options_are_refused_before_anything_is_written() {
         assert!(error.to_string().contains(wanted), "{error}");
         assert!(!place.0.exists());
     };
-    refused(r#"{"params": {"epoch": 3}}"#, "fit of CounterLearner has no parameter \"epoch\"; it has epochs, lr");
+    refused(
+        r#"{"params": {"epoch": 3}}"#,
+        "fit of CounterLearner has no parameter \"epoch\"; it has epochs, lr",
+    );
     refused(r#"{"params": {"epochs": 0}}"#, "out of range");
     refused(r#"{"params": {"epochs": "many"}}"#, "epochs = many should be");
     let entry = opendr::registry().find("yunet").unwrap();
