@@ -1,7 +1,7 @@
 //! OpenDR in Rust: the open deep-learning toolkit for robotics.
 //!
 //! The facade of the workspace: the [registry](registry()) of learners, [learners and models by name](learner()), [pipelines](Pipeline),
-//! training ([`fit`], [`fit_in`]), hyperparameter search ([`tune`]), [`export`], and re-exports of the other crates. Algorithms are in
+//! training ([`fit()`], [`fit_in`]), hyperparameter search ([`tune()`]), [`export()`], and re-exports of the other crates. Algorithms are in
 //! the crates of `crates/perception`, data types and the trait `Learner` in `opendr-engine`; the command line, Python and C are in
 //! `apps` and `bindings`. Begin with [`learner()`]:
 //!

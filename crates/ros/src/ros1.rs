@@ -40,9 +40,9 @@ impl Ros1Node {
     pub fn new(names: Names) -> Result<Self> {
         let full_name = names.full();
         let log = terminal_log(&full_name);
-        let told = log.clone();
-        let mut options =
-            NodeOptions::new(names.node()).on_problem(move |error| told(Severity::Warn, &error.to_string()));
+        let logger = log.clone();
+        let mut options = NodeOptions::new(names.node())
+            .on_problem(move |error| logger(Severity::Warn, &error.to_string()));
         options.namespace = Some(names.namespace().to_owned());
         options.wait_for_master = PATIENCE_WITH_MASTER;
         let node = Arc::new(Node::new(options)?);

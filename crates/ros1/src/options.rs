@@ -21,11 +21,11 @@ pub struct NodeOptions {
     pub name: String,
     /// Whether the process id and the time are appended to the name, so that several instances can run.
     pub anonymous: bool,
-    /// Namespace [default: `ROS_NAMESPACE`, else the root].
+    /// Namespace (default: `ROS_NAMESPACE`, else the root).
     pub namespace: Option<String>,
-    /// URI of the master [default: `ROS_MASTER_URI`, else `http://localhost:11311`].
+    /// URI of the master (default: `ROS_MASTER_URI`, else `http://localhost:11311`).
     pub master_uri: Option<String>,
-    /// Name or address of this machine for other nodes [default: `ROS_HOSTNAME`, `ROS_IP`, else the machine's name].
+    /// Name or address of this machine for other nodes (default: `ROS_HOSTNAME`, `ROS_IP`, else the machine's name).
     pub host: Option<String>,
     /// Remappings of names, `from` and `to`, in any form.
     pub remappings: Vec<(String, String)>,

@@ -9,7 +9,7 @@ use std::thread;
 use crate::ParameterValue;
 use crate::graph::Graph;
 use crate::lock::lock;
-use crate::parameter::tell;
+use crate::parameter::notify;
 use crate::topic::{Subscribed, uris};
 use crate::xml_rpc::Fault;
 
@@ -142,7 +142,7 @@ fn shutdown(graph: &Arc<Graph>, caller: &str, reason: &str) -> Answer {
 fn param_update(graph: &Graph, key: &str, value: Option<&ParameterValue>) -> Answer {
     let value =
         value.filter(|_| !key.is_empty()).ok_or((-1, "paramUpdate needs a key and a value".to_owned()))?;
-    tell(graph, key, value);
+    notify(graph, key, value);
     Ok(0.into())
 }
 

@@ -60,7 +60,7 @@ pub struct Variant {
     #[serde(default)]
     pub description: String,
     /// Name of the folder in a download to a user's folder, where programs of OpenDR 3.0 expect a certain name
-    /// [default: `<learner>/<variant>`].
+    /// (default: `<learner>/<variant>`).
     #[serde(default)]
     pub folder: Option<String>,
     /// Name of the list of classes in `models/classes`.

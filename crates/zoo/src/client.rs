@@ -57,10 +57,10 @@ impl Call<'_> {
     }
 
     fn watch(&self, mut child: Child, progress: &dyn Progress) -> Result<ExitStatus> {
-        let mut told = 0;
+        let mut reported = 0;
         loop {
             if let Some(status) = child.try_wait()? {
-                progress.advance(self.size.unwrap_or(told).saturating_sub(told));
+                progress.advance(self.size.unwrap_or(reported).saturating_sub(reported));
                 return Ok(status);
             }
             if progress.stopped() {
@@ -70,8 +70,8 @@ impl Call<'_> {
             }
             // Clients keep a second copy at the end, so the folder can be larger than the download.
             let there = size_below(self.work.path(), 12).min(self.size.unwrap_or(u64::MAX));
-            progress.advance(there.saturating_sub(told));
-            told = told.max(there);
+            progress.advance(there.saturating_sub(reported));
+            reported = reported.max(there);
             std::thread::sleep(Duration::from_millis(100));
         }
     }

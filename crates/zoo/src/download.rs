@@ -193,18 +193,18 @@ fn copy(
 /// Reports the position of a download, also when an attempt begins before the end of the last one.
 struct Position<'a> {
     progress: &'a dyn Progress,
-    told: std::cell::Cell<u64>,
+    reported: std::cell::Cell<u64>,
 }
 
 impl<'a> Position<'a> {
     fn new(progress: &'a dyn Progress) -> Self {
-        Self { progress, told: std::cell::Cell::new(0) }
+        Self { progress, reported: std::cell::Cell::new(0) }
     }
 
     fn at(&self, bytes: u64) {
-        let more = bytes.saturating_sub(self.told.get());
+        let more = bytes.saturating_sub(self.reported.get());
         if more > 0 {
-            self.told.set(bytes);
+            self.reported.set(bytes);
             self.progress.advance(more);
         }
     }

@@ -19,14 +19,14 @@ impl Lock {
     /// Waits for the lock file at `path`.
     pub(crate) fn acquire(path: &Path, what: &str, progress: &dyn Progress) -> Result<Self> {
         let file = open(path).context(|| path.display().to_string())?;
-        let mut told = false;
+        let mut noted = false;
         loop {
             match file.try_lock() {
                 Ok(()) => return Ok(Self { _file: file }),
                 Err(TryLockError::WouldBlock) => {
-                    if !told {
+                    if !noted {
                         progress.note(&format!("waiting for another process that downloads {what}"));
-                        told = true;
+                        noted = true;
                     }
                     if progress.stopped() {
                         return Err(stopped());

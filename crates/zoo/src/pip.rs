@@ -15,9 +15,9 @@ pub(crate) struct Wheel<'a> {
     pub(crate) requirement: &'a str,
     /// Size in bytes, if known.
     pub(crate) size: Option<u64>,
-    /// Python version of the wheel [default: the installed one].
+    /// Python version of the wheel (default: the installed one).
     pub(crate) python: Option<&'a str>,
-    /// Platform of the wheel [default: that of this machine].
+    /// Platform of the wheel (default: that of this machine).
     pub(crate) platform: Option<&'a str>,
 }
 

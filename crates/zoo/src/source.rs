@@ -58,10 +58,10 @@ pub struct Package {
     pub version: String,
     /// Size of the download in bytes.
     pub size: u64,
-    /// PyPI: Python version of the wheel, such as `"3.8"` [default: the installed one].
+    /// PyPI: Python version of the wheel, such as `"3.8"` (default: the installed one).
     #[serde(default)]
     pub python: Option<String>,
-    /// PyPI: platform of the wheel, such as `"manylinux1_x86_64"` [default: that of this machine].
+    /// PyPI: platform of the wheel, such as `"manylinux1_x86_64"` (default: that of this machine).
     #[serde(default)]
     pub platform: Option<String>,
     /// Members of the archive.

@@ -179,9 +179,9 @@ impl Iterator for Recordings {
                     return next;
                 }
                 None => {
-                    let remark = opened.unmatched_error();
+                    let unmatched = opened.unmatched_error();
                     self.waiting.pop_front();
-                    if let Some(error) = remark {
+                    if let Some(error) = unmatched {
                         return failed(error);
                     }
                 }

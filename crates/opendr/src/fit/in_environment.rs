@@ -14,7 +14,7 @@ use crate::trained_in;
 pub struct FitEnvironments<'a> {
     /// Source of the training environments.
     pub env: &'a dyn EnvironmentSource,
-    /// Source of the evaluation environments [default: `env`].
+    /// Source of the evaluation environments (default: `env`).
     pub val_env: Option<&'a dyn EnvironmentSource>,
 }
 

@@ -36,9 +36,9 @@ const MAX_STREAMS: usize = 4;
 pub struct FitData<'a> {
     /// Training data.
     pub dataset: DatasetRef<'a>,
-    /// Validation data [default: those of [`FitOptions`]].
+    /// Validation data (default: those of [`FitOptions`]).
     pub val_dataset: Option<DatasetRef<'a>>,
-    /// Teacher that annotates the samples [default: that of [`FitOptions`]].
+    /// Teacher that annotates the samples (default: that of [`FitOptions`]).
     pub teacher: Option<Teacher>,
 }
 

@@ -14,17 +14,17 @@ use serde::Deserialize;
 pub struct FitOptions {
     /// Parameters of the training; others keep the learner's defaults.
     pub params: ParamMap,
-    /// Split to train on [default: the data set's training split].
+    /// Split to train on (default: the data set's training split).
     pub split: Option<String>,
     /// Data set on disk to evaluate on after each epoch.
     pub val: Option<PathBuf>,
-    /// Format of `val` [default: detected].
+    /// Format of `val` (default: detected).
     pub val_format: Option<String>,
     /// Split to evaluate on: of `val` or, without it, of the training data set.
     pub val_split: Option<String>,
     /// Maximum number of training samples, counted from the first.
     pub limit: Option<usize>,
-    /// Folder of checkpoints, the trained model and the report [default: `runs/NAME-DATE`].
+    /// Folder of checkpoints, the trained model and the report (default: `runs/NAME-DATE`).
     #[serde(alias = "output")]
     pub out: Option<PathBuf>,
     /// Folder of event files and curves; none are written without it.
@@ -33,9 +33,9 @@ pub struct FitOptions {
     pub resume: bool,
     /// Learner of the zoo whose predictions replace the annotations, such as `"nanodet"`.
     pub teacher: Option<String>,
-    /// Score below which the teacher's predictions are dropped [default: 0.5].
+    /// Score below which the teacher's predictions are dropped (default: 0.5).
     pub teacher_threshold: Option<f32>,
-    /// Classes to train on [default: those of the data set, or else the teacher's].
+    /// Classes to train on (default: those of the data set, or else the teacher's).
     pub teacher_classes: Vec<String>,
     /// Class of the data set for each class of the teacher, where their names differ.
     pub teacher_map: BTreeMap<String, String>,
@@ -45,7 +45,7 @@ pub struct FitOptions {
     pub keep_empty: bool,
     /// Whether broken samples are skipped and listed.
     pub skip_broken: bool,
-    /// Name of the data set in reports [default: its path].
+    /// Name of the data set in reports (default: its path).
     pub name: Option<String>,
 }
 

@@ -58,7 +58,7 @@ pub enum TuneData<'a> {
         dataset: DatasetRef<'a>,
         /// The part to measure on.
         split: Option<&'a str>,
-        /// Metric [default: that of the task].
+        /// Metric (default: that of the task).
         metric: Option<&'a str>,
     },
 }

@@ -92,8 +92,8 @@ impl Worker {
                 None => self.idle(&params),
             };
             let labelled = self.labels.as_mut().map_or(Ok(()), Labels::tick);
-            for told in [done, labelled, self.diagnostics.tick(self.inbox.counts())] {
-                if let Err(error) = told {
+            for result in [done, labelled, self.diagnostics.tick(self.inbox.counts())] {
+                if let Err(error) = result {
                     self.report(&error);
                 }
             }

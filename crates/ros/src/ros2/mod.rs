@@ -49,9 +49,9 @@ impl FromStr for Middleware {
 /// Options for joining ROS 2.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Ros2Options {
-    /// Middleware [default: that of `RMW_IMPLEMENTATION`, else DDS].
+    /// Middleware (default: that of `RMW_IMPLEMENTATION`, else DDS).
     pub middleware: Option<Middleware>,
-    /// Domain id [default: `ROS_DOMAIN_ID`, else 0].
+    /// Domain id (default: `ROS_DOMAIN_ID`, else 0).
     pub domain_id: Option<u16>,
     /// Addresses of the networks that DDS uses; all if empty.
     pub networks: Vec<IpAddr>,

@@ -42,8 +42,8 @@ pub(crate) fn read_message(stream: &mut impl BufRead) -> Result<Option<HttpMessa
         let (name, value) = field.split_once(':').unwrap_or((&field, ""));
         let value = value.trim();
         if name.eq_ignore_ascii_case("content-length") {
-            let told = value.parse::<u64>().ok().filter(|told| *told <= most);
-            length = Some(told.ok_or_else(|| {
+            let announced = value.parse::<u64>().ok().filter(|announced| *announced <= most);
+            length = Some(announced.ok_or_else(|| {
                 Error::format(format!("an HTTP message has a body of {value:.40?} bytes, which is too long"))
             })?);
         } else if name.eq_ignore_ascii_case("connection") {
@@ -89,11 +89,11 @@ fn disconnected(part: &str) -> Error {
 }
 
 fn network(error: std::io::Error) -> Error {
-    let told = match error.kind() {
+    let announced = match error.kind() {
         ErrorKind::TimedOut | ErrorKind::WouldBlock => "the peer is too slow",
         _ => "the connection was interrupted",
     };
-    Error::network(told).with_source(error)
+    Error::network(announced).with_source(error)
 }
 
 #[cfg(test)]

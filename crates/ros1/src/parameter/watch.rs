@@ -31,7 +31,7 @@ impl Watch {
 }
 
 /// Notifies every watch of `key` or of a namespace that contains it.
-pub(crate) fn tell(graph: &Graph, key: &str, value: &ParameterValue) {
+pub(crate) fn notify(graph: &Graph, key: &str, value: &ParameterValue) {
     let key = canonical(key);
     let watches: Vec<_> = lock(&graph.watches).clone();
     for watch in watches {

@@ -32,7 +32,7 @@ impl ServiceClient {
         Self { graph: Arc::clone(graph), name, kind, time: ANSWER_TIME, connection: Mutex::default() }
     }
 
-    /// Sets the time limit of a response [default: a minute].
+    /// Sets the time limit of a response (default: a minute).
     #[must_use]
     pub fn with_timeout(mut self, time: Duration) -> Self {
         self.time = time;

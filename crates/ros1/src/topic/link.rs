@@ -75,23 +75,23 @@ impl Link {
     }
 
     fn run(&self, graph: &Graph, subscribed: &Subscribed, cancel: &Cancel) {
-        let (mut pause, mut failures, mut told) = (WAITS[0], 0, String::new());
+        let (mut pause, mut failures, mut reported) = (WAITS[0], 0, String::new());
         while !cancel.is_cancelled() {
             let before = self.received_messages.load(Ordering::Relaxed);
             let ended = self.receive(graph, subscribed, cancel);
             self.connected.store(false, Ordering::Relaxed);
             cancel.release();
             if self.received_messages.load(Ordering::Relaxed) > before {
-                (pause, failures, told) = (WAITS[0], 0, String::new());
+                (pause, failures, reported) = (WAITS[0], 0, String::new());
             }
             if let Err(error) = ended {
                 // A disconnected publisher is not an error, but one that stays unreachable is reported once.
                 failures += 1;
                 let text = error.to_string();
                 let serious = error.kind() != ErrorKind::Network || failures >= PATIENCE;
-                if serious && text != told && !cancel.is_cancelled() {
+                if serious && text != reported && !cancel.is_cancelled() {
                     graph.problem(error.context(format!("receiving {} from {}", subscribed.topic, self.uri)));
-                    told = text;
+                    reported = text;
                 }
             }
             if self.orphaned.load(Ordering::Relaxed) || cancel.wait(pause) {

@@ -53,8 +53,8 @@ pub(crate) fn response_from_xml(body: &[u8]) -> Result<Result<ParameterValue, Fa
             let param = child(child(root, "params")?, "param")?;
             return value(child(param, "value")?, 0).map(Ok);
         };
-        let told = value(child(fault, "value")?, 0)?;
-        let member = |name| told.as_struct().and_then(|members| members.get(name));
+        let fault_value = value(child(fault, "value")?, 0)?;
+        let member = |name| fault_value.as_struct().and_then(|members| members.get(name));
         let code = member("faultCode").and_then(ParameterValue::as_int).unwrap_or(-1);
         let text = member("faultString").and_then(ParameterValue::as_str).unwrap_or("no reason given");
         Ok(Err(Fault { code, text: text.to_owned() }))
