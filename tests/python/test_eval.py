@@ -178,7 +178,7 @@ def test_wrong_use_is_told(opendr, coco128, tmp_path):
         (("eval", "centernet", coco128, "--format", "nonsense"), 13, "choose one of coco"),
         (("eval", "centernet", coco128, "--metric", "transcription"), 11, "compares with"),
         (("eval", "centernet", coco128, "--metric-param", "use_classes"), 12, "NAME=VALUE"),
-        (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "there are max_detections"),
+        (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "it has max_detections"),
         (("score", tmp_path / "none.json", coco128, "--metric", "coco_detection"), 13, "none.json"),
         (("score", coco128, coco128), 12, "name a metric with --metric"),
     ]:
