@@ -62,7 +62,10 @@ fn errors_name_the_place() {
     assert_eq!(message(b"{\"a\" []}"), "line 1, byte 5: expected \":\" after a key, found '['");
     assert_eq!(message(b"{\"a\": []} x"), "line 1, byte 10: expected the end of the file, found 'x'");
     let truncated = message(b"{\"a\": [{\"b\": [1, 2], \"c");
-    assert_eq!(truncated, "line 1, byte 7: the file ends inside the value that begins here; get it again");
+    assert_eq!(
+        truncated,
+        "line 1, byte 7: the file ends inside the value that begins here; copy or download it again"
+    );
     assert!(message(b"{\"a\": [1,").contains("the file ends where a value is expected"), "{truncated}");
     assert!(message(b"\xff\xfe{\0").contains("UTF-16"));
     assert!(message(b"").contains("the file ends where an object is expected"));
