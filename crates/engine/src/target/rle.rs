@@ -41,7 +41,7 @@ impl Rle {
             (u64::from(height) * u64::from(width), counts.iter().copied().map(u64::from).sum::<u64>());
         if filled != area {
             return Err(Error::invalid_input(format!(
-                "the runs of a {height}x{width} mask cover {filled} pixels instead of {area}; give the size of the mask"
+                "the runs of a {height}x{width} mask fill {filled} pixels instead of {area}; give the size of the mask"
             )));
         }
         Ok(Self { height, width, counts })
