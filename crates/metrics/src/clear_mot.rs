@@ -11,6 +11,7 @@ use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 
+use crate::sequences::{SequenceState, Sequences};
 use crate::{Metric, MotRules, Report, TrackingFrame};
 
 /// What [`ClearMot`] and [`Identity`](crate::Identity) are set by.
@@ -200,8 +201,11 @@ impl Sequence {
         }
         object.is_lost = !is_matched;
     }
+}
 
-    /// The counts, as if the sequence were over.
+impl SequenceState for Sequence {
+    type Counts = ClearMotCounts;
+
     fn counts(&self) -> ClearMotCounts {
         let mut counts = self.counts.clone();
         counts.unique_objects = self.objects.len() as u64;
@@ -216,20 +220,23 @@ impl Sequence {
         }
         counts
     }
+
+    fn add(sum: &mut ClearMotCounts, other: &ClearMotCounts) {
+        sum.add(other.clone());
+    }
 }
 
 /// CLEAR MOT over sequences of pictures.
 #[derive(Debug, Clone)]
 pub struct ClearMot {
     params: TrackMatchingParams,
-    finished: ClearMotCounts,
-    sequence: Sequence,
+    sequences: Sequences<Sequence>,
 }
 
 impl ClearMot {
     /// Counts the next picture of the sequence; the share of its boxes that match, 0 to 1.
     pub fn count(&mut self, frame: &TrackingFrame) -> f64 {
-        let matches = self.sequence.count(frame, &self.params).len();
+        let matches = self.sequences.open.count(frame, &self.params).len();
         match frame.truth().len() + frame.found().len() - matches {
             0 => 1.0,
             boxes => matches as f64 / boxes as f64,
@@ -238,9 +245,7 @@ impl ClearMot {
 
     /// What was counted, the open sequence included.
     pub fn counts(&self) -> ClearMotCounts {
-        let mut counts = self.finished.clone();
-        counts.add(self.sequence.counts());
-        counts
+        self.sequences.counts()
     }
 }
 
@@ -284,8 +289,7 @@ impl Metric for ClearMot {
     type Truth = TrackingAnnotationList;
 
     fn new(params: &TrackMatchingParams) -> Result<Self> {
-        let params = params.clone();
-        Ok(Self { params, finished: ClearMotCounts::default(), sequence: Sequence::default() })
+        Ok(Self { params: params.clone(), sequences: Sequences::default() })
     }
 
     fn update(
@@ -298,13 +302,11 @@ impl Metric for ClearMot {
     }
 
     fn end_sequence(&mut self) {
-        self.finished = self.counts();
-        self.sequence = Sequence::default();
+        self.sequences.end();
     }
 
     fn merge(&mut self, other: Self) {
-        self.end_sequence();
-        self.finished.add(other.counts());
+        self.sequences.merge(&other.sequences);
     }
 
     fn finish(&self) -> Report {

@@ -7,10 +7,10 @@ use std::array::from_fn;
 use std::collections::{BTreeMap, HashMap};
 
 use opendr_engine::Result;
-use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 
+use crate::sequences::{Indices, SequenceState, Sequences, heaviest_pairs};
 use crate::{Curves, Figure, Line, Metric, MotRules, Report, TrackingFrame};
 
 /// How many localisation thresholds there are: 0.05 to 0.95.
@@ -125,34 +125,35 @@ impl HotaCounts {
     }
 }
 
-/// Identities by the order in which they first occur, with the number of their pictures.
+/// Indices of identities, with the number of frames of each.
 #[derive(Debug, Clone, Default)]
 struct Identities {
-    places: HashMap<i64, usize>,
+    indices: Indices,
     frames: Vec<u64>,
 }
 
 impl Identities {
-    fn see(&mut self, identities: &[i64]) -> Vec<usize> {
-        let mut places = Vec::with_capacity(identities.len());
+    /// Counts a frame of each identity and returns their indices.
+    fn count(&mut self, identities: &[i64]) -> Vec<usize> {
+        let mut indices = Vec::with_capacity(identities.len());
         for id in identities {
-            let place = *self.places.entry(*id).or_insert(self.frames.len());
-            if place == self.frames.len() {
+            let index = self.indices.index(*id);
+            if index == self.frames.len() {
                 self.frames.push(0);
             }
-            self.frames[place] += 1;
-            places.push(place);
+            self.frames[index] += 1;
+            indices.push(index);
         }
-        places
+        indices
     }
 }
 
-/// One picture; only pairs that overlap are kept, as the second pass comes when the sequence is over.
+/// One frame with its overlapping pairs, kept for the second pass at the end of the sequence.
 #[derive(Debug, Clone)]
 struct Frame {
     objects: Vec<usize>,
     tracks: Vec<usize>,
-    /// Places in `objects` and `tracks`, and the overlap.
+    /// Indices into `objects` and `tracks`, and the overlap.
     overlaps: Vec<(u32, u32, f64)>,
 }
 
@@ -161,13 +162,13 @@ struct Sequence {
     objects: Identities,
     tracks: Identities,
     frames: Vec<Frame>,
-    /// How often an object and a track could match, every picture weighed by how sure the match is.
+    /// Number of frames in which an object and a track could match, each weighted by the certainty of the match.
     potential: HashMap<(usize, usize), f64>,
 }
 
 impl Sequence {
-    fn see(&mut self, frame: &TrackingFrame) {
-        let (objects, tracks) = (self.objects.see(frame.truth()), self.tracks.see(frame.found()));
+    fn add_frame(&mut self, frame: &TrackingFrame) {
+        let (objects, tracks) = (self.objects.count(frame.truth()), self.tracks.count(frame.found()));
         let mut overlaps = Vec::new();
         let mut sums = (vec![0.0; objects.len()], vec![0.0; tracks.len()]);
         for (row, overlaps_of_row) in frame.overlaps().chunks_exact(tracks.len().max(1)).enumerate() {
@@ -189,13 +190,48 @@ impl Sequence {
         self.frames.push(Frame { objects, tracks, overlaps });
     }
 
-    /// How well an object and a track fit each other over the sequence.
+    /// Returns how well an object and a track agree over the sequence, 0 to 1.
     fn alignment(&self, object: usize, track: usize) -> f64 {
         let potential = self.potential.get(&(object, track)).copied().unwrap_or_default();
         potential / ((self.objects.frames[object] + self.tracks.frames[track]) as f64 - potential)
     }
 
-    /// The counts, as if the sequence were over.
+    /// Matches the boxes of one frame and returns the number of matches at each threshold.
+    fn count_frame(
+        &self,
+        frame: &Frame,
+        counts: &mut HotaCounts,
+        matches: &mut BTreeMap<(usize, usize), PerAlpha<u64>>,
+    ) -> PerAlpha<u64> {
+        let (rows, columns) = (frame.objects.len(), frame.tracks.len());
+        let mut overlaps = vec![0.0; rows * columns];
+        let weights = frame.overlaps.iter().map(|&(row, column, overlap)| {
+            let (row, column) = (row as usize, column as usize);
+            overlaps[row * columns + column] = overlap;
+            (row, column, self.alignment(frame.objects[row], frame.tracks[column]) * overlap)
+        });
+        let pairs = heaviest_pairs(rows, columns, weights);
+        let mut hits = [0; ALPHAS];
+        for (row, column, _) in pairs {
+            let overlap = overlaps[row * columns + column];
+            let reached = (0..ALPHAS).take_while(|at| overlap >= alpha(*at) - f64::EPSILON).count();
+            if reached > 0 {
+                let matches =
+                    matches.entry((frame.objects[row], frame.tracks[column])).or_insert([0; ALPHAS]);
+                for at in 0..reached {
+                    hits[at] += 1;
+                    matches[at] += 1;
+                    counts.overlap[at] += overlap;
+                }
+            }
+        }
+        hits
+    }
+}
+
+impl SequenceState for Sequence {
+    type Counts = HotaCounts;
+
     fn counts(&self) -> HotaCounts {
         let mut counts = HotaCounts::default();
         let mut matches: BTreeMap<(usize, usize), PerAlpha<u64>> = BTreeMap::new();
@@ -219,59 +255,27 @@ impl Sequence {
         counts
     }
 
-    /// Matches the boxes of one picture; how many match at each threshold.
-    fn count_frame(
-        &self,
-        frame: &Frame,
-        counts: &mut HotaCounts,
-        matches: &mut BTreeMap<(usize, usize), PerAlpha<u64>>,
-    ) -> PerAlpha<u64> {
-        let columns = frame.tracks.len();
-        let mut overlaps = vec![0.0; frame.objects.len() * columns];
-        let mut costs = overlaps.clone();
-        for &(row, column, overlap) in &frame.overlaps {
-            let (row, column) = (row as usize, column as usize);
-            overlaps[row * columns + column] = overlap;
-            costs[row * columns + column] =
-                -(self.alignment(frame.objects[row], frame.tracks[column]) * overlap);
-        }
-        let mut hits = [0; ALPHAS];
-        for (row, column) in cheapest_pairs(&costs, columns) {
-            let overlap = overlaps[row * columns + column];
-            let reached = (0..ALPHAS).take_while(|at| overlap >= alpha(*at) - f64::EPSILON).count();
-            if reached > 0 {
-                let matches =
-                    matches.entry((frame.objects[row], frame.tracks[column])).or_insert([0; ALPHAS]);
-                for at in 0..reached {
-                    hits[at] += 1;
-                    matches[at] += 1;
-                    counts.overlap[at] += overlap;
-                }
-            }
-        }
-        hits
+    fn add(sum: &mut HotaCounts, other: &HotaCounts) {
+        sum.add(other);
     }
 }
 
-/// HOTA over sequences of pictures. Keeps the overlapping pairs of a sequence until it ends.
+/// HOTA over video sequences. The overlapping pairs of a sequence are kept until it ends.
 #[derive(Debug, Clone)]
 pub struct Hota {
     params: HotaParams,
-    finished: HotaCounts,
-    sequence: Sequence,
+    sequences: Sequences<Sequence>,
 }
 
 impl Hota {
-    /// Counts the next picture of the sequence.
+    /// Counts the next frame of the sequence.
     pub fn count(&mut self, frame: &TrackingFrame) {
-        self.sequence.see(frame);
+        self.sequences.open.add_frame(frame);
     }
 
-    /// What was counted, the open sequence included.
+    /// Returns the counts, including those of the open sequence.
     pub fn counts(&self) -> HotaCounts {
-        let mut counts = self.finished.clone();
-        counts.add(&self.sequence.counts());
-        counts
+        self.sequences.counts()
     }
 }
 
@@ -294,8 +298,7 @@ impl Metric for Hota {
     type Truth = TrackingAnnotationList;
 
     fn new(params: &HotaParams) -> Result<Self> {
-        let params = params.clone();
-        Ok(Self { params, finished: HotaCounts::default(), sequence: Sequence::default() })
+        Ok(Self { params: params.clone(), sequences: Sequences::default() })
     }
 
     fn update(
@@ -310,13 +313,11 @@ impl Metric for Hota {
     }
 
     fn end_sequence(&mut self) {
-        self.finished = self.counts();
-        self.sequence = Sequence::default();
+        self.sequences.end();
     }
 
     fn merge(&mut self, other: Self) {
-        self.end_sequence();
-        self.finished.add(&other.counts());
+        self.sequences.merge(&other.sequences);
     }
 
     fn finish(&self) -> Report {

@@ -6,10 +6,10 @@
 use std::collections::{BTreeMap, HashMap};
 
 use opendr_engine::Result;
-use opendr_engine::assignment::cheapest_pairs;
 use opendr_engine::target::TrackingAnnotationList;
 
 use crate::clear_mot::TrackMatchingParams;
+use crate::sequences::{Indices, SequenceState, Sequences, heaviest_pairs};
 use crate::{Metric, Report, TrackingFrame};
 
 /// Boxes counted over whole sequences, every true object given the one track that fits best overall.
@@ -40,7 +40,7 @@ impl IdentityCounts {
         hits as f64 / (hits + self.false_positives + self.false_negatives) as f64
     }
 
-    fn add(&mut self, other: Self) {
+    fn add(&mut self, other: &Self) {
         self.true_positives += other.true_positives;
         self.false_positives += other.false_positives;
         self.false_negatives += other.false_negatives;
@@ -51,28 +51,23 @@ impl IdentityCounts {
 struct Sequence {
     objects: u64,
     predictions: u64,
-    /// In how many pictures an object and a track match.
+    /// Number of frames in which an object and a track match.
     matches: BTreeMap<(i64, i64), u64>,
 }
 
-impl Sequence {
-    /// The counts, as if the sequence were over.
+impl SequenceState for Sequence {
+    type Counts = IdentityCounts;
+
     fn counts(&self) -> IdentityCounts {
         let mut hits = 0;
         for group in groups(&self.matches) {
-            let (mut rows, mut columns) = (HashMap::new(), HashMap::new());
-            for ((object, track), _) in &group {
-                let (next_row, next_column) = (rows.len(), columns.len());
-                rows.entry(*object).or_insert(next_row);
-                columns.entry(*track).or_insert(next_column);
-            }
-            let mut costs = vec![0.0; rows.len() * columns.len()];
-            for ((object, track), count) in &group {
-                costs[rows[object] * columns.len() + columns[track]] = -(*count as f64);
-            }
-            let pairs = cheapest_pairs(&costs, columns.len());
-            hits +=
-                pairs.iter().map(|(row, column)| -costs[row * columns.len() + column] as u64).sum::<u64>();
+            let (mut rows, mut columns) = (Indices::default(), Indices::default());
+            let entry = |((object, track), count): ((i64, i64), u64)| {
+                (rows.index(object), columns.index(track), count as f64)
+            };
+            let counts: Vec<_> = group.into_iter().map(entry).collect();
+            let pairs = heaviest_pairs(rows.len(), columns.len(), counts);
+            hits += pairs.into_iter().map(|(_, _, count)| count as u64).sum::<u64>();
         }
         IdentityCounts {
             true_positives: hits,
@@ -80,9 +75,13 @@ impl Sequence {
             false_negatives: self.objects - hits,
         }
     }
+
+    fn add(sum: &mut IdentityCounts, other: &IdentityCounts) {
+        sum.add(other);
+    }
 }
 
-/// Matches in groups that share neither object nor track: each is an assignment of its own, and small.
+/// Divides matches into groups that share neither object nor track. Each group is a small assignment of its own.
 fn groups(matches: &BTreeMap<(i64, i64), u64>) -> Vec<Vec<((i64, i64), u64)>> {
     let mut of_object: BTreeMap<i64, Vec<(i64, u64)>> = BTreeMap::new();
     let mut of_track: HashMap<i64, Vec<i64>> = HashMap::new();
@@ -106,32 +105,30 @@ fn groups(matches: &BTreeMap<(i64, i64), u64>) -> Vec<Vec<((i64, i64), u64)>> {
     groups
 }
 
-/// IDF1, IDP and IDR over sequences of pictures.
+/// IDF1, IDP and IDR over video sequences.
 #[derive(Debug, Clone)]
 pub struct Identity {
     params: TrackMatchingParams,
-    finished: IdentityCounts,
-    sequence: Sequence,
+    sequences: Sequences<Sequence>,
 }
 
 impl Identity {
-    /// Counts the next picture of the sequence.
+    /// Counts the next frame of the sequence.
     pub fn count(&mut self, frame: &TrackingFrame) {
-        self.sequence.objects += frame.truth().len() as u64;
-        self.sequence.predictions += frame.found().len() as u64;
+        let sequence = &mut self.sequences.open;
+        sequence.objects += frame.truth().len() as u64;
+        sequence.predictions += frame.found().len() as u64;
         let pairs = frame.truth().iter().flat_map(|id| frame.found().iter().map(move |track| (*id, *track)));
         for (pair, overlap) in pairs.zip(frame.overlaps()) {
             if self.params.distance(*overlap).is_finite() {
-                *self.sequence.matches.entry(pair).or_default() += 1;
+                *sequence.matches.entry(pair).or_default() += 1;
             }
         }
     }
 
-    /// What was counted, the open sequence included.
+    /// Returns the counts, including those of the open sequence.
     pub fn counts(&self) -> IdentityCounts {
-        let mut counts = self.finished;
-        counts.add(self.sequence.counts());
-        counts
+        self.sequences.counts()
     }
 }
 
@@ -151,8 +148,7 @@ impl Metric for Identity {
     type Truth = TrackingAnnotationList;
 
     fn new(params: &TrackMatchingParams) -> Result<Self> {
-        let params = params.clone();
-        Ok(Self { params, finished: IdentityCounts::default(), sequence: Sequence::default() })
+        Ok(Self { params: params.clone(), sequences: Sequences::default() })
     }
 
     fn update(
@@ -167,13 +163,11 @@ impl Metric for Identity {
     }
 
     fn end_sequence(&mut self) {
-        self.finished = self.counts();
-        self.sequence = Sequence::default();
+        self.sequences.end();
     }
 
     fn merge(&mut self, other: Self) {
-        self.end_sequence();
-        self.finished.add(other.counts());
+        self.sequences.merge(&other.sequences);
     }
 
     fn finish(&self) -> Report {

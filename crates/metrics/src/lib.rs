@@ -29,6 +29,7 @@ mod reidentification;
 mod report;
 mod roc;
 mod segmentation;
+mod sequences;
 mod success;
 mod tracking_3d;
 mod tracking_frame;
