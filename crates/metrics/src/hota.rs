@@ -1,4 +1,4 @@
-//! HOTA: detection and association weighed evenly.
+//! HOTA: detection and association with equal weight.
 //!
 //! J. Luiten et al., "HOTA: a higher order metric for evaluating multi-object tracking", International Journal of
 //! Computer Vision 129, 2021. Equal to TrackEval 1.3.
@@ -13,7 +13,7 @@ use opendr_engine::target::TrackingAnnotationList;
 use crate::sequences::{Indices, SequenceState, Sequences, heaviest_pairs};
 use crate::{Curves, Figure, Line, Metric, MotRules, Report, TrackingFrame};
 
-/// How many localisation thresholds there are: 0.05 to 0.95.
+/// Number of localisation thresholds: 0.05 to 0.95.
 const ALPHAS: usize = 19;
 
 /// One number per threshold.
@@ -23,53 +23,53 @@ fn alpha(at: usize) -> f64 {
     0.05 + at as f64 * 0.05
 }
 
-/// What [`Hota`] is set by.
+/// Parameters of [`Hota`].
 #[derive(Debug, Clone, Params)]
 pub struct HotaParams {
-    /// Which rows of truth and answer count: "all", or those that a MOT Challenge counts.
+    /// Rows of ground truth and predictions that count: "all", or those of a MOT Challenge.
     #[param(default = MotRules::All)]
     pub rules: MotRules,
 }
 
-/// What was counted over whole sequences at each localisation threshold 0.05, 0.1 to 0.95.
+/// Counts over whole sequences at each localisation threshold 0.05, 0.1 to 0.95.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct HotaCounts {
-    /// Boxes matched.
+    /// Matched boxes.
     pub true_positives: PerAlpha<u64>,
-    /// True boxes not matched.
+    /// Unmatched ground-truth boxes.
     pub false_negatives: PerAlpha<u64>,
-    /// Found boxes not matched.
+    /// Unmatched predicted boxes.
     pub false_positives: PerAlpha<u64>,
-    /// Sum of overlaps of matched boxes.
+    /// Sum of the overlaps of matched boxes.
     pub overlap: PerAlpha<f64>,
-    /// Sum over matched boxes of how well object and track coincide: intersection over union of their pictures.
+    /// Sum over matched boxes of the association of object and track: intersection over union of their frames.
     pub association: PerAlpha<f64>,
-    /// The same as a share of the object's pictures.
+    /// Sum over matched boxes of the fraction of the object's frames with the track.
     pub association_recall: PerAlpha<f64>,
-    /// The same as a share of the track's pictures.
+    /// Sum over matched boxes of the fraction of the track's frames with the object.
     pub association_precision: PerAlpha<f64>,
 }
 
-/// The scores at each localisation threshold 0.05, 0.1 to 0.95.
+/// Scores at each localisation threshold 0.05, 0.1 to 0.95.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HotaScores {
-    /// Geometric mean of detection and association.
+    /// HOTA: geometric mean of detection and association.
     pub hota: PerAlpha<f64>,
-    /// Detection.
+    /// Detection accuracy.
     pub deta: PerAlpha<f64>,
-    /// Association.
+    /// Association accuracy.
     pub assa: PerAlpha<f64>,
-    /// Mean overlap of matched boxes; 1 without any.
+    /// Localisation accuracy: mean overlap of matched boxes; 1 without matches.
     pub loca: PerAlpha<f64>,
-    /// Share of true boxes found.
+    /// Detection recall.
     pub detre: PerAlpha<f64>,
-    /// Share of found boxes that are true.
+    /// Detection precision.
     pub detpr: PerAlpha<f64>,
-    /// Share of an object's pictures that its track covers.
+    /// Association recall: fraction of an object's frames that its track covers.
     pub assre: PerAlpha<f64>,
-    /// Share of a track's pictures that its object covers.
+    /// Association precision: fraction of a track's frames that its object covers.
     pub asspr: PerAlpha<f64>,
-    /// Geometric mean of `detre` and `assa`: for open worlds, where not every object is labelled.
+    /// Geometric mean of `detre` and `assa`, for data where not every object is labelled.
     pub owta: PerAlpha<f64>,
 }
 
@@ -90,7 +90,7 @@ impl HotaScores {
 }
 
 impl HotaCounts {
-    /// The scores.
+    /// Computes the scores.
     pub fn scores(&self) -> HotaScores {
         let hits = self.true_positives.map(|hits| hits as f64);
         let share =
@@ -286,12 +286,15 @@ impl Metric for Hota {
         ("hota", "Geometric mean of detection and association, mean over thresholds .05 to .95."),
         ("deta", "Detection accuracy."),
         ("assa", "Association accuracy."),
-        ("loca", "Accuracy of places: mean IoU of matches."),
-        ("detre", "Recall of detection."),
-        ("detpr", "Precision of detection."),
-        ("assre", "Recall of association."),
-        ("asspr", "Precision of association."),
-        ("owta", "Geometric mean of recall of detection and association: false positives do not count."),
+        ("loca", "Localisation accuracy: mean IoU of matches."),
+        ("detre", "Detection recall."),
+        ("detpr", "Detection precision."),
+        ("assre", "Association recall."),
+        ("asspr", "Association precision."),
+        (
+            "owta",
+            "Geometric mean of detection recall and association accuracy; false positives do not count.",
+        ),
     ];
     type Params = HotaParams;
     type Prediction = TrackingAnnotationList;

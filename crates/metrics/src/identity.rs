@@ -1,4 +1,4 @@
-//! IDF1, IDP and IDR: how long tracks carry the right identity.
+//! IDF1, IDP and IDR: how long tracks have the correct identity.
 //!
 //! E. Ristani et al., "Performance measures and a data set for multi-target, multi-camera tracking", ECCV workshops
 //! 2016. Equal to py-motmetrics 1.4.
@@ -12,29 +12,29 @@ use crate::clear_mot::TrackMatchingParams;
 use crate::sequences::{Indices, SequenceState, Sequences, heaviest_pairs};
 use crate::{Metric, Report, TrackingFrame};
 
-/// Boxes counted over whole sequences, every true object given the one track that fits best overall.
+/// Counts of boxes over whole sequences. Every ground-truth object has at most one track, by the best overall assignment.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct IdentityCounts {
-    /// True boxes matched by the object's track.
+    /// Ground-truth boxes matched by the track of the object.
     pub true_positives: u64,
-    /// Found boxes that do not match the track's object.
+    /// Predicted boxes not matched with the object of the track.
     pub false_positives: u64,
-    /// True boxes not matched by the object's track.
+    /// Ground-truth boxes not matched by the track of the object.
     pub false_negatives: u64,
 }
 
 impl IdentityCounts {
-    /// Share of found boxes with the right identity; NaN without any.
+    /// Returns the fraction of predicted boxes with the correct identity; NaN without any.
     pub fn precision(&self) -> f64 {
         self.true_positives as f64 / (self.true_positives + self.false_positives) as f64
     }
 
-    /// Share of true boxes with the right identity; NaN without any.
+    /// Returns the fraction of ground-truth boxes with the correct identity; NaN without any.
     pub fn recall(&self) -> f64 {
         self.true_positives as f64 / (self.true_positives + self.false_negatives) as f64
     }
 
-    /// Harmonic mean of the two; NaN without boxes.
+    /// Returns the harmonic mean of precision and recall; NaN without boxes.
     pub fn f1(&self) -> f64 {
         let hits = 2 * self.true_positives;
         hits as f64 / (hits + self.false_positives + self.false_negatives) as f64
@@ -136,12 +136,12 @@ impl Metric for Identity {
     const NAME: &'static str = "identity";
     const ABOUT: &'static str = "IDF1, IDP and IDR, as py-motmetrics 1.4";
     const NUMBERS: &'static [(&'static str, &'static str)] = &[
-        ("idf1", "F1 of the best one-to-one match of whole tracks."),
-        ("idp", "Its precision."),
-        ("idr", "Its recall."),
-        ("idtp", "Boxes that are right by that match."),
-        ("idfp", "Predicted boxes that are not."),
-        ("idfn", "Boxes of objects that are not."),
+        ("idf1", "F1 of the best one-to-one assignment of whole tracks."),
+        ("idp", "Precision of that assignment."),
+        ("idr", "Recall of that assignment."),
+        ("idtp", "True positives of that assignment."),
+        ("idfp", "False positives of that assignment."),
+        ("idfn", "False negatives of that assignment."),
     ];
     type Params = TrackMatchingParams;
     type Prediction = TrackingAnnotationList;
@@ -201,7 +201,7 @@ mod tests {
         TrackingFrame::new(truth, found, overlaps).unwrap()
     }
 
-    /// Object 1 is followed by tracks 7, 7, 8; object 2 by 8, 8, 7: the best is 1-7 and 2-8 with 2 + 2 of 6 boxes.
+    /// Object 1 is matched by tracks 7, 7, 8; object 2 by 8, 8, 7: the best is 1-7 and 2-8 with 2 + 2 of 6 boxes.
     #[test]
     fn one_track_per_object() {
         let mut metric = new();
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_counted_has_no_score() {
+    fn scores_are_undefined_without_boxes() {
         let report = new().finish();
         assert_eq!((report.statistics.get("idf1"), report.statistics.get("idtp")), (None, Some(0.0)));
     }

@@ -1,4 +1,4 @@
-//! COCO's average precision of key points.
+//! COCO's average precision of keypoints.
 
 use opendr_engine::Result;
 use opendr_engine::params::Params;
@@ -13,19 +13,19 @@ use super::picture::quality_of_nothing;
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
-/// What a user may set.
+/// Parameters of [`CocoKeypoints`].
 #[derive(Debug, Clone, Params)]
 pub struct CocoKeypointsParams {
-    /// At most this many persons a picture are counted, the surest.
+    /// Maximum number of persons per image; those with the highest scores count.
     #[param(default = 20, range = 1..=100_000)]
     pub max_detections: u32,
 }
 
-/// Average precision and recall of persons by their key points: pycocotools' `COCOeval(.., "keypoints")`.
+/// Average precision and recall of persons by their keypoints: pycocotools' `COCOeval(.., "keypoints")`.
 ///
-/// Poses of any skeleton are compared by the names of COCO's 17 joints. A joint that a truth lacks was not annotated;
-/// one that an answer lacks is at (0, 0), as in COCO's result files. Box, area and crowd of a truth are those of its
-/// [`Pose::region`], else those of the box around its joints.
+/// Poses of any skeleton are compared by the names of COCO's 17 joints. A joint that is missing in the ground truth was
+/// not annotated; one that is missing in a prediction is at (0, 0), as in COCO's result files. Box, area and crowd flag
+/// of the ground truth are those of [`Pose::region`], otherwise those of the box around its joints.
 #[derive(Debug, Clone)]
 pub struct CocoKeypoints {
     accumulator: Accumulator<()>,
@@ -33,7 +33,7 @@ pub struct CocoKeypoints {
 
 impl Metric for CocoKeypoints {
     const NAME: &'static str = "coco_keypoints";
-    const ABOUT: &'static str = "average precision and recall of persons by their key points, as pycocotools";
+    const ABOUT: &'static str = "average precision and recall of persons by their keypoints, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
     const RANKS: bool = true;
     type Params = CocoKeypointsParams;
@@ -45,8 +45,8 @@ impl Metric for CocoKeypoints {
     }
 
     fn update(&mut self, at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
-        let answered = prediction.poses.iter().map(answer).collect::<Result<Vec<_>>>()?;
-        let (detections, detected): (Vec<Detection>, Vec<_>) = answered.into_iter().unzip();
+        let predicted = prediction.poses.iter().map(detection).collect::<Result<Vec<_>>>()?;
+        let (detections, detected): (Vec<Detection>, Vec<_>) = predicted.into_iter().unzip();
         let annotated = truth.poses.iter().map(person).collect::<Result<Vec<_>>>()?;
         let (truths, persons): (Vec<Truth>, Vec<Person>) = annotated.into_iter().unzip();
         let similarity =
@@ -64,7 +64,7 @@ impl Metric for CocoKeypoints {
     }
 }
 
-/// Where COCO's joints are; (0, 0) where they are not.
+/// Returns the positions of COCO's joints, (0, 0) for missing ones, and whether each was detected.
 fn joints(pose: &Pose) -> ([[f64; 2]; JOINTS], [bool; JOINTS]) {
     let (mut places, mut found) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
     for (at, name) in Skeleton::Coco17.joints().iter().enumerate().take(JOINTS) {
@@ -76,12 +76,12 @@ fn joints(pose: &Pose) -> ([[f64; 2]; JOINTS], [bool; JOINTS]) {
     (places, found)
 }
 
-fn answer(pose: &Pose) -> Result<(Detection, [[f64; 2]; JOINTS])> {
+fn detection(pose: &Pose) -> Result<(Detection, [[f64; 2]; JOINTS])> {
     let (places, _) = joints(pose);
     Ok((Detection { score: checked_score(pose.confidence)?, area: area_around(&places) }, places))
 }
 
-/// Of the box around all joints, those at (0, 0) too.
+/// Returns the area of the box around all joints, including those at (0, 0).
 pub(super) fn area_around(joints: &[[f64; 2]; JOINTS]) -> f64 {
     let extent = |axis: usize| {
         let along = joints.iter().map(|joint| joint[axis]);
@@ -120,15 +120,17 @@ mod tests {
     }
 
     #[test]
-    fn joints_of_other_skeletons_are_found_by_name() {
+    fn joints_of_other_skeletons_match_by_name() {
         let mut metric = CocoKeypoints::new(&CocoKeypointsParams::default()).unwrap();
-        let [answer, truth] =
+        let [prediction, truth] =
             [Skeleton::Opendr18, Skeleton::Coco17].map(|skeleton| vec![pose(skeleton)].into());
-        assert!((metric.update(0, &answer, &truth).unwrap() - 1.0).abs() < 1e-9);
-        // A person without annotated joints counts neither way.
-        let mut nobody = pose(Skeleton::Coco17);
-        nobody.keypoints.iter_mut().for_each(|keypoint| *keypoint = Keypoint::MISSING);
-        assert!((metric.update(1, &Vec::new().into(), &vec![nobody].into()).unwrap() - 1.0).abs() < 1e-9);
+        assert!((metric.update(0, &prediction, &truth).unwrap() - 1.0).abs() < 1e-9);
+        // A person without annotated joints is ignored.
+        let mut unannotated = pose(Skeleton::Coco17);
+        unannotated.keypoints.iter_mut().for_each(|keypoint| *keypoint = Keypoint::MISSING);
+        assert!(
+            (metric.update(1, &Vec::new().into(), &vec![unannotated].into()).unwrap() - 1.0).abs() < 1e-9
+        );
         assert!((metric.finish().statistics.get("mar").unwrap() - 1.0).abs() < 1e-9);
     }
 }

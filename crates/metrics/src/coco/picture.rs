@@ -1,4 +1,4 @@
-//! The boxes of one picture, class by class.
+//! Accumulation of lists of boxes, by class.
 
 use opendr_engine::Result;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
@@ -7,17 +7,18 @@ use super::accumulator::Accumulator;
 use super::matching::{Detection, Truth};
 use crate::class_key::ClassKey;
 
-/// An accumulator over lists of boxes, with or without masks.
+/// An accumulator of lists of boxes, with or without masks.
 #[derive(Debug, Clone)]
 pub(super) struct Pictures {
     pub accumulator: Accumulator<ClassKey>,
-    /// Labels of the data set.
+    /// Class names of the data set.
     pub classes: Classes,
     pub use_classes: bool,
 }
 
 impl Pictures {
-    /// Counts a picture; `shapes` are what `overlap(detection, truth)` compares. Tells how good the detections are.
+    /// Adds an image and returns the quality of its detections, 0 to 1. `overlap(detection, truth, crowd)` compares elements
+    /// of `detected` and `annotated`.
     pub(super) fn add<S>(
         &mut self,
         at: u32,
@@ -77,13 +78,13 @@ impl Pictures {
     }
 }
 
-/// How good detections are where there is nothing to find.
+/// Returns the quality of detections in an image without objects.
 pub(super) fn quality_of_nothing(detections: &[Detection]) -> f64 {
-    let surest = detections.iter().map(|detection| detection.score).fold(0.0, f64::max);
-    1.0 - surest.min(1.0)
+    let highest = detections.iter().map(|detection| detection.score).fold(0.0, f64::max);
+    1.0 - highest.min(1.0)
 }
 
-/// Numbers of the boxes by class, in their order within a class.
+/// Returns class and index of the boxes, sorted by class.
 fn sorted(keys: Vec<ClassKey>) -> Vec<(ClassKey, usize)> {
     let mut keys: Vec<_> = keys.into_iter().enumerate().map(|(at, key)| (key, at)).collect();
     keys.sort();

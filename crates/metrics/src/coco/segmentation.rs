@@ -14,8 +14,8 @@ use crate::{Metric, Report};
 
 /// Average precision and recall of masks: pycocotools' `COCOeval(.., "segm")`.
 ///
-/// Every box needs an outline or a mask. Where all are outlines, nothing tells the size of the picture, and they are
-/// filled on a canvas that holds them all; pycocotools cuts them off at the picture's edge.
+/// Every box needs a mask. If all masks are polygons, the size of the image is unknown and they are filled on a canvas
+/// that holds them all; pycocotools clips them at the image border.
 #[derive(Debug, Clone)]
 pub struct CocoSegmentation {
     pictures: Pictures,
@@ -65,7 +65,7 @@ fn segmentations(list: &BoundingBoxList) -> impl Iterator<Item = &Segmentation> 
     list.boxes.iter().filter_map(|found| found.segment.as_deref()).map(|segment| &segment.segmentation)
 }
 
-/// `[height, width]` of all masks: the picture's, or what holds all outlines.
+/// Returns `[height, width]` of all masks: that of the image, or that of a canvas for all polygons.
 fn canvas(lists: [&BoundingBoxList; 2]) -> Result<[u32; 2]> {
     let mut size: Option<[u32; 2]> = None;
     let mut extent = [1.0f32; 2];
@@ -76,8 +76,8 @@ fn canvas(lists: [&BoundingBoxList; 2]) -> Result<[u32; 2]> {
                 if [height, width] != rle.size() {
                     let [rows, columns] = rle.size();
                     return Err(Error::invalid_input(format!(
-                        "masks of {height}x{width} and {rows}x{columns} pixels in one picture; \
-                         give all masks the picture's size"
+                        "masks of {height}x{width} and {rows}x{columns} pixels in one image; \
+                         give all masks the size of the image"
                     )));
                 }
                 size = Some(rle.size());
@@ -104,7 +104,7 @@ fn masks(list: &BoundingBoxList, [height, width]: [u32; 2], what: &str) -> Resul
     let masks = list.boxes.iter().enumerate().map(|(index, found)| match found.segment.as_deref() {
         Some(segment) => mask(&segment.segmentation),
         None => Err(Error::invalid_input(format!(
-            "{what} {index} has neither outline nor mask; compare boxes with coco_detection"
+            "{what} {index} has no mask; evaluate boxes with coco_detection"
         ))),
     });
     masks.collect()

@@ -2,7 +2,7 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// A picture of one class: objects (box, area, crowd) and detections (box, score).
+/// An image of one class: objects (box, area, crowd) and detections (box, score).
 type Picture = (Vec<([f64; 4], f64, bool)>, Vec<([f64; 4], f64)>);
 
 fn count(accumulator: &mut Accumulator<i64>, class: i64, at: u32, (there, found): &Picture) -> Option<f64> {
@@ -29,7 +29,7 @@ const PLACE: [f64; 4] = [0.0, 0.0, 50.0, 50.0];
 const ELSEWHERE: [f64; 4] = [100.0, 0.0, 50.0, 50.0];
 
 #[test]
-fn half_found_has_half_the_recall() {
+fn half_of_the_objects_detected_gives_half_the_recall() {
     let picture = (vec![(PLACE, 2500.0, false), (ELSEWHERE, 2500.0, false)], vec![(PLACE, 0.9)]);
     let stats = stats(&[picture]);
     // Recalls 0 to .5 have precision 1: 51 of 101; both objects are medium.
@@ -40,7 +40,7 @@ fn half_found_has_half_the_recall() {
 }
 
 #[test]
-fn crowds_swallow_detections() {
+fn detections_in_crowds_are_ignored() {
     let crowd = (
         vec![(PLACE, 2500.0, true), (ELSEWHERE, 2500.0, false)],
         vec![([1.0, 1.0, 5.0, 5.0], 0.99), ([9.0, 9.0, 5.0, 5.0], 0.98), (ELSEWHERE, 0.5)],
@@ -51,18 +51,18 @@ fn crowds_swallow_detections() {
 }
 
 #[test]
-fn of_equal_scores_the_earlier_picture_and_detection_comes_first() {
+fn ties_are_sorted_by_image_and_detection() {
     let right = (vec![(PLACE, 2500.0, false)], vec![(PLACE, 0.5), (ELSEWHERE, 0.5)]);
     let wrong = (vec![(PLACE, 2500.0, false)], vec![(ELSEWHERE, 0.5), (PLACE, 0.5)]);
-    // Right, wrong, wrong, right: precision 1 up to half the recall, 2/4 beyond.
+    // True, false, false, true: precision 1 up to half the recall, 2/4 beyond.
     let first = stats(&[right.clone(), wrong.clone()])[0];
     assert!((first - (51.0 + 50.0 * 0.5) / 101.0).abs() < 1e-12);
-    // Wrong, right, right, wrong: 2/3 all over.
+    // False, true, true, false: 2/3 at every recall.
     assert!((stats(&[wrong, right])[0] - 2.0 / 3.0).abs() < 1e-12);
 }
 
 #[test]
-fn only_the_surest_count() {
+fn only_the_highest_scores_count() {
     let many = (0..150).map(|at| (ELSEWHERE, 0.9 - f64::from(at) * 1e-3));
     let last = many.clone().chain([(PLACE, 0.1)]).collect();
     assert_eq!(stats(&[(vec![(PLACE, 2500.0, false)], last)])[8], 0.0);
@@ -72,7 +72,7 @@ fn only_the_surest_count() {
 }
 
 #[test]
-fn scores_that_are_no_numbers_are_refused_and_not_counted() {
+fn nan_scores_are_rejected_and_not_counted() {
     let mut accumulator = Accumulator::new(Protocol::objects(100));
     let detection = Detection { score: f64::NAN, area: 1.0 };
     assert!(accumulator.add(&1, 0, &[], &[detection], |_, _| Ok(0.0)).is_err());
@@ -92,7 +92,7 @@ fn picture() -> impl Strategy<Value = Picture> {
 
 proptest! {
     #[test]
-    fn how_pictures_are_spread_does_not_matter(
+    fn distribution_over_accumulators_does_not_matter(
         pictures in proptest::collection::vec((0i64..3, picture(), 0usize..3), 0..9),
     ) {
         let mut parts = [(); 3].map(|()| Accumulator::new(Protocol::objects(100)));

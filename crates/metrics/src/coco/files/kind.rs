@@ -1,4 +1,4 @@
-//! What is compared: boxes, masks or persons.
+//! Kinds of evaluation: boxes, masks or persons.
 
 use opendr_engine::target::Rle;
 use opendr_engine::{Error, Result};
@@ -7,30 +7,30 @@ use super::entry::{Entry, Fields, Region, needed};
 use crate::coco::keypoints::area_around;
 use crate::coco::overlap::{JOINTS, Mask, Person, box_overlap, check_box, keypoint_similarity};
 
-/// What is compared, and what is kept for it.
+/// A kind of evaluation.
 pub(super) trait Kind: 'static {
-    /// Fields of records that are read.
+    /// Fields of records to read.
     const FIELDS: Fields;
-    /// An annotated object as it is kept.
+    /// An annotated object as stored.
     type There: Send + Sync;
-    /// An annotated object as it is compared.
+    /// An annotated object as compared.
     type Object;
     /// A detection.
     type Found: Send + Sync;
 
-    /// Reads an object.
+    /// Creates an object from an entry.
     fn there(entry: &mut Entry) -> Result<Self::There>;
 
-    /// Makes an object ready, in a picture of `[height, width]` pixels, and tells its area unless the file states it.
+    /// Prepares an object in an image of `[height, width]` pixels, and returns it with its area, which the file may override.
     fn object(there: &Self::There, size: Option<[u32; 2]>) -> Result<(Self::Object, f64)>;
 
-    /// Reads a detection, and tells its area.
+    /// Creates a detection from an entry, and returns it with its area.
     fn found(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Self::Found, f64)>;
 
-    /// How much they overlap.
+    /// Returns the overlap of a detection with an object.
     fn overlap(found: &Self::Found, object: &Self::Object, crowd: bool) -> Result<f64>;
 
-    /// Whether an object counts neither way though it is no crowd.
+    /// Returns whether an object is ignored although it is not a crowd.
     fn is_ignored(_: &Entry) -> bool {
         false
     }
@@ -86,7 +86,7 @@ impl Kind for Masks {
         Ok((mask, area))
     }
 
-    /// A detection without a mask is its box, as in pycocotools.
+    /// Uses the box of a detection without a mask, as pycocotools does.
     fn found(entry: &mut Entry, size: Option<[u32; 2]>) -> Result<(Mask, f64)> {
         let region = match (entry.region.take(), entry.bounds) {
             (None, Some([left, top, width, height])) => {
@@ -106,9 +106,7 @@ impl Kind for Masks {
 fn mask(region: &Region, size: Option<[u32; 2]>) -> Result<Mask> {
     let rle: Rle = match (region, size) {
         (Region::Polygons(_), None) => {
-            return Err(Error::format(
-                "an outline in a picture without \"height\" and \"width\"; state them",
-            ));
+            return Err(Error::format("a polygon in an image without \"height\" and \"width\"; add them"));
         }
         (_, size) => region.mask(size.unwrap_or_default())?,
     };

@@ -1,4 +1,4 @@
-//! A file of results: a list of detections.
+//! Result files: lists of detections.
 
 use std::io::Read;
 
@@ -12,22 +12,22 @@ use crate::coco::matching::Detection;
 
 /// A detection.
 pub(super) struct Found<S> {
-    /// Place of the picture in the order.
+    /// Index of the image.
     picture: u32,
-    /// Category number.
+    /// Category id.
     pub class: i64,
     pub detection: Detection,
     pub found: S,
 }
 
-/// What a file of results says.
+/// Contents of a result file.
 pub(super) struct Results<K: Kind> {
     found: Vec<Found<K::Found>>,
-    /// Places in `found` by picture.
+    /// Indices into `found` by image.
     order: Vec<u32>,
-    /// First place in `order` of each picture, and the end.
+    /// Start of each image in `order`, and the end.
     starts: Vec<u32>,
-    /// Detections of classes that the annotations do not list.
+    /// Number of detections whose category the annotations do not list.
     pub of_other_classes: u64,
 }
 
@@ -35,12 +35,12 @@ impl<K: Kind> Results<K> {
     /// Reads the file.
     ///
     /// # Errors
-    /// `Io`, or `Format` with line, byte and key.
+    /// Returns `Io`, or `Format` with line, byte and key.
     pub(super) fn read(file: impl Read, truths: &Truths<K>, threads: usize) -> Result<Self> {
         let mut json = JsonStream::new(file);
         let mut batches = Batches::new(&mut json)?;
         let first = batches.next().transpose()?;
-        // As in pycocotools, the first detection tells whether areas are those of boxes.
+        // As in pycocotools, the first detection determines whether areas are those of boxes.
         let boxed = match first.as_ref().and_then(|batch| batch.pieces().next()) {
             Some(piece) => Entry::read(&piece, Default::default())?.bounds.is_some(),
             None => false,
@@ -63,7 +63,7 @@ impl<K: Kind> Results<K> {
             of_other_classes += others;
             match u32::try_from(found.len()) {
                 Ok(_) => Ok(()),
-                Err(_) => Err(Error::unsupported("more than 2^32 detections; split the file up")),
+                Err(_) => Err(Error::unsupported("more than 2^32 detections; split the file")),
             }
         })?;
         json.end()?;
@@ -87,12 +87,12 @@ impl<K: Kind> Results<K> {
         Self { found, order, starts, of_other_classes }
     }
 
-    /// How many detections there are.
+    /// Returns the number of detections.
     pub(super) fn detections(&self) -> usize {
         self.found.len()
     }
 
-    /// The detections in the picture at `place`, in the order of the file.
+    /// Returns the detections in image `place`, in the order of the file.
     pub(super) fn of_picture(&self, place: u32) -> impl Iterator<Item = &Found<K::Found>> {
         let place = place as usize;
         self.order[self.starts[place] as usize..self.starts[place + 1] as usize]
@@ -101,14 +101,14 @@ impl<K: Kind> Results<K> {
     }
 }
 
-/// Reads a detection; `None` when the annotations do not list its class.
+/// Parses a detection; `None` if the annotations do not list its category.
 fn one<K: Kind>(piece: &JsonPiece<'_>, truths: &Truths<K>, boxed: bool) -> Result<Option<Found<K::Found>>> {
     let mut entry = Entry::read(piece, K::FIELDS)?;
     let mut read = || {
         let id = needed(entry.picture, "image_id")?;
         let picture = truths.place(id).ok_or_else(|| {
             Error::format(format!(
-                "image_id {id} is not among the images of the annotations; give their results"
+                "image_id {id} is not among the images of the annotations; give results of these images"
             ))
         })?;
         let class = needed(entry.class, "category_id")?;

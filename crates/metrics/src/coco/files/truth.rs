@@ -1,4 +1,4 @@
-//! A file of annotations: `instances_*.json`, `person_keypoints_*.json`.
+//! Annotation files: `instances_*.json`, `person_keypoints_*.json`.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Read;
@@ -14,9 +14,9 @@ use crate::coco::matching::Truth;
 /// An annotated object.
 pub(super) struct Annotation<S> {
     picture: i64,
-    /// Category number.
+    /// Category id.
     pub class: i64,
-    /// Square pixels, where the file states them.
+    /// Area in square pixels, if the file has it.
     pub area: Option<f64>,
     pub crowd: bool,
     pub ignored: bool,
@@ -24,13 +24,13 @@ pub(super) struct Annotation<S> {
 }
 
 impl<S> Annotation<S> {
-    /// What it is matched as, with `own` square pixels unless the file states them.
+    /// Returns the object for matching; its area is `own` square pixels unless the file has it.
     pub(super) fn truth(&self, own: f64) -> Truth {
         Truth { area: self.area.unwrap_or(own), crowd: self.crowd, ignored: self.ignored }
     }
 }
 
-/// A picture of the data set.
+/// An image of the data set.
 #[derive(Deserialize)]
 struct Picture {
     id: i64,
@@ -44,19 +44,19 @@ struct Category {
     name: Option<String>,
 }
 
-/// What a file of annotations says.
+/// Contents of an annotation file.
 pub(super) struct Truths<K: Kind> {
-    /// Numbers of the pictures in rising order: their order in every tie.
+    /// Indices of the images by id, in ascending order of ids, which is their order in ties.
     pictures: HashMap<i64, u32>,
-    /// Number and `[height, width]` by the order of pictures.
+    /// Id and `[height, width]` by index of the image.
     listed: Vec<(i64, Option<[u32; 2]>)>,
-    /// Names by number.
+    /// Class names by category id.
     pub classes: BTreeMap<i64, String>,
-    /// By picture, in the order of the file.
+    /// Annotations by image, in the order of the file.
     annotations: Vec<Annotation<K::There>>,
-    /// First annotation of each picture, and the end.
+    /// First annotation of each image, and the end.
     starts: Vec<usize>,
-    /// Annotations of pictures or classes that the file does not list.
+    /// Number of annotations whose image or category the file does not list.
     pub of_nothing: u64,
 }
 
@@ -64,7 +64,7 @@ impl<K: Kind> Truths<K> {
     /// Reads the file.
     ///
     /// # Errors
-    /// `Io`, or `Format` with line, byte and key.
+    /// Returns `Io`, or `Format` with line, byte and key.
     pub(super) fn read(file: impl Read, threads: usize) -> Result<Self> {
         let mut json = JsonStream::new(file);
         let (mut pictures, mut classes) = (BTreeMap::new(), BTreeMap::new());
@@ -119,39 +119,39 @@ impl<K: Kind> Truths<K> {
         Self { pictures, listed, classes, annotations, starts, of_nothing }
     }
 
-    /// How many pictures there are.
+    /// Returns the number of images.
     pub(super) fn pictures(&self) -> usize {
         self.listed.len()
     }
 
-    /// How many objects there are.
+    /// Returns the number of objects.
     pub(super) fn objects(&self) -> usize {
         self.annotations.len()
     }
 
-    /// The place of picture `id` in the order.
+    /// Returns the index of the image `id`.
     pub(super) fn place(&self, id: i64) -> Option<u32> {
         self.pictures.get(&id).copied()
     }
 
-    /// `[height, width]` of the picture at `place`, where the file states them.
+    /// Returns `[height, width]` of image `place`, if the file has it.
     pub(super) fn size(&self, place: u32) -> Option<[u32; 2]> {
         self.listed.get(place as usize).and_then(|(_, size)| *size)
     }
 
-    /// The number of the picture at `place`.
+    /// Returns the id of image `place`.
     pub(super) fn id(&self, place: u32) -> i64 {
         self.listed.get(place as usize).map_or(-1, |(id, _)| *id)
     }
 
-    /// The objects of the picture at `place`.
+    /// Returns the objects of image `place`.
     pub(super) fn of_picture(&self, place: u32) -> &[Annotation<K::There>] {
         let place = place as usize;
         &self.annotations[self.starts[place]..self.starts[place + 1]]
     }
 }
 
-/// Reads every record of the array that comes next.
+/// Parses every record of the next array.
 fn each<T: for<'a> Deserialize<'a>>(json: &mut JsonStream<impl Read>, mut take: impl FnMut(T)) -> Result<()> {
     json.begin_array()?;
     while json.more()? {
