@@ -163,7 +163,7 @@ fn pairs(truth: &[f32], predicted: &[f32], range: [f64; 2]) -> Result<impl Itera
 #[derive(Debug, Clone, Default)]
 pub struct Depth {
     params: DepthParams,
-    pictures: u64,
+    images: u64,
     /// Sums of the errors of each image, by key.
     depth: BTreeMap<&'static str, f64>,
     disparity: DisparityErrors,
@@ -233,18 +233,18 @@ impl Metric for Depth {
         if self.params.quantity == DepthQuantity::Disparity {
             let errors = DisparityErrors::of(expected, given)?;
             self.disparity.add(&errors);
-            self.pictures += u64::from(errors.pixels > 0);
+            self.images += u64::from(errors.pixels > 0);
             return Ok(1.0 - ratio(errors.outliers, errors.pixels).unwrap_or(0.0));
         }
         let range = [self.params.min_depth, self.params.max_depth.unwrap_or(f64::MAX)];
         let Some(errors) = DepthErrors::of(expected, given, range)? else { return Ok(1.0) };
         self.add(errors.numbers());
-        self.pictures += 1;
+        self.images += 1;
         Ok(errors.within[0])
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures += other.pictures;
+        self.images += other.images;
         self.add(other.depth);
         self.disparity.add(&other.disparity);
     }
@@ -252,7 +252,7 @@ impl Metric for Depth {
     fn finish(&self) -> Report {
         let disparity = self.params.quantity == DepthQuantity::Disparity;
         let mut report = Report::new(if disparity { "d1" } else { "abs_rel" });
-        report.statistics.set("pictures", self.pictures as f64);
+        report.statistics.set("pictures", self.images as f64);
         if disparity {
             let DisparityErrors { pixels, distance, bad, outliers } = self.disparity;
             report.statistics.set("end_point_error", distance / pixels as f64);
@@ -263,7 +263,7 @@ impl Metric for Depth {
             }
         } else {
             for (key, sum) in &self.depth {
-                report.statistics.set(*key, sum / self.pictures as f64);
+                report.statistics.set(*key, sum / self.images as f64);
             }
         }
         report

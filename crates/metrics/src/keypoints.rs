@@ -223,24 +223,24 @@ impl Metric for Keypoints {
     }
 
     fn update(&mut self, _at: usize, prediction: &PoseList, truth: &PoseList) -> Result<f64> {
-        let mut picture = Self { params: self.params.clone(), ..Self::default() };
+        let mut image = Self { params: self.params.clone(), ..Self::default() };
         let sizes: Vec<Option<f64>> = truth.poses.iter().map(|pose| self.params.size_of_pose(pose)).collect();
         let matches = matching::nearest(&truth.poses, &prediction.poses)?;
         for ((pose, size), matched) in truth.poses.iter().zip(sizes).zip(matches) {
             let matched = matched.and_then(|at| prediction.poses.get(at));
             match size {
-                Some(size) => picture.add_pose(pose, matched, size)?,
+                Some(size) => image.add_pose(pose, matched, size)?,
                 None => {
-                    picture.without_size += 1;
+                    image.without_size += 1;
                     None
                 }
             };
             if pose.skeleton.joints().len() == pose.keypoints.len() {
-                picture.names = pose.skeleton.joints();
+                image.names = pose.skeleton.joints();
             }
         }
-        let score = picture.pooled_pck().unwrap_or(1.0);
-        self.merge(picture);
+        let score = image.pooled_pck().unwrap_or(1.0);
+        self.merge(image);
         Ok(score)
     }
 

@@ -155,7 +155,7 @@ impl Retrieval {
 }
 
 #[derive(Debug, Clone)]
-struct Picture {
+struct ImageVector {
     at: usize,
     subject: Subject,
     vector: Vector,
@@ -163,7 +163,7 @@ struct Picture {
     length: f64,
 }
 
-impl Picture {
+impl ImageVector {
     fn vector_with_length(&self) -> (&[f32], f64) {
         (self.vector.as_slice(), self.length)
     }
@@ -173,30 +173,30 @@ impl Picture {
 #[derive(Debug, Clone, Default)]
 pub struct Reidentification {
     params: ReidentificationParams,
-    pictures: Vec<Picture>,
+    images: Vec<ImageVector>,
 }
 
 impl Reidentification {
     /// Returns the results of all queries.
     pub fn retrieval(&self) -> Retrieval {
-        let mut pictures: Vec<&Picture> = self.pictures.iter().collect();
-        pictures.sort_by_key(|picture| picture.at);
+        let mut images: Vec<&ImageVector> = self.images.iter().collect();
+        images.sort_by_key(|image| image.at);
         let queries = self.params.queries;
         let mut retrieval = Retrieval::default();
         let is_query =
-            |picture: &&&Picture| (queries == 0 || picture.at < queries) && picture.subject.identity != JUNK;
-        for query in pictures.iter().filter(is_query) {
-            let searched = pictures.iter().filter(|picture| match queries {
-                0 => picture.at != query.at,
-                _ => picture.at >= queries,
+            |image: &&&ImageVector| (queries == 0 || image.at < queries) && image.subject.identity != JUNK;
+        for query in images.iter().filter(is_query) {
+            let gallery = images.iter().filter(|image| match queries {
+                0 => image.at != query.at,
+                _ => image.at >= queries,
             });
-            let far = |picture: &&Picture| {
+            let distance_to = |image: &&ImageVector| {
                 self.params
                     .distance
-                    .between_of_lengths(query.vector_with_length(), picture.vector_with_length())
+                    .between_of_lengths(query.vector_with_length(), image.vector_with_length())
             };
             // Vectors are finite, hence no distance is NaN.
-            retrieval.add(&query.subject, searched.map(|picture| (&picture.subject, far(picture)))).ok();
+            retrieval.add(&query.subject, gallery.map(|image| (&image.subject, distance_to(image)))).ok();
         }
         retrieval
     }
@@ -217,13 +217,13 @@ impl Metric for Reidentification {
     type Truth = Category;
 
     fn new(params: &ReidentificationParams) -> Result<Self> {
-        Ok(Self { params: params.clone(), pictures: Vec::new() })
+        Ok(Self { params: params.clone(), images: Vec::new() })
     }
 
     /// Returns 1: an image alone has no quality.
     fn update(&mut self, at: usize, prediction: &Vector, truth: &Category) -> Result<f64> {
         let (length, numbers) = (prediction.as_slice().len(), prediction.as_slice());
-        let expected = self.pictures.first().map_or(length, |picture| picture.vector.as_slice().len());
+        let expected = self.images.first().map_or(length, |image| image.vector.as_slice().len());
         if length != expected || numbers.iter().any(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
                 "image {at} has a vector of {length} numbers; give {expected} finite numbers"
@@ -231,12 +231,12 @@ impl Metric for Reidentification {
         }
         let subject = Subject { identity: truth.class, camera: truth.header.frame_id.clone() };
         let length = self::length(numbers);
-        self.pictures.push(Picture { at, subject, vector: prediction.clone(), length });
+        self.images.push(ImageVector { at, subject, vector: prediction.clone(), length });
         Ok(1.0)
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures.extend(other.pictures);
+        self.images.extend(other.images);
     }
 
     fn finish(&self) -> Report {
@@ -337,6 +337,6 @@ mod tests {
         assert!(reidentification.update(0, &vector(&[f32::INFINITY]), &truth).is_err());
         reidentification.update(0, &vector(&[1.0]), &truth).unwrap();
         assert!(reidentification.update(1, &vector(&[1.0, 2.0]), &truth).is_err());
-        assert_eq!(reidentification.pictures.len(), 1);
+        assert_eq!(reidentification.images.len(), 1);
     }
 }

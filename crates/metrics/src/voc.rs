@@ -49,7 +49,7 @@ struct Class {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Ranked {
     score: f64,
-    picture: usize,
+    image: usize,
     /// Rank among the detections of its image and class, best first.
     rank: u32,
     is_correct: bool,
@@ -70,13 +70,13 @@ impl Metric for Voc {
     }
 
     fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
-        let numbers = |found: &BoundingBox| found.corners().into_iter().all(f32::is_finite);
-        if let Some(invalid) = prediction.boxes.iter().chain(&truth.boxes).find(|found| !numbers(found)) {
+        let is_finite = |object: &BoundingBox| object.corners().into_iter().all(f32::is_finite);
+        if let Some(invalid) = prediction.boxes.iter().chain(&truth.boxes).find(|object| !is_finite(object)) {
             return Err(Error::invalid_input(format!(
                 "{invalid:#} has coordinates that are not finite; give finite numbers"
             )));
         }
-        if prediction.boxes.iter().any(|found| found.confidence.is_nan()) {
+        if prediction.boxes.iter().any(|detection| detection.confidence.is_nan()) {
             return Err(Error::invalid_input("the score of a detection is NaN; give a number"));
         }
         if self.names.is_empty() {
@@ -84,21 +84,22 @@ impl Metric for Voc {
         }
         let mut pairs: BTreeMap<ClassKey, [Vec<&BoundingBox>; 2]> = BTreeMap::new();
         for (side, list) in [prediction, truth].into_iter().enumerate() {
-            for found in &list.boxes {
-                let key = ClassKey::new(&found.name, &list.classes, &truth.classes);
-                pairs.entry(key).or_default()[side].push(found);
+            for object in &list.boxes {
+                let key = ClassKey::new(&object.name, &list.classes, &truth.classes);
+                pairs.entry(key).or_default()[side].push(object);
             }
         }
         let mut averages = Vec::new();
-        for (key, [found, there]) in pairs {
+        for (key, [detected, annotated]) in pairs {
             let class = self.classes.entry(key).or_default();
-            let truths = there.iter().filter(|object| !is_difficult(object)).count() as u64;
+            let truths = annotated.iter().filter(|object| !is_difficult(object)).count() as u64;
             let start = class.ranked.len();
-            class.ranked.extend(ranked(at, found, &there, self.params.overlap));
+            class.ranked.extend(ranked(at, detected, &annotated, self.params.overlap));
             class.truths += truths;
             averages.extend(self.params.average(&class.ranked[start..], truths));
         }
-        let highest = prediction.boxes.iter().map(|found| f64::from(found.confidence)).fold(0.0, f64::max);
+        let highest =
+            prediction.boxes.iter().map(|detection| f64::from(detection.confidence)).fold(0.0, f64::max);
         Ok(mean(averages).unwrap_or(1.0 - highest.min(1.0)))
     }
 
@@ -152,25 +153,30 @@ fn is_difficult(object: &BoundingBox) -> bool {
 
 /// Matches the detections of one image and class. Each in turn is compared with the object that it overlaps most, and
 /// is a true positive if no earlier detection matched that object.
-fn ranked(at: usize, mut found: Vec<&BoundingBox>, there: &[&BoundingBox], overlap: f64) -> Vec<Ranked> {
-    found.sort_by(|a, b| b.confidence.partial_cmp(&a.confidence).unwrap_or(std::cmp::Ordering::Equal));
-    let bounds = |found: &BoundingBox| [found.left, found.top, found.width, found.height].map(f64::from);
-    let mut taken = vec![false; there.len()];
-    let mut ranked = Vec::with_capacity(found.len());
-    for (rank, detection) in (0..).zip(found) {
+fn ranked(
+    at: usize,
+    mut detected: Vec<&BoundingBox>,
+    annotated: &[&BoundingBox],
+    overlap: f64,
+) -> Vec<Ranked> {
+    detected.sort_by(|a, b| b.confidence.partial_cmp(&a.confidence).unwrap_or(std::cmp::Ordering::Equal));
+    let bounds = |object: &BoundingBox| [object.left, object.top, object.width, object.height].map(f64::from);
+    let mut taken = vec![false; annotated.len()];
+    let mut ranked = Vec::with_capacity(detected.len());
+    for (rank, detection) in (0..).zip(detected) {
         let mut best: Option<(usize, f64)> = None;
-        for (index, object) in there.iter().enumerate() {
+        for (index, object) in annotated.iter().enumerate() {
             let shared = box_overlap(bounds(detection), bounds(object), false);
             if best.is_none_or(|(_, most)| shared > most) {
                 best = Some((index, shared));
             }
         }
         let object = best.filter(|(_, shared)| *shared >= overlap).map(|(index, _)| index);
-        if object.is_some_and(|object| is_difficult(there[object])) {
+        if object.is_some_and(|object| is_difficult(annotated[object])) {
             continue;
         }
         let is_correct = object.is_some_and(|object| !std::mem::replace(&mut taken[object], true));
-        ranked.push(Ranked { score: f64::from(detection.confidence), picture: at, rank, is_correct });
+        ranked.push(Ranked { score: f64::from(detection.confidence), image: at, rank, is_correct });
     }
     ranked
 }
@@ -179,7 +185,7 @@ impl Ranked {
     /// Compares by descending score, then by image, then by rank.
     fn before(&self, other: &Self) -> std::cmp::Ordering {
         let scores = other.score.partial_cmp(&self.score).unwrap_or(std::cmp::Ordering::Equal);
-        scores.then(self.picture.cmp(&other.picture)).then(self.rank.cmp(&other.rank))
+        scores.then(self.image.cmp(&other.image)).then(self.rank.cmp(&other.rank))
     }
 }
 
@@ -213,8 +219,8 @@ fn precisions(ranked: &[Ranked]) -> Vec<f64> {
 fn points(ranked: &[Ranked], truths: u64) -> Vec<[f64; 2]> {
     let precision = precisions(ranked);
     let step = precision.len().div_ceil(100).max(1);
-    let found = precision.iter().enumerate().step_by(step);
-    found.map(|(at, precision)| [(at + 1) as f64 / truths as f64, *precision]).collect()
+    let sampled = precision.iter().enumerate().step_by(step);
+    sampled.map(|(at, precision)| [(at + 1) as f64 / truths as f64, *precision]).collect()
 }
 
 #[cfg(test)]
@@ -224,15 +230,15 @@ mod tests {
     use super::*;
 
     fn list(boxes: &[(i64, f32, f32)]) -> BoundingBoxList {
-        let found =
+        let bounding_box =
             |(name, left, score): &(i64, f32, f32)| BoundingBox::new(*name, *left, 0.0, 10.0, 10.0, *score);
-        BoundingBoxList::from(boxes.iter().map(found).collect::<Vec<_>>())
+        BoundingBoxList::from(boxes.iter().map(bounding_box).collect::<Vec<_>>())
     }
 
     fn average(params: VocParams, samples: &[(BoundingBoxList, BoundingBoxList)]) -> Option<f64> {
         let mut voc = Voc::new(&params).unwrap();
-        for (at, (found, there)) in samples.iter().enumerate() {
-            voc.update(at, found, there).unwrap();
+        for (at, (detected, annotated)) in samples.iter().enumerate() {
+            voc.update(at, detected, annotated).unwrap();
         }
         voc.finish().statistics.get("map")
     }
@@ -240,10 +246,10 @@ mod tests {
     /// True, false, true positive for 4 objects: precision 1 at recall 1/4, 2/3 at 1/2.
     #[test]
     fn both_averages_by_hand() {
-        let found = list(&[(1, 0.0, 0.9), (1, 500.0, 0.8), (1, 100.0, 0.7)]);
-        let there = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0), (1, 200.0, 0.0), (1, 300.0, 0.0)]);
+        let detected = list(&[(1, 0.0, 0.9), (1, 500.0, 0.8), (1, 100.0, 0.7)]);
+        let annotated = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0), (1, 200.0, 0.0), (1, 300.0, 0.0)]);
         let of = |eleven_points| {
-            average(VocParams { overlap: 0.5, eleven_points }, &[(found.clone(), there.clone())])
+            average(VocParams { overlap: 0.5, eleven_points }, &[(detected.clone(), annotated.clone())])
         };
         assert!((of(false).unwrap() - (1.0 + 2.0 / 3.0) / 4.0).abs() < 1e-12);
         // Recalls 0, .1, .2 have precision 1; .3, .4, .5 have 2/3.
@@ -253,13 +259,13 @@ mod tests {
     #[test]
     fn duplicate_detections_are_false_and_difficult_objects_are_ignored() {
         let params = VocParams { overlap: 0.5, eleven_points: false };
-        let mut there = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0)]);
-        there.boxes[1].segment = Some(Box::new(Segment { iscrowd: true, ..Segment::default() }));
-        let found = list(&[(1, 100.0, 0.95), (1, 102.0, 0.9), (1, 1.0, 0.8), (1, 0.0, 0.7)]);
-        assert_eq!(average(params.clone(), &[(found, there.clone())]), Some(1.0));
+        let mut annotated = list(&[(1, 0.0, 0.0), (1, 100.0, 0.0)]);
+        annotated.boxes[1].segment = Some(Box::new(Segment { iscrowd: true, ..Segment::default() }));
+        let detected = list(&[(1, 100.0, 0.95), (1, 102.0, 0.9), (1, 1.0, 0.8), (1, 0.0, 0.7)]);
+        assert_eq!(average(params.clone(), &[(detected, annotated.clone())]), Some(1.0));
         let twice = list(&[(1, 1.0, 0.8), (1, 0.0, 0.7), (2, 0.0, 0.9)]);
         let other = (list(&[(1, 0.0, 0.6)]), list(&[(1, 0.0, 0.0)]));
-        assert_eq!(average(params.clone(), &[(twice, there), other]), Some((1.0 + 2.0 / 3.0) / 2.0));
+        assert_eq!(average(params.clone(), &[(twice, annotated), other]), Some((1.0 + 2.0 / 3.0) / 2.0));
         assert_eq!(average(params, &[(list(&[(1, 0.0, 0.5)]), list(&[]))]), None);
     }
 }

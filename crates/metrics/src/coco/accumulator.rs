@@ -44,7 +44,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         }
     }
 
-    /// Adds the objects and detections of one class in image `picture`.
+    /// Adds the objects and detections of one class in an image, given by its index `image`.
     ///
     /// `overlap(detection, truth)` is called only for detections within the limit.
     ///
@@ -53,7 +53,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
     pub fn count(
         &mut self,
         class: &K,
-        picture: u32,
+        image: u32,
         truths: &[Truth],
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
@@ -67,7 +67,7 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
         let verdicts = self.matching.verdicts(self.protocol.areas, truths, &self.sorted, &self.overlaps);
         let ranked = verdicts.iter().zip(&self.sorted).zip(0..).map(|((verdict, detection), rank)| Ranked {
             score: detection.score,
-            picture,
+            image,
             rank,
             verdict: *verdict,
         });
@@ -86,16 +86,16 @@ impl<K: Ord + Clone + Send + Sync> Accumulator<K> {
     pub fn add(
         &mut self,
         class: &K,
-        picture: u32,
+        image: u32,
         truths: &[Truth],
         detections: &[Detection],
         overlap: impl FnMut(usize, usize) -> Result<f64>,
     ) -> Result<Option<f64>> {
-        self.count(class, picture, truths, detections, overlap)?;
+        self.count(class, image, truths, detections, overlap)?;
         let ranked = self.classes.get(class).map_or(&[][..], |kept| &kept.ranked);
-        let alone = &ranked[ranked.len() - self.sorted.len()..];
+        let added = &ranked[ranked.len() - self.sorted.len()..];
         let objects = counting(truths, &self.protocol.areas[0]);
-        Ok((objects > 0).then(|| Curve::of(alone, 0, objects).mean()))
+        Ok((objects > 0).then(|| Curve::of(added, 0, objects).mean()))
     }
 
     /// Sorts the detections by descending score; the sort is stable.
@@ -170,8 +170,8 @@ impl Class {
     fn recalls(&self, protocol: &Protocol) -> Vec<Option<f64>> {
         let recall = |limit: &u32| {
             let within = self.ranked.iter().filter(|ranked| ranked.rank < *limit);
-            let found: u64 = within.map(|ranked| u64::from(ranked.verdict.correct[0].count_ones())).sum();
-            (self.truths[0] > 0).then(|| found as f64 / (self.truths[0] as usize * THRESHOLDS) as f64)
+            let correct: u64 = within.map(|ranked| u64::from(ranked.verdict.correct[0].count_ones())).sum();
+            (self.truths[0] > 0).then(|| correct as f64 / (self.truths[0] as usize * THRESHOLDS) as f64)
         };
         protocol.limits.iter().map(recall).collect()
     }

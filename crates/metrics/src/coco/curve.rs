@@ -8,7 +8,7 @@ use super::protocol::{RECALLS, THRESHOLDS, recalls};
 pub(super) struct Ranked {
     pub score: f64,
     /// Index of its image.
-    pub picture: u32,
+    pub image: u32,
     /// Rank among the detections of its image and class, best first.
     pub rank: u32,
     pub verdict: Verdict,
@@ -18,7 +18,7 @@ impl Ranked {
     /// Compares by descending score, then by image, then by rank, as the stable merge sort of pycocotools.
     pub(super) fn before(&self, other: &Self) -> std::cmp::Ordering {
         let scores = other.score.partial_cmp(&self.score).unwrap_or(std::cmp::Ordering::Equal);
-        scores.then(self.picture.cmp(&other.picture)).then(self.rank.cmp(&other.rank))
+        scores.then(self.image.cmp(&other.image)).then(self.rank.cmp(&other.rank))
     }
 }
 
@@ -44,9 +44,9 @@ impl Curve {
             }
             for bit in 0..THRESHOLDS {
                 if correct >> bit & 1 == 1 {
-                    let found = (hit_precisions[bit].len() + 1) as f64;
+                    let hits = (hit_precisions[bit].len() + 1) as f64;
                     hit_precisions[bit].push(
-                        found / ((false_everywhere + false_positives[bit]) as f64 + found + f64::EPSILON),
+                        hits / ((false_everywhere + false_positives[bit]) as f64 + hits + f64::EPSILON),
                     );
                 } else if ignored >> bit & 1 == 0 {
                     false_positives[bit] += 1;

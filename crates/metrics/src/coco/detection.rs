@@ -6,9 +6,9 @@ use opendr_engine::{Error, Result};
 
 use super::accumulator::Accumulator;
 use super::decimal::f64_box;
+use super::list_accumulator::ListAccumulator;
 use super::matching::{Detection, Truth};
 use super::overlap::{box_overlap, check_box};
-use super::picture::Pictures;
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
@@ -29,7 +29,7 @@ pub struct CocoDetectionParams {
 /// is that of the box.
 #[derive(Debug, Clone)]
 pub struct CocoDetection {
-    pictures: Pictures,
+    lists: ListAccumulator,
 }
 
 impl Metric for CocoDetection {
@@ -43,34 +43,35 @@ impl Metric for CocoDetection {
 
     fn new(params: &CocoDetectionParams) -> Result<Self> {
         let accumulator = Accumulator::new(Protocol::objects(params.max_detections));
-        let pictures = Pictures { accumulator, classes: Default::default(), use_classes: params.use_classes };
-        Ok(Self { pictures })
+        let lists =
+            ListAccumulator { accumulator, classes: Default::default(), use_classes: params.use_classes };
+        Ok(Self { lists })
     }
 
     fn update(&mut self, at: usize, prediction: &BoundingBoxList, truth: &BoundingBoxList) -> Result<f64> {
         let detected = boxes(prediction, "detection")?;
         let annotated = boxes(truth, "object")?;
         let detections: Vec<_> = scored(prediction, &detected)?;
-        let object = |(found, bounds): (&BoundingBox, &[f64; 4])| truth_of(found, bounds[2] * bounds[3]);
-        let truths: Vec<_> = truth.boxes.iter().zip(&annotated).map(object).collect();
+        let to_truth = |(object, bounds): (&BoundingBox, &[f64; 4])| truth_of(object, bounds[2] * bounds[3]);
+        let truths: Vec<_> = truth.boxes.iter().zip(&annotated).map(to_truth).collect();
         let overlap =
             |detection: &[f64; 4], truth: &[f64; 4], crowd: bool| Ok(box_overlap(*detection, *truth, crowd));
         let lists = [prediction, truth];
-        self.pictures.add(picture_number(at)?, lists, [&detected, &annotated], &detections, &truths, overlap)
+        self.lists.add(image_index(at)?, lists, [&detected, &annotated], &detections, &truths, overlap)
     }
 
     fn merge(&mut self, other: Self) {
-        self.pictures.merge(other.pictures);
+        self.lists.merge(other.lists);
     }
 
     fn finish(&self) -> Report {
-        let classes = &self.pictures.classes;
-        self.pictures.accumulator.finish(1).report(|class| class.label(classes))
+        let classes = &self.lists.classes;
+        self.lists.accumulator.finish(1).report(|class| class.label(classes))
     }
 }
 
 /// Converts the index of a sample to that of an image.
-pub(super) fn picture_number(at: usize) -> Result<u32> {
+pub(super) fn image_index(at: usize) -> Result<u32> {
     u32::try_from(at).map_err(|_| {
         Error::invalid_input(format!("sample index {at} is above 2^32 - 1, the largest supported"))
     })
@@ -85,8 +86,8 @@ pub(super) fn boxes(list: &BoundingBoxList, what: &str) -> Result<Vec<[f64; 4]>>
 
 /// Returns scores and areas of detections.
 fn scored(list: &BoundingBoxList, boxes: &[[f64; 4]]) -> Result<Vec<Detection>> {
-    let detection = |(found, bounds): (&BoundingBox, &[f64; 4])| {
-        Ok(Detection { score: checked_score(found.confidence)?, area: bounds[2] * bounds[3] })
+    let detection = |(object, bounds): (&BoundingBox, &[f64; 4])| {
+        Ok(Detection { score: checked_score(object.confidence)?, area: bounds[2] * bounds[3] })
     };
     list.boxes.iter().zip(boxes).map(detection).collect()
 }
@@ -102,8 +103,8 @@ pub(super) fn checked_score(confidence: f32) -> Result<f64> {
 }
 
 /// Creates an object of `area` square pixels, unless it has its own area.
-pub(super) fn truth_of(found: &BoundingBox, area: f64) -> Truth {
-    let segment = found.segment.as_deref();
+pub(super) fn truth_of(object: &BoundingBox, area: f64) -> Truth {
+    let segment = object.segment.as_deref();
     let own = segment.map(|segment| f64::from(segment.area)).filter(|area| *area > 0.0);
     let crowd = segment.is_some_and(|segment| segment.iscrowd);
     Truth { area: own.unwrap_or(area), crowd, ignored: crowd }

@@ -6,10 +6,10 @@ use opendr_engine::target::{Pose, PoseList, Skeleton};
 
 use super::accumulator::Accumulator;
 use super::decimal::{f64_box, f64_from_f32};
-use super::detection::{checked_score, picture_number, truth_of};
+use super::detection::{checked_score, image_index, truth_of};
+use super::list_accumulator::quality_without_objects;
 use super::matching::{Detection, Truth};
 use super::overlap::{JOINTS, Person, check_box, keypoint_similarity};
-use super::picture::quality_of_nothing;
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
@@ -51,8 +51,8 @@ impl Metric for CocoKeypoints {
         let (truths, persons): (Vec<Truth>, Vec<Person>) = annotated.into_iter().unzip();
         let similarity =
             |detection: usize, truth: usize| Ok(keypoint_similarity(&detected[detection], &persons[truth]));
-        let quality = self.accumulator.add(&(), picture_number(at)?, &truths, &detections, similarity)?;
-        Ok(quality.unwrap_or_else(|| quality_of_nothing(&detections)))
+        let quality = self.accumulator.add(&(), image_index(at)?, &truths, &detections, similarity)?;
+        Ok(quality.unwrap_or_else(|| quality_without_objects(&detections)))
     }
 
     fn merge(&mut self, other: Self) {
@@ -66,19 +66,19 @@ impl Metric for CocoKeypoints {
 
 /// Returns the positions of COCO's joints, (0, 0) for missing ones, and whether each was detected.
 fn joints(pose: &Pose) -> ([[f64; 2]; JOINTS], [bool; JOINTS]) {
-    let (mut places, mut found) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
+    let (mut positions, mut is_detected) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
     for (at, name) in Skeleton::Coco17.joints().iter().enumerate().take(JOINTS) {
         if let Some(keypoint) = pose.keypoint(name).filter(|keypoint| keypoint.is_found()) {
-            places[at] = [keypoint.x, keypoint.y].map(f64_from_f32);
-            found[at] = true;
+            positions[at] = [keypoint.x, keypoint.y].map(f64_from_f32);
+            is_detected[at] = true;
         }
     }
-    (places, found)
+    (positions, is_detected)
 }
 
 fn detection(pose: &Pose) -> Result<(Detection, [[f64; 2]; JOINTS])> {
-    let (places, _) = joints(pose);
-    Ok((Detection { score: checked_score(pose.confidence)?, area: area_around(&places) }, places))
+    let (positions, _) = joints(pose);
+    Ok((Detection { score: checked_score(pose.confidence)?, area: area_around(&positions) }, positions))
 }
 
 /// Returns the area of the box around all joints, including those at (0, 0).
@@ -91,7 +91,7 @@ pub(super) fn area_around(joints: &[[f64; 2]; JOINTS]) -> f64 {
 }
 
 fn person(pose: &Pose) -> Result<(Truth, Person)> {
-    let (places, found) = joints(pose);
+    let (positions, is_detected) = joints(pose);
     let around = pose.bounding_box().unwrap_or_default().map(f64_from_f32);
     let region = pose.region.as_deref();
     let bounding_box = region.map_or(around, f64_box);
@@ -99,8 +99,9 @@ fn person(pose: &Pose) -> Result<(Truth, Person)> {
     let box_area = bounding_box[2] * bounding_box[3];
     let plain = Truth { area: box_area, crowd: false, ignored: false };
     let mut truth = region.map_or(plain, |region| truth_of(region, box_area));
-    truth.ignored |= found == [false; JOINTS];
-    let joints = std::array::from_fn(|at| [places[at][0], places[at][1], f64::from(u8::from(found[at]))]);
+    truth.ignored |= is_detected == [false; JOINTS];
+    let joints =
+        std::array::from_fn(|at| [positions[at][0], positions[at][1], f64::from(u8::from(is_detected[at]))]);
     Ok((truth, Person { joints, bounding_box, area: truth.area }))
 }
 

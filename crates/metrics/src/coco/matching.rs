@@ -109,14 +109,14 @@ impl Matching {
             taken.resize(truths.len(), false);
             for index in &*candidates {
                 let row = &overlaps[index * truths.len()..][..truths.len()];
-                let Some(found) =
+                let Some(matched) =
                     best(row, threshold, order, ignored, |truth| taken[truth] && !truths[truth].crowd)
                 else {
                     continue;
                 };
-                taken[found] = true;
+                taken[matched] = true;
                 let verdict = &mut verdicts[*index];
-                let bits = if ignored[found] { &mut verdict.ignored } else { &mut verdict.correct };
+                let bits = if ignored[matched] { &mut verdict.ignored } else { &mut verdict.correct };
                 bits[at] |= 1 << bit;
             }
         }
@@ -131,19 +131,19 @@ fn best(
     ignored: &[bool],
     is_taken: impl Fn(usize) -> bool,
 ) -> Option<usize> {
-    let (mut most, mut found) = (threshold.min(1.0 - 1e-10), None);
+    let (mut most, mut matched) = (threshold.min(1.0 - 1e-10), None);
     for truth in order.iter().copied() {
         if is_taken(truth) {
             continue;
         }
-        if ignored[truth] && found.is_some_and(|found: usize| !ignored[found]) {
+        if ignored[truth] && matched.is_some_and(|matched: usize| !ignored[matched]) {
             break;
         }
         if row[truth] < most {
             continue;
         }
         most = row[truth];
-        found = Some(truth);
+        matched = Some(truth);
     }
-    found
+    matched
 }

@@ -3,24 +3,30 @@ use proptest::prelude::*;
 use super::*;
 
 /// An image of one class: objects (box, area, crowd) and detections (box, score).
-type Picture = (Vec<([f64; 4], f64, bool)>, Vec<([f64; 4], f64)>);
+type ImageBoxes = (Vec<([f64; 4], f64, bool)>, Vec<([f64; 4], f64)>);
 
-fn count(accumulator: &mut Accumulator<i64>, class: i64, at: u32, (there, found): &Picture) -> Option<f64> {
+fn count(
+    accumulator: &mut Accumulator<i64>,
+    class: i64,
+    at: u32,
+    (annotated, detected): &ImageBoxes,
+) -> Option<f64> {
     let truth =
         |(_, area, crowd): &([f64; 4], f64, bool)| Truth { area: *area, crowd: *crowd, ignored: *crowd };
-    let truths: Vec<_> = there.iter().map(truth).collect();
+    let truths: Vec<_> = annotated.iter().map(truth).collect();
     let detection =
         |(bounds, score): &([f64; 4], f64)| Detection { score: *score, area: bounds[2] * bounds[3] };
-    let detections: Vec<_> = found.iter().map(detection).collect();
-    let overlap =
-        |detection: usize, truth: usize| Ok(box_overlap(found[detection].0, there[truth].0, there[truth].2));
+    let detections: Vec<_> = detected.iter().map(detection).collect();
+    let overlap = |detection: usize, truth: usize| {
+        Ok(box_overlap(detected[detection].0, annotated[truth].0, annotated[truth].2))
+    };
     accumulator.add(&class, at, &truths, &detections, overlap).unwrap()
 }
 
-fn stats(pictures: &[Picture]) -> Vec<f64> {
+fn stats(images: &[ImageBoxes]) -> Vec<f64> {
     let mut accumulator = Accumulator::new(Protocol::objects(100));
-    for (at, picture) in (0..).zip(pictures) {
-        count(&mut accumulator, 1, at, picture);
+    for (at, image) in (0..).zip(images) {
+        count(&mut accumulator, 1, at, image);
     }
     accumulator.finish(1).stats()
 }
@@ -30,8 +36,8 @@ const ELSEWHERE: [f64; 4] = [100.0, 0.0, 50.0, 50.0];
 
 #[test]
 fn half_of_the_objects_detected_gives_half_the_recall() {
-    let picture = (vec![(PLACE, 2500.0, false), (ELSEWHERE, 2500.0, false)], vec![(PLACE, 0.9)]);
-    let stats = stats(&[picture]);
+    let image = (vec![(PLACE, 2500.0, false), (ELSEWHERE, 2500.0, false)], vec![(PLACE, 0.9)]);
+    let stats = stats(&[image]);
     // Recalls 0 to .5 have precision 1: 51 of 101; both objects are medium.
     for ap in [0, 1, 2, 4] {
         assert!((stats[ap] - 51.0 / 101.0).abs() < 1e-12, "{stats:?}");
@@ -84,23 +90,23 @@ fn bounds() -> impl Strategy<Value = [f64; 4]> {
         .prop_map(|(x, y, w, h)| [x, y, w, h].map(|side| f64::from(side) * 10.0))
 }
 
-fn picture() -> impl Strategy<Value = Picture> {
-    let there = (bounds(), any::<bool>()).prop_map(|(place, crowd)| (place, place[2] * place[3], crowd));
-    let found = (bounds(), 0u8..4).prop_map(|(place, score)| (place, f64::from(score) / 4.0));
-    (proptest::collection::vec(there, 0..5), proptest::collection::vec(found, 0..8))
+fn image() -> impl Strategy<Value = ImageBoxes> {
+    let annotated = (bounds(), any::<bool>()).prop_map(|(place, crowd)| (place, place[2] * place[3], crowd));
+    let detected = (bounds(), 0u8..4).prop_map(|(place, score)| (place, f64::from(score) / 4.0));
+    (proptest::collection::vec(annotated, 0..5), proptest::collection::vec(detected, 0..8))
 }
 
 proptest! {
     #[test]
     fn distribution_over_accumulators_does_not_matter(
-        pictures in proptest::collection::vec((0i64..3, picture(), 0usize..3), 0..9),
+        images in proptest::collection::vec((0i64..3, image(), 0usize..3), 0..9),
     ) {
         let mut parts = [(); 3].map(|()| Accumulator::new(Protocol::objects(100)));
         let mut whole = Accumulator::new(Protocol::objects(100));
-        for (at, (class, picture, part)) in (0..).zip(&pictures) {
-            let alone = count(&mut whole, *class, at, picture);
-            prop_assert_eq!(count(&mut parts[*part], *class, at, picture), alone);
-            prop_assert!(alone.is_none_or(|quality| (0.0..=1.0).contains(&quality)));
+        for (at, (class, image, part)) in (0..).zip(&images) {
+            let quality = count(&mut whole, *class, at, image);
+            prop_assert_eq!(count(&mut parts[*part], *class, at, image), quality);
+            prop_assert!(quality.is_none_or(|quality| (0.0..=1.0).contains(&quality)));
         }
         let [mut last, middle, first] = parts;
         last.merge(first);

@@ -76,21 +76,21 @@ impl Frame {
     }
 
     fn fill_overlaps(&mut self, found: &[KittiObject], truth: &[KittiObject]) {
-        let standing: Vec<StandingBox> = found.iter().map(KittiObject::standing_box).collect();
+        let boxes: Vec<StandingBox> = found.iter().map(KittiObject::standing_box).collect();
         let mut best_of_truth = vec![0.0f64; truth.len()];
         let mut best_of_found = vec![0.0f64; found.len()];
         for (row, object) in truth.iter().enumerate() {
             if matches!(self.truth[row].traits.kind, ObjectKind::Other | ObjectKind::DontCare) {
                 continue;
             }
-            let here = object.standing_box();
+            let upright = object.standing_box();
             for (column, other) in found.iter().enumerate() {
-                let shared = here.floor.shared_area(&standing[column].floor);
-                let on_ground = match here.floor.area() + standing[column].floor.area() - shared {
+                let shared = upright.floor.shared_area(&boxes[column].floor);
+                let on_ground = match upright.floor.area() + boxes[column].floor.area() - shared {
                     union if shared > 0.0 => shared / union,
                     _ => 0.0,
                 };
-                let in_space = here.overlap_with_shared_floor(&standing[column], shared);
+                let in_space = upright.overlap_with_shared_floor(&boxes[column], shared);
                 let overlaps = [image_overlap(object.in_image, other.in_image), on_ground, in_space];
                 for (candidates, overlap) in self.candidates.iter_mut().zip(overlaps) {
                     if overlap > SMALLEST_LEAST_OVERLAP {

@@ -20,12 +20,12 @@ fn car(x: f64, score: f64) -> KittiObject {
 }
 
 fn score_of(
-    pictures: &[(Vec<KittiObject>, Vec<KittiObject>)],
+    images: &[(Vec<KittiObject>, Vec<KittiObject>)],
     overlap: KittiOverlap,
     difficulty: KittiDifficulty,
 ) -> Option<KittiScore> {
     let mut metric = Kitti::default();
-    for (at, (found, truth)) in pictures.iter().enumerate() {
+    for (at, (found, truth)) in images.iter().enumerate() {
         metric.count(at, found, truth).unwrap();
     }
     metric.scores().into_iter().find(|score| {
@@ -48,8 +48,8 @@ fn precision_by_hand() {
     let mut found: Vec<_> = (0..4).map(|at| car(10.0 * f64::from(at), 0.9 - 0.1 * f64::from(at))).collect();
     found.push(car(55.0, 0.75));
     for overlap in KittiOverlap::ALL {
-        let pictures = [(found.clone(), truth.clone())];
-        let score = score_of(&pictures, overlap, KittiDifficulty::Moderate).unwrap();
+        let images = [(found.clone(), truth.clone())];
+        let score = score_of(&images, overlap, KittiDifficulty::Moderate).unwrap();
         assert_eq!(score.precision[..5], [1.0, 1.0, 0.8, 0.8, 0.0]);
         let (kind, r11, r40) = score.numbers().next().unwrap();
         assert_eq!(kind, overlap.name());
@@ -62,8 +62,8 @@ fn precision_by_hand() {
 fn orientation_by_hand() {
     let rotated = |alpha: f64| KittiObject { alpha, ..car(0.0, 0.9) };
     let of = |alpha: f64| {
-        let pictures = [(vec![rotated(alpha)], vec![car(0.0, 0.0)])];
-        score_of(&pictures, KittiOverlap::Image, KittiDifficulty::Easy).unwrap().orientation
+        let images = [(vec![rotated(alpha)], vec![car(0.0, 0.0)])];
+        score_of(&images, KittiOverlap::Image, KittiDifficulty::Easy).unwrap().orientation
     };
     assert_eq!(of(0.0).unwrap()[0], 1.0);
     assert!((of(PI / 2.0).unwrap()[0] - 0.5).abs() < 1e-12);
@@ -122,7 +122,7 @@ fn neighbours_and_dont_care_are_not_false_positives() {
 
 #[test]
 fn images_merge_in_any_order() {
-    let pictures: Vec<_> = (0..6)
+    let images: Vec<_> = (0..6)
         .map(|at| {
             let x = 3.0 * f64::from(at);
             (
@@ -132,7 +132,7 @@ fn images_merge_in_any_order() {
         })
         .collect();
     let (mut whole, mut even, mut odd) = (Kitti::default(), Kitti::default(), Kitti::default());
-    for (at, (found, truth)) in pictures.iter().enumerate() {
+    for (at, (found, truth)) in images.iter().enumerate() {
         whole.count(at, found, truth).unwrap();
         if at % 2 == 0 { &mut even } else { &mut odd }.count(at, found, truth).unwrap();
     }

@@ -108,7 +108,7 @@ fn truth_of_thing_zero_is_a_crowd() {
 
 #[test]
 fn merging_does_not_depend_on_order() {
-    let picture = |at: u32| {
+    let image = |at: u32| {
         let truth =
             (0..60).map(|pixel| 7000 * u32::from(pixel < 40 + at) + 1001 * u32::from(pixel >= 40 + at));
         let found = (0..60).map(|pixel| 7000 * u32::from(pixel < 43) + 1002 * u32::from(pixel >= 43));
@@ -119,7 +119,7 @@ fn merging_does_not_depend_on_order() {
     };
     let (mut whole, mut parts) = (new(), [new(), new(), new()]);
     for at in 0..9 {
-        let (found, truth) = picture(at);
+        let (found, truth) = image(at);
         whole.update(at as usize, &found, &truth).unwrap();
         parts[at as usize % 3].update(at as usize, &found, &truth).unwrap();
     }

@@ -65,9 +65,9 @@ fn random_maps_equal_the_definition() {
 
 #[test]
 fn parts_merge_to_the_whole() {
-    let pictures = [(vec![0, 1, 255], vec![0, 0, 1]), (vec![5, 5, 2], vec![5, 255, 2]), (vec![1], vec![3])];
+    let images = [(vec![0, 1, 255], vec![0, 0, 1]), (vec![5, 5, 2], vec![5, 255, 2]), (vec![1], vec![3])];
     let [mut whole, mut first, mut second] = [(); 3].map(|()| Segmentation::default());
-    for (at, (truth, prediction)) in pictures.iter().enumerate() {
+    for (at, (truth, prediction)) in images.iter().enumerate() {
         whole.update(at, &map(prediction), &map(truth)).unwrap();
         let part = if at == 1 { &mut first } else { &mut second };
         part.update(at, &map(prediction), &map(truth)).unwrap();

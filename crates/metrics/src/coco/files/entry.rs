@@ -16,7 +16,7 @@ pub(super) struct Fields {
 /// An annotation or result; absent and null fields are the same.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Entry {
-    pub picture: Option<i64>,
+    pub image: Option<i64>,
     pub class: Option<i64>,
     pub bounds: Option<[f64; 4]>,
     pub area: Option<f64>,
@@ -76,7 +76,7 @@ impl Entry {
             return Ok(());
         }
         match key {
-            b"image_id" => self.picture = Some(text.whole()?),
+            b"image_id" => self.image = Some(text.whole()?),
             b"category_id" => self.class = Some(text.whole()?),
             b"bbox" => self.bounds = text.numbers()?,
             b"area" => self.area = Some(text.number()?),
@@ -165,7 +165,7 @@ mod tests {
         let text = r#"{"id": 9, "image_id": 5, "category_id": 2, "bbox": [1, 2.5, 3, 4], "area": 12.7, "iscrowd": 1,
             "segmentation": {"size": [2, 2], "counts": "\u003013"}, "keypoints": [0], "score": null}"#;
         let plain = read(text, Fields::default()).unwrap();
-        assert_eq!((plain.picture, plain.class, plain.crowd), (Some(5), Some(2), true));
+        assert_eq!((plain.image, plain.class, plain.crowd), (Some(5), Some(2), true));
         assert_eq!((plain.bounds, plain.area), (Some([1.0, 2.5, 3.0, 4.0]), Some(12.7)));
         assert_eq!((&plain.region, plain.score), (&None, None));
         let whole = read(text, Fields { segmentation: true, keypoints: false }).unwrap();

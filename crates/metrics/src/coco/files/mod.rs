@@ -31,7 +31,7 @@ use truth::Truths;
 type Named<R> = (R, String);
 
 /// Images per job of a thread.
-const PICTURES: u32 = 64;
+const IMAGES_PER_JOB: u32 = 64;
 
 /// Kind of a COCO evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,13 +110,13 @@ impl CocoFiles {
         };
         let by_class = self.use_classes || self.kind == CocoKind::Keypoints;
         let mut parts: Vec<_> = (0..threads).map(|_| fresh()).collect();
-        let count = truths.pictures() as u32;
-        let starts = (0..count).step_by(PICTURES as usize);
+        let count = truths.images() as u32;
+        let starts = (0..count).step_by(IMAGES_PER_JOB as usize);
         map_in_order(
             &mut parts,
             starts,
             |part, start| {
-                (start..count.min(start + PICTURES))
+                (start..count.min(start + IMAGES_PER_JOB))
                     .try_for_each(|at| add(part, at, &truths, &results, by_class))
             },
             |done| done,
@@ -124,11 +124,11 @@ impl CocoFiles {
         let mut whole = fresh();
         parts.into_iter().for_each(|part| whole.merge(part));
         Ok(CocoComparison {
-            pictures: truths.pictures() as u64,
+            pictures: truths.images() as u64,
             objects: truths.objects() as u64,
             detections: results.detections() as u64,
-            objects_of_nothing: truths.of_nothing,
-            detections_of_other_classes: results.of_other_classes,
+            objects_of_nothing: truths.unlisted,
+            detections_of_other_classes: results.unlisted,
             classes: truths.classes,
             outcome: whole.finish(threads),
         })
@@ -145,31 +145,33 @@ fn add<K: Kind>(
     results: &Results<K>,
     by_class: bool,
 ) -> Result<()> {
-    let mut there: Vec<_> = truths.of_picture(at).iter().collect();
-    let mut found: Vec<_> = results.of_picture(at).collect();
+    let mut annotated: Vec<_> = truths.of_image(at).iter().collect();
+    let mut detected: Vec<_> = results.of_image(at).collect();
     // pycocotools goes through the classes one after the other, even if they count as one.
-    there.sort_by_key(|annotation| annotation.class);
-    found.sort_by_key(|detection| detection.class);
-    let (mut there, mut found) = (&there[..], &found[..]);
+    annotated.sort_by_key(|annotation| annotation.class);
+    detected.sort_by_key(|detection| detection.class);
+    let (mut annotated, mut detected) = (&annotated[..], &detected[..]);
     while let Some(first) =
-        there.first().map(|one| one.class).into_iter().chain(found.first().map(|one| one.class)).min()
+        annotated.first().map(|one| one.class).into_iter().chain(detected.first().map(|one| one.class)).min()
     {
         let class = if by_class { first } else { ANY };
         let of_class = |other: i64| !by_class || other == first;
-        let (these, others) = there.split_at(there.partition_point(|one| of_class(one.class)));
-        let (those, rest) = found.split_at(found.partition_point(|one| of_class(one.class)));
-        (there, found) = (others, rest);
-        let mut objects = Vec::with_capacity(these.len());
-        let mut matched = Vec::with_capacity(these.len());
-        for annotation in these {
-            let (object, area) = K::object(&annotation.there, truths.size(at))
+        let (of_class_annotated, later_annotated) =
+            annotated.split_at(annotated.partition_point(|one| of_class(one.class)));
+        let (of_class_detected, later_detected) =
+            detected.split_at(detected.partition_point(|one| of_class(one.class)));
+        (annotated, detected) = (later_annotated, later_detected);
+        let mut objects = Vec::with_capacity(of_class_annotated.len());
+        let mut matched = Vec::with_capacity(of_class_annotated.len());
+        for annotation in of_class_annotated {
+            let (object, area) = K::object(&annotation.annotated, truths.size(at))
                 .context(|| format!("an annotation of image {}", truths.id(at)))?;
             objects.push(object);
             matched.push(annotation.truth(area));
         }
-        let detections: Vec<_> = those.iter().map(|one| one.detection).collect();
+        let detections: Vec<_> = of_class_detected.iter().map(|one| one.detection).collect();
         part.count(&class, at, &matched, &detections, |detection, truth| {
-            K::overlap(&those[detection].found, &objects[truth], matched[truth].crowd)
+            K::overlap(&of_class_detected[detection].detected, &objects[truth], matched[truth].crowd)
         })
         .context(|| format!("image {}", truths.id(at)))?;
     }

@@ -9,14 +9,14 @@ use crate::class_key::ClassKey;
 
 /// An accumulator of lists of boxes, with or without masks.
 #[derive(Debug, Clone)]
-pub(super) struct Pictures {
+pub(super) struct ListAccumulator {
     pub accumulator: Accumulator<ClassKey>,
     /// Class names of the data set.
     pub classes: Classes,
     pub use_classes: bool,
 }
 
-impl Pictures {
+impl ListAccumulator {
     /// Adds an image and returns the quality of its detections, 0 to 1. `overlap(detection, truth, crowd)` compares elements
     /// of `detected` and `annotated`.
     pub(super) fn add<S>(
@@ -32,13 +32,13 @@ impl Pictures {
             self.classes = truth.classes.clone();
         }
         let keys = |list: &BoundingBoxList| {
-            let key = |found: &BoundingBox| ClassKey::new(&found.name, &list.classes, &truth.classes);
+            let key = |object: &BoundingBox| ClassKey::new(&object.name, &list.classes, &truth.classes);
             list.boxes.iter().map(key).collect::<Vec<_>>()
         };
-        let (found, there) = (sorted(keys(prediction)), sorted(keys(truth)));
+        let (detected_keys, annotated_keys) = (sorted(keys(prediction)), sorted(keys(truth)));
         let mut classes: Vec<Option<&ClassKey>> = vec![None];
         if self.use_classes {
-            classes = found.iter().chain(&there).map(|(key, _)| Some(key)).collect();
+            classes = detected_keys.iter().chain(&annotated_keys).map(|(key, _)| Some(key)).collect();
             classes.sort_unstable();
             classes.dedup();
         }
@@ -50,22 +50,26 @@ impl Pictures {
                     .map(|(_, at)| *at)
                     .collect()
             };
-            let (found, there) = (of_class(&found), of_class(&there));
+            let (detected_indices, annotated_indices) = (of_class(&detected_keys), of_class(&annotated_keys));
             let some = |indices: &[usize]| indices.iter().map(|at| detections[*at]).collect::<Vec<_>>();
-            let truths: Vec<_> = there.iter().map(|at| truths[*at]).collect();
+            let truths: Vec<_> = annotated_indices.iter().map(|at| truths[*at]).collect();
             let quality = self.accumulator.add(
                 class.unwrap_or(&ClassKey::Any),
                 at,
                 &truths,
-                &some(&found),
+                &some(&detected_indices),
                 |detection, truth| {
-                    overlap(&detected[found[detection]], &annotated[there[truth]], truths[truth].crowd)
+                    overlap(
+                        &detected[detected_indices[detection]],
+                        &annotated[annotated_indices[truth]],
+                        truths[truth].crowd,
+                    )
                 },
             )?;
             qualities.extend(quality);
         }
         Ok(match qualities.len() {
-            0 => quality_of_nothing(detections),
+            0 => quality_without_objects(detections),
             count => qualities.iter().sum::<f64>() / count as f64,
         })
     }
@@ -79,7 +83,7 @@ impl Pictures {
 }
 
 /// Returns the quality of detections in an image without objects.
-pub(super) fn quality_of_nothing(detections: &[Detection]) -> f64 {
+pub(super) fn quality_without_objects(detections: &[Detection]) -> f64 {
     let highest = detections.iter().map(|detection| detection.score).fold(0.0, f64::max);
     1.0 - highest.min(1.0)
 }
