@@ -83,7 +83,7 @@ fn a_model_is_exported() {
     same("bias.bin");
     assert!(export("run/model", "a.onnx", &[]).ends_with(13).stderr.contains("names no ONNX file"));
     assert!(export("nonsense", "a.onnx", &[]).ends_with(13).stderr.contains("no learner \"nonsense\""));
-    assert!(export("run/model", "data", &[]).ends_with(11).stderr.contains("is no model"));
+    assert!(export("run/model", "data", &[]).ends_with(11).stderr.contains("is not a model"));
     let from = report(fit(&place, &["--out", "again", "--model", "folder"]));
     assert_eq!(from["complete"], true);
 }
