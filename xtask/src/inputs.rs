@@ -22,17 +22,11 @@ pub struct Tree {
 impl Tree {
     /// Reads the tree; `None` outside a git repository (an unpacked archive), so that no check is skipped.
     pub fn read(data: Option<&Path>) -> Option<Self> {
-        let listed =
-            output(command("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))
-                .ok()?;
-        let mut files = BTreeMap::new();
-        for name in listed.split('\0').filter(|name| !name.is_empty()) {
-            // A deleted file may still be in the index.
-            if let Ok(hash) = of_file(&root().join(name)) {
-                files.insert(name.to_owned(), hash);
-            }
-        }
-        Some(Self { files, machine: machine(data).ok()? })
+        let hashes = files().ok()?.into_iter().filter_map(|name| {
+            let hash = of_file(&root().join(&name)).ok()?;
+            Some((name, hash))
+        });
+        Some(Self { files: hashes.collect(), machine: machine(data).ok()? })
     }
 
     /// Returns the hash of the files whose path matches `wanted`, and of `others`.
@@ -45,6 +39,15 @@ impl Tree {
         others.hash(&mut hasher);
         hasher.finish()
     }
+}
+
+/// Returns the paths of the files of the working tree, tracked or untracked, without ignored ones.
+pub fn files() -> Result<Vec<String>> {
+    let listed =
+        output(command("git").args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"]))?;
+    // A deleted file may still be in the index.
+    let files = listed.split('\0').filter(|name| !name.is_empty() && root().join(name).is_file());
+    Ok(files.map(str::to_owned).collect())
 }
 
 /// Returns the hash of a file's content.

@@ -5,10 +5,15 @@
 
 mod checks;
 mod generate;
+mod imports;
 mod inputs;
 mod install_c;
 mod junit;
+mod layers;
+mod lexer;
+mod pages;
 mod parity;
+mod passages;
 mod realtime;
 mod ros;
 mod rust_tests;
@@ -19,6 +24,8 @@ mod surfaces;
 mod test;
 mod tools;
 mod wheel;
+mod words;
+mod workspace;
 
 use std::process::ExitCode;
 
@@ -36,7 +43,11 @@ usage: cargo xtask VERB
   ros        run only the tests of messages and nodes with real ROS peers
   ros --zenoh
              run the tests of the feature zenoh with a Zenoh router and peer; not part of the task test
-  generate   write the generated stubs, C headers and pages of docs/
+  generate   write the generated stubs, C headers, pages of docs/, and parts of README.md and DESIGN.md
+  generate --crates
+             write only the table of the crates in README.md and the diagram of the layers in DESIGN.md
+  words      fail if documentation or messages have a phrase of xtask/words.tsv; print the term to use
+  layers     fail if a crate depends on a higher layer of xtask/layers.tsv, or if two files of a crate import each other
   realtime   fail if a task has no learner with 25 frames per second in 1 GB on 2 cores
   realtime --write
              also write the measurements into the cards; needs an otherwise idle machine
@@ -56,7 +67,10 @@ fn main() -> ExitCode {
         ["test-c"] => test::run_c(),
         ["ros"] => ros::run_alone(),
         ["ros", "--zenoh"] => ros::run_zenoh(),
+        ["words"] => words::run(),
+        ["layers"] => layers::run(),
         ["generate"] => generate::run(),
+        ["generate", "--crates"] => pages::write(),
         ["realtime"] => realtime::run(),
         ["realtime", "--write"] => realtime::run_and_write(),
         ["install-c", prefix] => install_c::run(prefix.as_ref()),

@@ -11,6 +11,7 @@ use serde_json::Value;
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
 use crate::junit::{self, Outcome};
+use crate::pages;
 use crate::shell::{Result, is_installed, output, root};
 
 /// Name of the check.
@@ -113,8 +114,12 @@ fn inputs_of(tree: &Tree, program: &Program, programs: u64) -> Result<u64> {
     let folder = format!("{}/", program.package);
     // The command's own tests start the command; those of the facade use all models.
     let starts = if program.package == "apps/cli" { programs } else { 0 };
+    let is_of_pages = |file: &str| program.package == "xtask" && pages::is_input(file);
     Ok(tree.of(
-        |file| !file.ends_with(".rs") && (file.starts_with(&folder) || is_read_by_tests(file)),
+        |file| {
+            !file.ends_with(".rs") && (file.starts_with(&folder) || is_read_by_tests(file))
+                || is_of_pages(file)
+        },
         &[of_file(&program.path)?, starts],
     ))
 }

@@ -26,6 +26,14 @@ pub fn command(program: impl AsRef<std::ffi::OsStr>) -> Command {
     command
 }
 
+/// Returns the command of another task of this program.
+pub fn task(name: &str) -> Result<Command> {
+    let program = std::env::current_exe().map_err(|error| format!("path of this program: {error}"))?;
+    let mut task = command(program);
+    task.arg(name);
+    Ok(task)
+}
+
 /// Runs a step and prints its command and duration.
 pub fn step(name: &str, command: &mut Command) -> Result<()> {
     println!("\n=== {name}: {}", line(command));

@@ -7,9 +7,9 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
-use crate::shell::{Result, command, output, root, step, target};
+use crate::shell::{Result, command, output, root, step, target, task};
 use crate::tools::{self, Python, install_debian};
-use crate::{install_c, parity, ros, rust_tests, surfaces, wheel};
+use crate::{install_c, layers, parity, ros, rust_tests, surfaces, wheel, words};
 
 /// Feature of the test learner, which every build for tests has.
 pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
@@ -82,12 +82,18 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     })
 }
 
-/// Checks the format, the lints of every combination of features that no test builds, and the documentation. All of them use the same
+/// Checks the format, the terms, the layers, the lints of every combination of features that no test builds, and the documentation. All of them use the same
 /// features of the dependencies, so that nothing is checked twice: devices and Zenoh are on, and the whole workspace is selected.
 fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     let sources = tree.map(|tree| tree.of(is_source, &[]));
     let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
+    let of_files = |name, is_input: fn(&str) -> bool| {
+        let inputs = tree.map(|tree| tree.of(|file| is_input(file) || file.starts_with("xtask/"), &[]));
+        checks.run(name, inputs, Output::Live, None, &mut task(name)?)
+    };
     live("format", &mut cargo(&["fmt", "--all", "--check"]))?;
+    of_files("words", words::is_input)?;
+    of_files("layers", layers::is_input)?;
     live("lints", &mut clippy(&["--all-targets", TEST_LEARNER]))?;
     live(
         "documentation",
