@@ -10,7 +10,8 @@ import numpy as np
 import opendr
 import pytest
 from opendr import Source, _opendr
-from opendr._native_learner import _value, native_class
+from opendr._native_class import native_class
+from opendr._native_learner import _value
 from opendr.engine.data import Audio, Image, PointCloud, SkeletonSequence, Timeseries, Vector, Video
 from opendr.engine.learners import BaseLearner, Init, Learner, LearnerRL
 from opendr.engine.target import BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxList, Heatmap

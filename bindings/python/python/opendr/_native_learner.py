@@ -12,8 +12,9 @@ from typing import Any, ClassVar, NoReturn, Optional, Union
 from opendr import _opendr
 from opendr._errors import InternalError, InvalidInput, Unsupported
 from opendr._older_names import under_older_name
-from opendr._upstream.arguments import by_name, methods, value_here
-from opendr._upstream.rows import Argument, arguments
+from opendr._python_learners import registered_name
+from opendr._upstream.arguments import by_name, value_here
+from opendr._upstream.rows import Argument
 from opendr._upstream.rows import Learner as Row
 from opendr.engine import data, target
 from opendr.engine._parameters import Parameter, parameters
@@ -580,28 +581,10 @@ def _teacher(teacher: Optional[Learner]) -> Any:
         return None
     if isinstance(teacher, NativeBase):
         return teacher._handle
-    from opendr._registered import registered_name
-
     name = registered_name(type(teacher))
     if name is None:
         raise TypeError(f"teacher should be a learner or a name, not {type(teacher).__name__}; register() a class of yours")
     return name, teacher
-
-
-class _Classes(Parameter):
-    """The classes that are to be trained, and once there is a model those that it has."""
-
-    def __init__(self, parameter: Parameter) -> None:
-        vars(self).update(vars(parameter))
-
-    def __get__(self, instance: Any, owner: Optional[type] = None) -> Any:
-        handle = None if instance is None else vars(instance).get("_handle")
-        return handle and handle.classes or super().__get__(instance, owner)
-
-
-def _alias(name: str) -> property:
-    """OpenDR's name of a parameter as an attribute."""
-    return property(lambda self: getattr(self, name), lambda self, value: setattr(self, name, value))
 
 
 def _sample(folder: Optional[str], verbose: bool) -> PathLike:
@@ -613,47 +596,3 @@ def _sample(folder: Optional[str], verbose: bool) -> PathLike:
     os.makedirs(folder, exist_ok=True)
     copy: PathLike = shutil.copy(picture, folder)
     return copy
-
-
-def _parent(entry: Table, row: Row) -> type[NativeBase]:
-    from importlib import import_module
-
-    if row.mixin:
-        module, _, name = row.mixin.partition(":")
-        mixin: type[NativeBase] = getattr(import_module(module), name)
-        return mixin
-    if not entry["fit_in"]:
-        return NativeLearner
-    from opendr._native_learner_rl import NativeLearnerRL
-
-    return NativeLearnerRL
-
-
-def native_class(entry: Table, module: str) -> type[NativeBase]:
-    """The class of a learner of the registry."""
-    from collections import namedtuple
-
-    from opendr._reference import constructor, document, params_annotations
-    from opendr._upstream.modules import learner
-
-    row = learner(f"{entry['package']}.{entry['task']}", entry["class_name"]) or Row()
-    parent = _parent(entry, row)
-    names = [output["name"] for output in entry["outputs"]]
-    fields = [*entry["fit_params"], *entry["params"]]
-    namespace: dict[str, Any] = {
-        **{alias: _alias(field["name"]) for field in entry["fit_params"] for alias in field["aliases"]},
-        **methods(row, parent),
-        "__doc__": document(entry),
-        "__module__": module,
-        "__annotations__": params_annotations(entry),
-        "_entry": entry,
-        "_row": row,
-        "_places": arguments(row.init or " ".join(BaseLearner.__signature__.parameters)),
-        "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
-        **{field["name"]: field["default"] for field in fields},
-    }
-    made: Any = type(entry["class_name"], (parent,), namespace)
-    made.__signature__ = constructor(made)
-    if "classes" in {field["name"] for field in fields}:
-        made.classes = _Classes(vars(made)["classes"])
-    return made  # type: ignore[no-any-return]

@@ -4,29 +4,28 @@ from __future__ import annotations
 
 import sys
 import types
-from typing import Any, Optional, TypeVar
+from typing import Any, TypeVar
 
 from opendr import _opendr
 from opendr._errors import NotFound
+from opendr._python_learners import PYTHON_LEARNERS
 from opendr.engine.learners import BaseLearner, Learner
 
 T = TypeVar("T", bound=type[BaseLearner])
 
 #: OpenDR's functions that draw a type of target.
 _DRAWING = {"BoundingBoxList": ("draw_bounding_boxes",), "PoseList": ("draw", "get_bbox")}
-#: The classes of learners written in Python, by name.
-_OWN: dict[str, type[BaseLearner]] = {}
 
 
 def task_modules(package: types.ModuleType) -> None:
     """Makes the modules of a package of learners, one a task, with the task's learners and drawing functions."""
     from opendr import _drawing
-    from opendr._native_learner import native_class
+    from opendr._native_class import native_class
     from opendr._upstream.modules import add_names
 
     made = {}
     for entry in _opendr.entries():
-        if entry["name"] in _OWN or package.__name__ != f"opendr.{entry['package']}":
+        if entry["name"] in PYTHON_LEARNERS or package.__name__ != f"opendr.{entry['package']}":
             continue
         name = f"{package.__name__}.{entry['task']}"
         module = sys.modules.get(name)
@@ -51,17 +50,12 @@ def learners() -> dict[str, type[BaseLearner]]:
 
     classes: dict[str, type[BaseLearner]] = {}
     for entry in _opendr.entries():
-        package = None if entry["name"] in _OWN else importlib.import_module(f"opendr.{entry['package']}")
+        package = None if entry["name"] in PYTHON_LEARNERS else importlib.import_module(f"opendr.{entry['package']}")
         task = getattr(package, entry["task"], None)
-        found = _OWN.get(entry["name"]) or getattr(task, entry["class_name"], None)
+        found = PYTHON_LEARNERS.get(entry["name"]) or getattr(task, entry["class_name"], None)
         if found is not None:
             classes[entry["name"]] = found
     return classes
-
-
-def registered_name(cls: type) -> Optional[str]:
-    """The name under which a class was registered."""
-    return next((name for name, other in _OWN.items() if other is cls), None)
 
 
 def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:
@@ -79,10 +73,10 @@ def learner(spec: str, verbose: bool = True, **arguments: Any) -> Any:
     classes = learners()
     if name not in classes:
         raise NotFound(f"no learner {name!r}; there are {', '.join(classes)}")
-    if variant and name in _OWN:
+    if variant and name in PYTHON_LEARNERS:
         raise NotFound(f"the learner {name!r} has no pretrained models; write {name!r}, and load() one of yours")
     made: Any = classes[name](**arguments)
-    if name not in _OWN:
+    if name not in PYTHON_LEARNERS:
         made.load(verbose=verbose, variant=variant or None)
     return made
 
@@ -103,7 +97,7 @@ def register(cls: T) -> T:
 
     tables = tables_from_class(cls)
     _opendr.register(cls, tables)
-    _OWN[tables["name"]] = cls
+    PYTHON_LEARNERS[tables["name"]] = cls
     return cls
 
 
