@@ -135,7 +135,7 @@ def arguments(entry):
         kind = param_type(own[name]) if name in own else getattr(base.get(name), "__name__", "Any")
         return f"{name}: {kind} = ..."
 
-    places = [argument.name for argument in made(entry)._places]
+    places = [argument.name for argument in made(entry)._positional]
     rest = [name for name in (*base, *own, *dict(entry["without_effect"])) if name not in places]
     return ["self", *map(shown, places), *["*"] * bool(rest), *map(shown, dict.fromkeys(rest))]
 

@@ -14,7 +14,7 @@ def string(text, is_cdr):
 
 
 def image(number, width, height, is_cdr):
-    """A picture of bgr8 from camera `c`."""
+    """An image of bgr8 from camera `c`."""
     pixels = bytes((at * 7 + number) % 251 for at in range(width * 3)) * height
     seconds, nanoseconds = divmod(START + number * STEP, 10**9)
     if not is_cdr:

@@ -1,4 +1,4 @@
-"""A robot's recording, made by rosbags: a camera that sees a noisy scene, and chatter; pictures as files beside it."""
+"""A robot's recording, made by rosbags: a camera that sees a noisy scene, and chatter; images as files beside it."""
 
 from pathlib import Path
 
@@ -83,7 +83,7 @@ def write(path, storage, topics=("/camera/image_raw", "/chatter", "/beats")):
 
 
 def write_mcap(path):
-    """The camera's topic alone, by the mcap package, a chunk a picture."""
+    """The camera's topic alone, by the mcap package, a chunk an image."""
     store, kind = typestore(False), "sensor_msgs/msg/Image"
     with path.open("wb") as file:
         writer = McapWriter(file, chunk_size=50_000)

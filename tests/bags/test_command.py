@@ -50,7 +50,7 @@ def stamp_of(message):
 
 
 def check_boxes(found, lines, class_id):
-    """Detections are the boxes that the lines of JSON tell, logged with their picture, stamped as it was taken."""
+    """Detections are the boxes that the lines of JSON tell, logged with their image, stamped as it was taken."""
     assert len(found) == len(lines) == robot.FRAMES
     for number, ((logged, kind, message), line) in enumerate(zip(found, lines, strict=True)):
         assert kind == "vision_msgs/msg/Detection2DArray"

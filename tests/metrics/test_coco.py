@@ -98,7 +98,7 @@ def pose(entry):
 
 
 def samples(truth, results, kind):
-    """Picture by picture in the order of their numbers, which is pycocotools' order."""
+    """Picture by image in the order of their numbers, which is pycocotools' order."""
     name, field, convert = ("PoseList", "poses", pose) if kind == "keypoints" else ("BoundingBoxList", "boxes", box)
     pictures = {picture["id"]: ([], []) for picture in sorted(truth["images"], key=lambda picture: picture["id"])}
     for side, entries in enumerate((results, truth["annotations"])):
@@ -124,7 +124,7 @@ def assert_equal(report, stats, kind):
 
 
 def random_box(rng):
-    """From a fraction of a pixel to the whole picture; sometimes whole pixels, sometimes decimals."""
+    """From a fraction of a pixel to the whole image; sometimes whole pixels, sometimes decimals."""
     size = np.exp(rng.uniform(np.log(0.5), np.log([WIDTH, HEIGHT])))
     start = rng.uniform(0, 1, 2) * ([WIDTH, HEIGHT] - size)
     numbers = np.concatenate([start, size])
@@ -139,7 +139,7 @@ def jittered(rng, bounds):
 
 
 def polygons(rng, bounds):
-    """One or two outlines in a box, some reaching over the edge of the picture."""
+    """One or two outlines in a box, some reaching over the edge of the image."""
     left, top, width, height = bounds
     found = []
     for _ in range(rng.integers(1, 3)):

@@ -61,7 +61,7 @@ def assert_equal(report, wanted):
 
 
 def annotations(folder, name):
-    """Persons of MMPose's samples, answered with noise of a tenth of the box, some joints not found."""
+    """Persons of MMPose's samples, answered with noise of a tenth of the box, some joints not detected."""
     random = np.random.default_rng(3)
     persons = []
     for annotation in json.loads((folder / name).read_text())["annotations"]:
@@ -121,7 +121,7 @@ def test_torso(compute):
 
 
 def test_random_poses_on_a_grid(compute):
-    """Whole numbers: distances that are exactly the threshold."""
+    """Integers: distances that are exactly the threshold."""
     for seed in range(20):
         random = np.random.default_rng(seed)
         persons = []

@@ -117,7 +117,7 @@ def case(pictures, parts=1):
 
 
 def placed(name, x, z, rotation_y, size, occluded=0, truncated=0.0, confidence=0.0):
-    """A box on the street and where it is in the picture, with the two decimals of KITTI's files."""
+    """A box on the street and where it is in the image, with the two decimals of KITTI's files."""
     length, height, width = (round(side, 2) for side in size)
     pixels = FOCAL / z
     left, right = CENTER_X + (x - length / 2) * pixels, CENTER_X + (x + length / 2) * pixels

@@ -11,7 +11,7 @@ from pycocotools import mask
 DIVISOR = 1000
 VOID = 255
 
-# A picture is (found, truth); both are maps of labels, class * DIVISOR + object. Object 0 of a thing is, in the truth,
+# An image is (found, truth); both are maps of labels, class * DIVISOR + object. Object 0 of a thing is, in the truth,
 # a crowd; class VOID does not count.
 
 
@@ -40,7 +40,7 @@ def segments_of(labels, things, is_truth):
 
 
 def write_coco(pictures, things, classes, folder):
-    """The two JSON files with their folders of pictures."""
+    """The two JSON files with their folders of images."""
     categories = [{"id": kind, "name": f"class {kind}", "isthing": int(kind in things)} for kind in classes]
     paths = []
     for side, name in enumerate(["found", "truth"]):

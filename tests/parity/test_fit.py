@@ -139,7 +139,7 @@ def test_interrupt_saves(counter, tmp_path, interruptible):
 
 def test_a_learner_written_in_python_teaches(counter, tmp_path):
     class OneEachLearner(Learner):
-        """Finds one dog in every picture, and is not sure of another."""
+        """Finds one dog in every image, and is not sure of another."""
 
         name = "one_each"
         task = "object_detection_2d"

@@ -1,4 +1,4 @@
-"""Accuracy through our pipeline on real pictures, scored with the field's own tools."""
+"""Accuracy through our pipeline on real images, scored with the field's own tools."""
 
 import json
 from pathlib import Path

@@ -60,7 +60,7 @@ def test_streets_equal_a_mapping_by_hand(opendr, shared, tmp_path):
 
 
 def yolo(folder, source, names, order):
-    """The coco128 val pictures as a YOLO data set whose classes have these names in this order."""
+    """The coco128 val images as a YOLO data set whose classes have these names in this order."""
     (folder / "images/val").mkdir(parents=True)
     (folder / "labels/val").mkdir(parents=True)
     for picture in sorted((source / "images/val2017").glob("*.jpg"))[:24]:

@@ -9,7 +9,7 @@ import threading
 from patience import PATIENCE
 from peers import ROOT, TARGET
 
-# The first picture takes longer: models are read, memory is taken.
+# The first image takes longer: models are read, memory is taken.
 START = 120
 
 

@@ -53,7 +53,7 @@ def test_ros1_counters_become_zero(ros1, echo):
     assert echo.again(name, "ros1", counted) == ros1.encode(name, {"header": header, **data})
 
 
-# They hold the picture or the points that they were found in, or say apart from the track's name that there is one.
+# They hold the image or the points that they were found in, or say apart from the track's name that there is one.
 LOSSY = {f"vision_msgs/{name}" for name in ("Classification2D", "Detection2D", "Detection3D")}
 LOSSY |= {"vision_msgs/Detection2DArray", "vision_msgs/Detection3DArray", "opendr_msgs/ImageWithDetections"}
 

@@ -1,4 +1,4 @@
-"""Broken messages of every type: OpenDR reads them or says why not, and takes no memory for what is not there."""
+"""Broken messages of every type: OpenDR reads them or says why not, and takes no memory for what does not exist."""
 
 import random
 

@@ -8,7 +8,7 @@ from pictures import photograph
 
 IMAGE, COMPRESSED, DETECTOR = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage", "single_shot_detector"
 
-# A receive buffer that holds several pictures (docs/ros.md).
+# A receive buffer that holds several images (docs/ros.md).
 ROOM = """<?xml version="1.0" encoding="UTF-8"?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
   <transport_descriptors>

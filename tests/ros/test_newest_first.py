@@ -1,4 +1,4 @@
-"""A learner that takes 100 ms, and pictures at 30 Hz: what it takes next is always the newest."""
+"""A learner that takes 100 ms, and images at 30 Hz: what it takes next is always the newest."""
 
 from node import Node
 from patience import wait_until

@@ -10,7 +10,7 @@ EPISODES = 20
 
 
 def bits(numbers):
-    """Doubles as whole numbers: the other side's parser of JSON may lose their last bit."""
+    """Doubles as integers: the other side's parser of JSON may lose their last bit."""
     return np.atleast_1d(numbers).astype(np.float64).view(np.uint64).tolist()
 
 

@@ -45,7 +45,7 @@ def exported(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def own_module():
-    """Trains the module of crates/training/examples/own_module.rs on the pictures in a folder."""
+    """Trains the module of crates/training/examples/own_module.rs on the images in a folder."""
     command = example("training", "own_module")
 
     def run(pictures, output):

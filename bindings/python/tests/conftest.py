@@ -1,4 +1,4 @@
-"""Where models and pictures for tests are. The tests use the installed package."""
+"""Where models and images for tests are. The tests use the installed package."""
 
 import os
 from pathlib import Path

@@ -69,7 +69,7 @@ def test_threads_may_share_a_metric():
 
 
 class Astronauts(DatasetIterator):
-    """One picture again and again; its second sample says something wrong."""
+    """One image again and again; its second sample says something wrong."""
 
     classes = ["cat", "human"]
 
@@ -151,7 +151,7 @@ def test_eval_leaves_out_what_is_broken(detector, picture):
 
 def test_eval_of_a_learner_in_python(picture):
     class Guess(Learner):
-        """Finds a person in every picture."""
+        """Finds a person in every image."""
 
         name = "guess"
         task = "object_detection_2d"
@@ -159,7 +159,7 @@ def test_eval_of_a_learner_in_python(picture):
         def infer(self, image: Image) -> BoundingBoxList:
             return BoundingBoxList([BoundingBox(name=1, left=20, top=10, width=450, height=500, score=0.5)])
 
-    # One of three pictures has no person, so half of what is found last is wrong; cats are not found.
+    # One of three images has no person, so half of what is found last is wrong; cats are not detected.
     numbers = Guess().eval(Astronauts(picture))
     assert 0.3 < numbers["map50"] < 0.5
 

@@ -305,7 +305,7 @@ class PairOutputs(NamedTuple):
 
 
 class PairLearner(Learner):
-    """Gives its boxes back, and the sums of picture and vector."""
+    """Gives its boxes back, and the sums of image and vector."""
 
     name = "pair"
     task = "object_detection_2d"

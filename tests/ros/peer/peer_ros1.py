@@ -70,7 +70,7 @@ class Peer:
         return genpy.dynamic.generate_dynamic(type, text)[type]._md5sum
 
     def do_advertise(self, topic, type, latch=False, depth=10):
-        """A publisher that stays; `publish` makes it when it is not there."""
+        """A publisher that stays; `publish` makes it when it does not exist."""
         self.start()
         with self.lock:
             if topic not in self.publishers:

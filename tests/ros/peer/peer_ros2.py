@@ -100,7 +100,7 @@ class Peer:
         return serialize_message(ros2_messages.from_plain(ros2_messages.type_by_name(type), fields)).hex()
 
     def do_advertise(self, topic, type, qos="reliable", depth=10):
-        """A publisher that stays; `publish` makes it when it is not there."""
+        """A publisher that stays; `publish` makes it when it does not exist."""
         node = self.locked_node()
         with self.lock:
             if topic not in self.publishers:

@@ -18,7 +18,7 @@ from opendr.engine.learners import BaseLearner
 
 
 def native_class(entry: Table, module: str) -> type[NativeBase]:
-    """The class of a learner of the registry."""
+    """Builds the class of a learner of the registry."""
     row = learner(f"{entry['package']}.{entry['task']}", entry["class_name"]) or Row()
     parent = _parent(entry, row)
     names = [output["name"] for output in entry["outputs"]]
@@ -31,15 +31,15 @@ def native_class(entry: Table, module: str) -> type[NativeBase]:
         "__annotations__": params_annotations(entry),
         "_entry": entry,
         "_row": row,
-        "_places": arguments(row.init or " ".join(BaseLearner.__signature__.parameters)),
+        "_positional": arguments(row.init or " ".join(BaseLearner.__signature__.parameters)),
         "_outputs": staticmethod(namedtuple(f"{entry['class_name']}Outputs", names)),
         **{field["name"]: field["default"] for field in fields},
     }
-    made: Any = type(entry["class_name"], (parent,), namespace)
-    made.__signature__ = constructor(made)
+    built: Any = type(entry["class_name"], (parent,), namespace)
+    built.__signature__ = constructor(built)
     if "classes" in {field["name"] for field in fields}:
-        made.classes = _Classes(vars(made)["classes"])
-    return made  # type: ignore[no-any-return]
+        built.classes = _Classes(vars(built)["classes"])
+    return built  # type: ignore[no-any-return]
 
 
 def _parent(entry: Table, row: Row) -> type[NativeBase]:
@@ -47,13 +47,11 @@ def _parent(entry: Table, row: Row) -> type[NativeBase]:
         module, _, name = row.mixin.partition(":")
         mixin: type[NativeBase] = getattr(import_module(module), name)
         return mixin
-    if not entry["fit_in"]:
-        return NativeLearner
-    return NativeLearnerRL
+    return NativeLearnerRL if entry["fit_in"] else NativeLearner
 
 
 class _Classes(Parameter):
-    """The classes that are to be trained, and once there is a model those that it has."""
+    """The parameter ``classes``: the classes to train, or those of the model once one is loaded."""
 
     def __init__(self, parameter: Parameter) -> None:
         vars(self).update(vars(parameter))
@@ -64,5 +62,5 @@ class _Classes(Parameter):
 
 
 def _alias(name: str) -> property:
-    """OpenDR's name of a parameter as an attribute."""
+    """Returns a property for OpenDR's name of a parameter."""
     return property(lambda self: getattr(self, name), lambda self, value: setattr(self, name, value))

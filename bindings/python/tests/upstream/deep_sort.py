@@ -1,4 +1,4 @@
-"""DeepSORT of pictures that carry their boxes, and of pictures and boxes apart."""
+"""DeepSORT of images that carry their boxes, and of images and boxes apart."""
 
 import os
 

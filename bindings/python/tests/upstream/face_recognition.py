@@ -1,4 +1,4 @@
-"""Persons are made known by a folder of pictures, then recognised."""
+"""Persons are made known by a folder of images, then recognised."""
 
 import os
 import shutil

@@ -8,7 +8,7 @@ from opendr.engine.target import Category
 
 
 class Brightness(Learner):
-    """Tells whether a picture is bright."""
+    """Tells whether an image is bright."""
 
     def fit(self, dataset, val_dataset=None, logging_path="", silent=True, verbose=True):
         self.threshold = float(np.mean([image.data.mean() for image, _ in dataset]) / 255)

@@ -1,4 +1,4 @@
-"""What persons do in a clip, and after every picture of it."""
+"""What persons do in a clip, and after every image of it."""
 
 from pathlib import Path
 

@@ -98,7 +98,7 @@ def placed_eval(method: Callable[..., Any], wanted: Sequence[Argument]) -> Calla
                 raise TypeError(f"{owner}: use_subset wants the number of samples; give subset_size")
             found["limit"] = size
         live = {key: found.pop(key) for key in list(found) if self._live_name(key) is not None}
-        with self._for_now({self._live_name(key): value for key, value in live.items() if value is not None}):
+        with self._temporarily({self._live_name(key): value for key, value in live.items() if value is not None}):
             return method(self, **{key: value for key, value in found.items() if value is not None or key == "dataset"})
 
     return call

@@ -1,4 +1,4 @@
-"""OpenDR's data sets of boxes in pictures."""
+"""OpenDR's data sets of boxes in images."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ class DetectionDataset(DatasetIterator):
     """Pictures with boxes, whose samples pass through functions when they are read.
 
     Args:
-        classes: What class indices mean.
+        classes: Names of the class indices.
         dataset_type: The format, as ``ExternalDataset`` takes it.
         root: Its folder.
-        image_paths: The files of the pictures, where a subclass reads them.
+        image_paths: The files of the images, where a subclass reads them.
         splits: The parts, a name or several; empty: the format's own first.
-        image_transform: From a picture to whatever.
+        image_transform: From an image to whatever.
         target_transform: From the boxes to whatever.
         transform: From both to a sample.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
         ValueError: It is of another format, or something is broken.
     """
 
@@ -64,11 +64,11 @@ class DetectionDataset(DatasetIterator):
         return len(self.classes)
 
     def set_transform(self, transform: Transform) -> None:
-        """Sets what picture and boxes pass through together."""
+        """Sets what image and boxes pass through together."""
         self._transform = transform
 
     def set_image_transform(self, transform: Transform) -> None:
-        """Sets what pictures pass through."""
+        """Sets what images pass through."""
         self._image_transform = transform
 
     def set_target_transform(self, transform: Transform) -> None:
@@ -76,7 +76,7 @@ class DetectionDataset(DatasetIterator):
         self._target_transform = transform
 
     def transform(self, transform: Callable[..., Any]) -> MappedDetectionDataset:
-        """Returns this data set with all samples passed through a function of picture and boxes."""
+        """Returns this data set with all samples passed through a function of image and boxes."""
         return MappedDetectionDataset(self, transform)
 
     def get_image(self, item: int) -> Any:
@@ -85,7 +85,7 @@ class DetectionDataset(DatasetIterator):
         return image if self._image_transform is None else self._image_transform(image)
 
     def get_bboxes(self, item: int) -> Any:
-        """The boxes of picture number ``item``."""
+        """The boxes of image number ``item``."""
         boxes = self._boxes(item)
         return boxes if self._target_transform is None else self._target_transform(boxes)
 
@@ -116,11 +116,11 @@ class DetectionDataset(DatasetIterator):
 
 
 class MappedDetectionDataset(DatasetIterator):
-    """A data set whose samples pass through a function of picture and boxes when they are read.
+    """A data set whose samples pass through a function of image and boxes when they are read.
 
     Args:
         data: The data set.
-        map_function: From a picture and its boxes to a sample.
+        map_function: From an image and its boxes to a sample.
     """
 
     def __init__(self, data: DatasetIterator, map_function: Callable[..., Any]) -> None:
@@ -154,12 +154,12 @@ class WiderFaceDataset(DetectionDataset):
         root: The folder that has them.
         splits: The parts: ``"train"``, ``"val"``.
         ignore_tiny: Whether faces of less than 10 pixels are left out.
-        image_transform: From a picture to whatever.
+        image_transform: From an image to whatever.
         target_transform: From the boxes to whatever.
         transform: From both to a sample.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
     """
 
     def __init__(
@@ -192,12 +192,12 @@ class WiderPersonDataset(DetectionDataset):
     Args:
         root: The folder that has them.
         splits: The parts: ``"train"``, ``"val"``.
-        image_transform: From a picture to whatever.
+        image_transform: From an image to whatever.
         target_transform: From the boxes to whatever.
         transform: From both to a sample.
 
     Raises:
-        FileNotFoundError: A file is not there.
+        FileNotFoundError: A file does not exist.
         ValueError: A line is broken.
     """
 
@@ -239,16 +239,16 @@ class XMLBasedDataset(DetectionDataset):
         dataset_type: What it is called.
         root: The folder that has both.
         classes: The classes; by default those that the annotations name, by the alphabet.
-        image_transform: From a picture to whatever.
+        image_transform: From an image to whatever.
         target_transform: From the boxes to whatever.
         transform: From both to a sample.
         splits: Kept as it is: the folder is one part.
-        images_dir: The folder of the pictures.
-        annotations_dir: The folder of the annotations, called as the pictures are.
+        images_dir: The folder of the images.
+        annotations_dir: The folder of the annotations, called as the images are.
         preload_anno: Whether annotations are read now, else when they are asked for.
 
     Raises:
-        FileNotFoundError: A folder is not there.
+        FileNotFoundError: A folder does not exist.
         ValueError: An annotation is broken.
     """
 

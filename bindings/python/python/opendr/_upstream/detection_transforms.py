@@ -25,14 +25,14 @@ class BoundingBoxListToNumpyArray:
 
 
 class ImageToNumpyArrayTransform:
-    """Makes an array of a picture, ``[channels, height, width]``."""
+    """Makes an array of an image, ``[channels, height, width]``."""
 
     def __call__(self, img: Image) -> NDArray[Any]:
         return img.data
 
 
 class ResizeImageAndBoxesTransform:
-    """Resizes a picture ``[height, width, channels]`` and its boxes, rows of left, top, right, bottom and more.
+    """Resizes an image ``[height, width, channels]`` and its boxes, rows of left, top, right, bottom and more.
 
     Args:
         w: The new width, pixels.

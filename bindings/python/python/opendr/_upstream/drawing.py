@@ -27,19 +27,19 @@ def draw_detections(
     """Draws boxes that are given as arrays.
 
     Args:
-        img: OpenCV's picture, drawn on in place, or an :class:`Image`.
+        img: OpenCV's image, drawn on in place, or an :class:`Image`.
         boxes: Corners, ``[boxes, 4]``: left, top, right, bottom, in pixels.
         scores: Their scores.
         classes: Their class indices.
-        class_names: What class indices mean, by index.
+        class_names: Names of the class indices, by index.
         show: Opens a window and waits for a key; without OpenCV or a display, writes a file and prints its path.
-        line_thickness: No effect: lines and letters follow the picture's size.
+        line_thickness: No effect: lines and letters follow the image's size.
 
     Returns:
-        ``img`` itself for OpenCV's picture, else a new :class:`Image`.
+        ``img`` itself for OpenCV's image, else a new :class:`Image`.
 
     Raises:
-        ValueError: The arrays do not fit together, or the picture cannot be drawn on.
+        ValueError: The arrays do not fit together, or the image cannot be drawn on.
     """
     import numpy as np
 
@@ -58,15 +58,15 @@ def draw(img: Picture, bounding_box_list: BoundingBoxList, w_sensor1: float = 1.
     """Draws what GemLearner found, with a bar for the weight of its first sensor.
 
     Args:
-        img: OpenCV's picture, drawn on in place, or an :class:`Image`.
+        img: OpenCV's image, drawn on in place, or an :class:`Image`.
         bounding_box_list: The boxes.
         w_sensor1: The weight, 0 to 1: the blue share of the bar at the lower edge; the rest is green.
 
     Returns:
-        ``img`` itself for OpenCV's picture, else a new :class:`Image`.
+        ``img`` itself for OpenCV's image, else a new :class:`Image`.
 
     Raises:
-        ValueError: The weight is out of range, or the picture cannot be drawn on.
+        ValueError: The weight is out of range, or the image cannot be drawn on.
     """
     if not 0 <= w_sensor1 <= 1:
         raise ValueError(f"w_sensor1 = {w_sensor1} is out of range 0 to 1")
@@ -88,7 +88,7 @@ def _bar(pixels: Any, weight: float) -> None:
 
 
 def visualize(learner: Any, image_path: Union[str, os.PathLike[str]], show: bool = True) -> tuple[Image, Heatmap]:
-    """Shows what BinaryHighResolutionLearner finds in a picture.
+    """Shows what BinaryHighResolutionLearner finds in an image.
 
     Args:
         learner: The learner, loaded.

@@ -26,7 +26,7 @@ class FilteredLearnerWrapper:
             raise TypeError(f"learner should be a detector, not {learner!r:.100}")
         self.learner = learner
         self.allowed_classes = list(allowed_classes or ())
-        #: What the detector's class numbers mean.
+        #: What the detector's class indices mean.
         self.classes: list[str] = list(getattr(learner, "classes", []))
         unknown = [name for name in self.allowed_classes if name not in self.classes]
         if unknown:

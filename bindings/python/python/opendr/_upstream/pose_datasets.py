@@ -18,15 +18,15 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 
 class CocoValDataset(DatasetIterator):
-    """COCO's pictures with the poses in them.
+    """COCO's images with the poses in them.
 
     Args:
         labels: ``ROOT/annotations/person_keypoints_PART.json``.
         images_folder: ``ROOT/PART``.
 
     Raises:
-        FileNotFoundError: It is not there.
-        ValueError: Annotations and pictures do not lie as in COCO.
+        FileNotFoundError: It does not exist.
+        ValueError: Annotations and images do not lie as in COCO.
     """
 
     def __init__(self, labels: PathLike, images_folder: PathLike) -> None:
@@ -66,7 +66,7 @@ class URFallDatasetIterator(DatasetIterator):
     """Pictures of persons, and whether they have fallen.
 
     Args:
-        data: Pictures, or their files.
+        data: Images, or their files.
         labels: Categories: 1 fallen, -1 standing, 0 in between.
 
     Raises:
@@ -89,7 +89,7 @@ def falls_of(dataset: ExternalDataset) -> URFallDatasetIterator:
     """Opens UR Fall (``ur_fall_dataset``), or a folder with ``annotations.csv`` (``test``).
 
     Raises:
-        FileNotFoundError: A table is not there.
+        FileNotFoundError: A table does not exist.
         ValueError: It is of another type, or a row is broken.
     """
     kind, files, labels = dataset.dataset_type.lower(), list[str](), list[Category]()

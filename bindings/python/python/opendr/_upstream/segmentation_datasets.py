@@ -20,15 +20,15 @@ _SEQUENCES = {
 
 
 class CamVidDataset(DatasetIterator):
-    """CamVid: pictures of roads with the classes of their pixels.
+    """CamVid: images of roads with the classes of their pixels.
 
     Args:
         path: The folder with ``train``, ``train_labels`` (or ``trainannot``), ... and maybe ``class_dict.csv``.
-        scale: Kept as it is: pictures are read in their size, and cropped by the training itself.
+        scale: Kept as it is: images are read in their size, and cropped by the training itself.
         mode: The part.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
     """
 
     dataset_type = "camvid"
@@ -38,7 +38,7 @@ class CamVidDataset(DatasetIterator):
         self.image_size = tuple(scale)
         self.mode = mode
         self._samples = ExternalDataset(self.path, self.dataset_type).open(split=mode)
-        #: What class numbers mean.
+        #: Names of the class indices.
         self.classes: list[str] = self._samples.classes
 
     @staticmethod
@@ -63,12 +63,12 @@ class _StreetDataset(DatasetIterator):
 
     def __init__(self, path: PathLike) -> None:
         self.path: str = os.fspath(path)
-        #: Kept as it is: pictures are prepared by the learner.
+        #: Kept as it is: images are prepared by the learner.
         self.pipeline: Any = None
         folders = [os.path.join(self.path, name) for name in ("images", "stuffthingmaps")]
         self._files = [sorted(_pictures(folder)) for folder in folders] if os.path.isdir(folders[0]) else None
         self._samples = None if self._files else ExternalDataset(self.path, self.dataset_type).open()
-        #: What class numbers mean; empty where OpenDR's folders do not tell.
+        #: Names of the class indices; empty where OpenDR's folders do not tell.
         self.classes: list[str] = [] if self._samples is None else self._samples.classes
         if self._files and self._files[1] and len(self._files[0]) != len(self._files[1]):
             raise FormatError(f"{self.path}: {len(self._files[0])} pictures have {len(self._files[1])} maps")
@@ -98,26 +98,26 @@ class _StreetDataset(DatasetIterator):
 
 
 class CityscapesDataset(_StreetDataset):
-    """Cityscapes: pictures of streets with classes.
+    """Cityscapes: images of streets with classes.
 
     Args:
         path: Its folder, as it is published, or as OpenDR prepared it.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
     """
 
     dataset_type = "cityscapes"
 
 
 class KittiDataset(_StreetDataset):
-    """KITTI's panoptic pictures, in Cityscapes' folders or as OpenDR prepared them.
+    """KITTI's panoptic images, in Cityscapes' folders or as OpenDR prepared them.
 
     Args:
         path: Its folder.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
     """
 
     dataset_type = "cityscapes"
@@ -189,10 +189,10 @@ class SemanticKittiDataset(DatasetIterator):
 
 
 class HighResolutionDataset(DatasetIterator):
-    """Squares of pictures with boxes: class 1 in a box, class 0 outside of all.
+    """Squares of images with boxes: class 1 in a box, class 0 outside of all.
 
     Args:
-        dataset_folder: Pictures, with Pascal VOC's XML files beside them.
+        dataset_folder: Images, with Pascal VOC's XML files beside them.
         patch_size: Side of the squares, pixels.
         non_zero_threshold: Squares that lie in boxes with a larger share than this, and in one of them with a smaller,
             are left out.

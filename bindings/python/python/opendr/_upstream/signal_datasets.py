@@ -15,7 +15,7 @@ class Dataset(DatasetIterator):
 
     Args:
         x: Arrays, ``[channels, steps]`` each.
-        y: Class numbers.
+        y: Class indices.
 
     Raises:
         ValueError: There are not as many of both.

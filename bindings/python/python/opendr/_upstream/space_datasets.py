@@ -59,11 +59,11 @@ class LabeledPointCloudsDatasetIterator(DatasetIterator):
         lidar_path: The folder of the scans, little-endian float32 numbers.
         label_path: The folder of KITTI's labels.
         calib_path: The folder of KITTI's calibrations.
-        image_path: The folder of the pictures, for their size.
+        image_path: The folder of the images, for their size.
         num_point_features: Numbers a point.
 
     Raises:
-        FileNotFoundError: A folder is not there.
+        FileNotFoundError: A folder does not exist.
         ValueError: The folders have different numbers of files.
     """
 
@@ -101,7 +101,7 @@ class KittiTrackingDatasetIterator(DatasetIterator):
         inputs_format: How boxes are written: ``"detection"`` (frame, then a label) or ``"tracking"``.
 
     Raises:
-        FileNotFoundError: A folder is not there.
+        FileNotFoundError: A folder does not exist.
         ValueError: The folders have different numbers of files, or there is no such format.
     """
 
@@ -144,12 +144,12 @@ class LabeledTrackingPointCloudsDatasetIterator(DatasetIterator):
         lidar_path: The folder of the scans, little-endian float32 numbers.
         label_path: The file of KITTI's tracking labels.
         calib_path: The file of KITTI's calibration.
-        image_path: The folder of the pictures, for their size.
+        image_path: The folder of the images, for their size.
         labels_format: ``"tracking"`` for annotations with numbers, ``"detection"`` for boxes.
         num_point_features: Numbers a point.
 
     Raises:
-        FileNotFoundError: Something is not there.
+        FileNotFoundError: Something does not exist.
         ValueError: A line is broken, or there is no such format.
     """
 

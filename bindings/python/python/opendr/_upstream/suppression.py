@@ -43,7 +43,7 @@ class NMSCustom(ABC):
             boxes: Corners, ``[boxes, 4]``: left, top, right, bottom, in pixels.
             scores: Scores, ``[boxes, classes]``, or ``[boxes]`` of one class.
             threshold: Boxes below this score are dropped.
-            img: The picture, for those that look at it.
+            img: The image, for those that look at it.
 
         Returns:
             The boxes that are left, by falling score, and their corners ``[boxes, 4]``, classes and scores.
@@ -165,7 +165,7 @@ class ClusterNMS(_Limited):
         """Sets whether boxes of different classes suppress each other."""
         self.cross_class = bool(cross_class)
 
-    # OpenDR's order: the picture comes before the threshold.
+    # OpenDR's order: the image comes before the threshold.
     def run_nms(  # type: ignore[override]
         self,
         boxes: Optional[ArrayLike] = None,

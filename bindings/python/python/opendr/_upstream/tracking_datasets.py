@@ -65,7 +65,7 @@ class Market1501DatasetIterator(DatasetIterator):
         path: The folder, e.g. ``bounding_box_train``.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
     """
 
     def __init__(self, path: PathLike) -> None:
@@ -85,16 +85,16 @@ class Market1501DatasetIterator(DatasetIterator):
 class RawMotDatasetIterator(DatasetIterator):
     """The frames of the MOT Challenge as FairMOT lists them, with the tracks in them.
 
-    A list has a picture a line, relative to ``root``; its annotations lie in the same place below ``labels_with_ids``
-    instead of ``images``: class, number, centre and size as shares of the picture.
+    A list has an image a line, relative to ``root``; its annotations lie in the same place below ``labels_with_ids``
+    instead of ``images``: class, number, centre and size as shares of the image.
 
     Args:
         root: The folder that the lists are relative to.
         paths: Lists by the names of their data sets.
-        options: OpenDR's further arguments, which have no effect: pictures are read as they are.
+        options: OpenDR's further arguments, which have no effect: images are read as they are.
 
     Raises:
-        FileNotFoundError: A list is not there.
+        FileNotFoundError: A list does not exist.
         ValueError: A line leads out of ``root``.
     """
 
@@ -110,7 +110,7 @@ class RawMotDatasetIterator(DatasetIterator):
             text = f"{type(self).__name__}: {names} has no effect: pictures and boxes are read as they are"
             warnings.warn(text, UserWarning, stacklevel=2)
         self.root: str = os.fspath(root)
-        #: The pictures of each data set.
+        #: The images of each data set.
         self.img_files: dict[str, list[str]] = {}
         for name, path in paths.items():
             with open(path, encoding="utf-8") as file:
@@ -150,11 +150,11 @@ class RawMotDatasetIterator(DatasetIterator):
 
 
 class MotDatasetIterator(RawMotDatasetIterator):
-    """As :class:`RawMotDatasetIterator`: pictures are augmented by the training itself."""
+    """As :class:`RawMotDatasetIterator`: images are augmented by the training itself."""
 
 
 class RawMotWithDetectionsDatasetIterator(RawMotDatasetIterator):
-    """As :class:`RawMotDatasetIterator`, of pictures with the boxes of their tracks: what DeepSORT takes."""
+    """As :class:`RawMotDatasetIterator`, of images with the boxes of their tracks: what DeepSORT takes."""
 
     def __getitem__(self, idx: int) -> tuple[Any, TrackingAnnotationList]:
         image, tracks = super().__getitem__(idx)

@@ -29,7 +29,7 @@ class KineticsDataset(DatasetIterator):
         spatial_pixels: No effect: the learner scales frames itself.
 
     Raises:
-        FileNotFoundError: It is not there.
+        FileNotFoundError: It does not exist.
         ValueError: A number is below 1.
     """
 
@@ -55,7 +55,7 @@ class KineticsDataset(DatasetIterator):
             raise ValueError("frames_per_clip and temporal_downsampling are 1 or more")
         self.video_transform = video_transform
         self._samples = ExternalDataset(path, "kinetics").open(split=split)
-        #: What class numbers mean.
+        #: Names of the class indices.
         self.classes: list[str] = self._samples.classes
 
     @staticmethod

@@ -56,7 +56,7 @@ class Seq2SeqNms(NativeLearner):
     """Attention that chooses among a detector's boxes, also called as OpenDR calls suppressions."""
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does, from a picture and a detector's boxes."""
+        """Predicts as ``infer`` of every learner does, from an image and a detector's boxes."""
         if {"boxes", "scores"} & arguments.keys():
             raise Unsupported("infer takes a picture and a BoundingBoxList; run_nms takes boxes, scores and img")
         return super().infer(*inputs, **arguments)
@@ -78,9 +78,9 @@ class Seq2SeqNms(NativeLearner):
             scores: Scores, ``[boxes]`` or ``[boxes, classes]``.
             boxes_sorted: Whether the scores fall; nothing depends on it.
             top_k: So many boxes are looked at.
-            img: The picture.
+            img: The image.
             threshold: Boxes below this score are dropped.
-            map: Not taken: the picture is looked at itself.
+            map: Not taken: the image is looked at itself.
 
         Returns:
             The boxes that are left, and their corners, classes and scores.

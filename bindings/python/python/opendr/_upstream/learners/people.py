@@ -20,7 +20,7 @@ _FALLEN, _STANDING, _UNKNOWN = (1, "fallen"), (-1, "standing"), (0, "unknown")
 
 
 class HighResolutionPoses(NativeLearner):
-    """Poses in large pictures, found in two passes."""
+    """Poses in large images, found in two passes."""
 
     def infer_adaptive(self, img: Any, upsample_ratio: int = 4, stride: int = 8) -> Any:
         """Predicts by the method ``adaptive``."""
@@ -44,7 +44,7 @@ class HighResolutionPoses(NativeLearner):
         subset = {"use_subset": use_subset, "subset_size": subset_size}
         wanted = {name: value for name, value in {**subset, **given}.items() if value is not None}
         evaluate: Any = self.eval
-        with self._for_now({"method": "adaptive"}):
+        with self._temporarily({"method": "adaptive"}):
             numbers: dict[str, Any] = evaluate(dataset, silent=silent, verbose=verbose, **wanted, **options)
         return numbers
 
@@ -57,7 +57,7 @@ class FallDetector(NativeLearner):
     """
 
     def __init__(self, *given: Any, **named: Any) -> None:
-        found = by_name(type(self).__name__, self._places, given, named, stacklevel=3)
+        found = by_name(type(self).__name__, self._positional, given, named, stacklevel=3)
         pose_estimator = found.pop("pose_estimator", None)
         super().__init__(**found)
         #: The learner that finds the poses; None where the model does.
@@ -76,7 +76,7 @@ class FallDetector(NativeLearner):
         self.pose_estimator = pose_estimator
 
     def infer(self, image: Any, **arguments: Any) -> Any:
-        """Predicts falls in a picture, or of poses.
+        """Predicts falls in an image, or of poses.
 
         Returns:
             Boxes and poses; pairs of category and pose where there is a pose estimator, or poses are given.
@@ -94,7 +94,7 @@ class FallDetector(NativeLearner):
 
     def eval(self, dataset: Any, **options: Any) -> dict[str, Any]:
         """Measures the falls of persons; with a pose estimator on OpenDR's data sets: an ``ExternalDataset`` of the
-        type ``ur_fall_dataset`` or ``test``, or any pairs of picture and category.
+        type ``ur_fall_dataset`` or ``test``, or any pairs of image and category.
 
         Returns:
             With a pose estimator ``accuracy``, ``sensitivity``, ``specificity``, ``detection_accuracy`` (NaN of

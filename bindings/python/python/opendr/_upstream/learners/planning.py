@@ -13,7 +13,7 @@ class Planner(NativeLearnerRL):
     """A policy that keeps the environment that its constructor was given."""
 
     def __init__(self, *given: Any, **named: Any) -> None:
-        found = by_name(type(self).__name__, self._places, given, named, stacklevel=3)
+        found = by_name(type(self).__name__, self._positional, given, named, stacklevel=3)
         #: Where it acts, unless ``fit`` and ``eval`` are given another environment.
         self.env: Any = found.pop("env", None)
         super().__init__(**found)

@@ -1,4 +1,4 @@
-"""Whole pictures."""
+"""Whole images."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from opendr.engine.target import BoundingBoxList, Heatmap
 
 
 class HighResolution(NativeLearner):
-    """Patches of large pictures, also cut out of pictures with boxes."""
+    """Patches of large images, also cut out of images with boxes."""
 
     def fit(
         self,
@@ -48,7 +48,7 @@ def _with_boxes(dataset: Any) -> Any:
 
 
 class PanopticPictures(NativeLearner):
-    """Classes and objects of pictures."""
+    """Classes and objects of images."""
 
     @staticmethod
     def visualize(
@@ -60,15 +60,15 @@ class PanopticPictures(NativeLearner):
         figure_size: tuple[float, float] = (15, 10),
         detailed: bool = False,
     ) -> Image:
-        """Draws classes over a picture.
+        """Draws classes over an image.
 
         Args:
-            image: The picture.
+            image: The image.
             prediction: The maps of objects and of classes, as ``infer`` gives them.
             show_figure: Whether to show it in a window; without a display a file is written and its path printed.
             save_figure: Whether to write it to ``figure_filename``.
             figure_filename: The file.
-            figure_size: The drawing has the size of the picture.
+            figure_size: The drawing has the size of the image.
             detailed: Draws the objects instead of the classes.
 
         Returns:

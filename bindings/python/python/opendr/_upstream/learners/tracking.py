@@ -27,18 +27,18 @@ class NumberedFrames(NativeLearner):
     """A tracker that can be told the numbers of its frames."""
 
     def infer(self, image: Any, frame_ids: Any = None, **arguments: Any) -> Any:
-        """Predicts as ``infer`` of every learner does; ``frame_ids`` are the numbers of the frames, one for a picture,
+        """Predicts as ``infer`` of every learner does; ``frame_ids`` are the numbers of the frames, one for an image,
         or a list."""
         return _numbered(super().infer(image, **arguments), frame_ids)
 
 
 class DeepSort(NativeLearner):
-    """DeepSORT, of pictures with their boxes in one or in two inputs."""
+    """DeepSORT, of images with their boxes in one or in two inputs."""
 
     _JOINED = arguments_of("batch>image frame_ids swap_left_top!swap")
 
     def infer(self, *inputs: Any, **arguments: Any) -> Any:
-        """Predicts tracks, of a picture and a detector's boxes as ``infer`` of every learner does, or as OpenDR: of an
+        """Predicts tracks, of an image and a detector's boxes as ``infer`` of every learner does, or as OpenDR: of an
         ``ImageWithDetections``, or a list of them, and the numbers of the frames (``frame_ids``)."""
         first = inputs[0] if inputs else arguments.get("batch", arguments.get("image"))
         several = isinstance(first, (list, tuple))
@@ -61,7 +61,7 @@ class DeepSort(NativeLearner):
 
 
 class _Apart(DatasetIterator):
-    """A data set whose pictures and boxes are two data."""
+    """A data set whose images and boxes are two data."""
 
     def __init__(self, dataset: DatasetIterator) -> None:
         self._dataset = dataset
@@ -122,7 +122,7 @@ class SingleObject(NativeLearner):
         init_box: Union[BoundingBoxList, BoundingBox, TrackingAnnotation, None] = None,
         **arguments: Any,
     ) -> Any:
-        """Predicts where the object of ``init_box`` is; ``init_box`` comes with the first picture of a stream."""
+        """Predicts where the object of ``init_box`` is; ``init_box`` comes with the first image of a stream."""
         if isinstance(init_box, TrackingAnnotation):
             init_box = init_box.bounding_box()
         if init_box is not None:
@@ -137,7 +137,7 @@ class SingleObject(NativeLearner):
         return [_only(tracks) for tracks in answer] if isinstance(answer, list) else _only(answer)
 
     def reset(self) -> None:
-        """Forgets what was seen: the next picture begins anew."""
+        """Forgets what was seen: the next image begins anew."""
         self._single = False
         super().reset()
 
