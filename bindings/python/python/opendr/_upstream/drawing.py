@@ -1,4 +1,4 @@
-"""OpenDR's drawing functions, beside those of ``opendr._drawing``."""
+"""Further drawing functions of OpenDR."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def draw_detections(
     show: bool = False,
     line_thickness: Optional[int] = None,
 ) -> Picture:
-    """Draws boxes that are given as arrays.
+    """Draws boxes given as arrays.
 
     Args:
         img: OpenCV's image, drawn on in place, or an :class:`Image`.
@@ -47,7 +47,7 @@ def draw_detections(
     values, names = np.asarray(scores, dtype=float).reshape(-1), np.asarray(classes).reshape(-1)
     if not len(corners) == len(values) == len(names):
         raise ValueError(
-            f"{len(corners)} boxes have {len(values)} scores and {len(names)} classes; give as many of each"
+            f"{len(corners)} boxes have {len(values)} scores and {len(names)} classes; give the same number of each"
         )
     rows = zip(corners.tolist(), names.tolist(), values.tolist())
     found = [BoundingBox(int(name), x0, y0, x1 - x0, y1 - y0, score) for (x0, y0, x1, y1), name, score in rows]
@@ -55,7 +55,7 @@ def draw_detections(
 
 
 def draw(img: Picture, bounding_box_list: BoundingBoxList, w_sensor1: float = 1.0) -> Picture:
-    """Draws what GemLearner found, with a bar for the weight of its first sensor.
+    """Draws predictions of GemLearner, with a bar for the weight of its first sensor.
 
     Args:
         img: OpenCV's image, drawn on in place, or an :class:`Image`.
@@ -88,7 +88,7 @@ def _bar(pixels: Any, weight: float) -> None:
 
 
 def visualize(learner: Any, image_path: Union[str, os.PathLike[str]], show: bool = True) -> tuple[Image, Heatmap]:
-    """Shows what BinaryHighResolutionLearner finds in an image.
+    """Draws the prediction of BinaryHighResolutionLearner for an image.
 
     Args:
         learner: The learner, loaded.
