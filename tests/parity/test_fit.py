@@ -123,7 +123,7 @@ def test_arguments_of_the_constructor_are_those_of_fit(tmp_path):
         cls(epochs=0)
     with pytest.raises(TypeError, match="no argument 'momentum'"):
         cls(momentum=0.9)
-    with pytest.raises(TypeError, match="fit has no argument 'momentum'; parameters of the training: epochs, lr"):
+    with pytest.raises(TypeError, match="fit has no argument 'momentum'; the parameters of the training are epochs, lr"):
         learner.fit(Boxes(4), momentum=0.9)
 
 

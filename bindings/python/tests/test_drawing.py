@@ -127,7 +127,7 @@ def test_headless_pictures_are_written(headless, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for name in ("opendr.png", "opendr-1.png"):
         picture = draw_bounding_boxes(black(), BOXES, ["person"], show=True)
-        assert capsys.readouterr().out == f"picture written to {tmp_path / name}\n"
+        assert capsys.readouterr().out == f"image written to {tmp_path / name}\n"
         assert np.array_equal(Image.open(tmp_path / name).opencv(), picture)
     draw_bounding_boxes(Image(black()), BOXES, show=True)
     assert (tmp_path / "opendr-2.png").exists()

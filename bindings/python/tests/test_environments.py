@@ -164,7 +164,7 @@ def test_a_snapshot_is_come_back_to():
         assert same(again[0], step[0]) and again[1:] == step[1:]
     with pytest.raises(ValueError, match="snapshot"):
         Environment("CartPole-v1").restore(snapshot)
-    with pytest.raises(ValueError, match="no snapshot"):
+    with pytest.raises(ValueError, match="not a snapshot"):
         other.restore("{}")
 
     envs = VectorEnvironment("CartPole-v1", 4)
@@ -206,7 +206,7 @@ def test_a_time_limit_can_be_shorter():
     env = gymnasium.make("opendr/Pendulum-v1", max_episode_steps=5)
     env.reset(seed=1)
     assert [env.step(np.zeros(1, np.float32))[3] for _ in range(5)] == [False] * 4 + [True]
-    with pytest.raises(opendr.InvalidParam, match="ends at 200"):
+    with pytest.raises(opendr.InvalidParam, match="its own limit, 200"):
         gymnasium.make_vec("opendr/Pendulum-v1", num_envs=2, max_episode_steps=5)
 
 
@@ -379,7 +379,7 @@ def test_what_no_learner_takes_is_refused():
     with pytest.raises(NotImplementedError, match="Text"):
         Bridge(env)
     env.action_space = spaces.Discrete(2**40)
-    with pytest.raises(NotImplementedError, match="choices"):
+    with pytest.raises(NotImplementedError, match="discrete space"):
         _opendr.Environment.of_python(Bridge(env))
     env = Everything()
     native = _opendr.Environment.of_python(Bridge(env))

@@ -175,5 +175,5 @@ def test_matrices_that_were_spoiled_are_refused():
     _, handle = echo_of(data.PointCloudWithCalibration)
     with pytest.raises(ValueError, match="no calibration; give calib"):
         handle.infer({"given": data.PointCloudWithCalibration(CLOUD)})
-    with pytest.raises(ValueError, match="no P2"):
+    with pytest.raises(ValueError, match="P2, Tr_velo_to_cam is missing"):
         handle.infer({"given": data.PointCloudWithCalibration(CLOUD, {"R0_rect": np.eye(3)})})

@@ -49,7 +49,7 @@ def test_every_name_is_there(module, name, home):
     exec(f"from {module} import {name}", namespace)
     assert namespace[name] is value
     if isinstance(home, Absent):
-        with pytest.raises(opendr.Unsupported, match=re.escape(f"{name} is not here yet; {home.use}")):
+        with pytest.raises(opendr.Unsupported, match=re.escape(f"{name} is not available yet; {home.use}")):
             value(1, device="cpu")
         for use in (iter, len, lambda value: value["x"], lambda value: value.download("x")):
             with pytest.raises(opendr.Unsupported):

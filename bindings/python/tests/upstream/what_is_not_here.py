@@ -29,6 +29,6 @@ for learner in (
     try:
         learner(device="cpu")
     except NotImplementedError as error:
-        assert str(error).startswith(f"{learner.__name__} is not here yet; "), error
+        assert str(error).startswith(f"{learner.__name__} is not available yet; "), error
     else:
         raise AssertionError(learner)

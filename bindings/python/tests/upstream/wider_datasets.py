@@ -35,6 +35,6 @@ with open("persons/val.txt", "w") as file:
 try:
     WiderPersonDataset("persons", ["val"])
 except ValueError as error:
-    assert "leads out of" in str(error)
+    assert "is outside" in str(error)
 else:
     raise AssertionError("a list may lead out of its folder")
