@@ -28,7 +28,7 @@ def image(number, width, height, is_cdr):
 
 
 def talk(is_cdr):
-    """(topic, time, bytes) of two topics: times of one stand still and go back now and then."""
+    """(topic, time, bytes) of two topics: the times of one sometimes repeat or decrease."""
     messages = []
     for number in range(60):
         time = START + number * STEP

@@ -100,7 +100,7 @@ def examples():
 
 
 class Model:
-    """One model: where it is, what it takes, what came out of it."""
+    """One model: its path, its inputs, its outputs."""
 
     def __init__(self, name, path):
         self.name, self.path = name, path

@@ -131,7 +131,7 @@ class Reference:
         self.dims = [int(dim) for dim in self.input["shape"]]
 
     def stored(self, image):
-        """What the model's own input holds."""
+        """Returns the random input of the model."""
         np, (scale, zero) = self.np, self.input["quantization"]
         if scale:
             limits = np.iinfo(self.input["dtype"])
@@ -152,7 +152,7 @@ class Reference:
 
 
 def inputs(np, cv2, name, reference):
-    """Inputs by kind, channels-last, in the range the model wants."""
+    """Returns inputs by kind, channels-last, in the model's range."""
     _, picture, scale = MODELS[name]
     random, dims = np.random.default_rng(0), reference.dims
     if not picture:

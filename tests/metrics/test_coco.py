@@ -178,7 +178,7 @@ def random_objects(rng, kind):
     """Boxes, or masks: outlines and runs in the truth, runs in the results."""
     images, categories = pictures_and_classes(rng)
     annotations, results = [], []
-    # Some classes, and sometimes all, are never there; others are never found.
+    # Some classes, and sometimes all, never occur; others are never detected.
     there = [c["id"] for c in categories if rng.random() < 0.8]
     found = [c["id"] for c in categories if rng.random() < 0.8]
     for image in images:
@@ -260,7 +260,7 @@ def test_random_cases(compute, kind):
         stats = reference(*pair, kind)
         assert_equal(report, stats, kind)
         means.append(stats[0])
-    # The cases are what they are meant to be: nothing to find, nothing found, and a lot between.
+    # The cases cover no ground truth, no detections, and many of both.
     assert -1 in means and 0 in means and len(np.unique(np.round(means, 6))) > CASES / 2
 
 
@@ -330,7 +330,7 @@ def yolo(folder, split, segments):
 
 
 def moved(rng, truth, segments):
-    """Answers: the truth, moved a little, some twice, some of another class."""
+    """Predictions: the ground truth, moved slightly, some twice, some of another class."""
     results = []
     classes = [category["id"] for category in truth["categories"]]
     for entry in truth["annotations"]:

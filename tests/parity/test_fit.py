@@ -38,7 +38,7 @@ class Boxes(DatasetIterator):
 
 @pytest.fixture
 def interruptible():
-    """Ctrl-C raises, also where whoever started the tests in the background lets them ignore it."""
+    """Enables Ctrl-C, also if the tests were started in the background with SIGINT ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -139,7 +139,7 @@ def test_interrupt_saves(counter, tmp_path, interruptible):
 
 def test_a_learner_written_in_python_teaches(counter, tmp_path):
     class OneEachLearner(Learner):
-        """Finds one dog in every image, and is not sure of another."""
+        """Detects one dog in every image, and another with a low score."""
 
         name = "one_each"
         task = "object_detection_2d"

@@ -1,4 +1,4 @@
-"""What trainings leave behind, read by the tools that people use."""
+"""Outputs of trainings, read by reference tools."""
 
 import json
 import subprocess
@@ -25,7 +25,7 @@ def log():
 
 @pytest.fixture(scope="session")
 def shrink():
-    """Makes an ONNX file smaller by crates/optimize/examples/shrink.rs."""
+    """Quantises an ONNX file by crates/optimize/examples/shrink.rs."""
     command = example("optimize", "shrink")
 
     def run(precision, source, target):
@@ -36,7 +36,7 @@ def shrink():
 
 @pytest.fixture(scope="session")
 def exported(tmp_path_factory):
-    """The folder that crates/training/examples/export_all.rs fills."""
+    """The folder with the output of crates/training/examples/export_all.rs."""
     folder = tmp_path_factory.mktemp("exported")
     command = example("training", "export_all")
     subprocess.run([*command, str(folder)], cwd=ROOT, check=True)

@@ -149,7 +149,7 @@ def test_image_guess_is_opendrs():
     rgba = pixels(8, 9, 4)
     assert np.array_equal(Image(rgba).data, rgba.transpose(2, 0, 1))
     assert np.array_equal(Image(rgba).opencv(), rgba[:, :, [2, 1, 0, 3]])
-    # An image three pixels wide looks like OpenCV's.
+    # An image three pixels wide is taken for OpenCV's layout.
     assert Image(pixels(3, 8, 3)).data.shape == (3, 3, 8)
     assert Image(pixels(3, 8, 3), guess_format=False).data.shape == (3, 8, 3)
     grey = Image(pixels(1, 8, 9))

@@ -137,7 +137,7 @@ def test_a_folder_that_cannot_be_written(headless, tmp_path, monkeypatch):
     folder = tmp_path / "temporary"
     folder.mkdir()
     monkeypatch.setattr(_show.tempfile, "gettempdir", lambda: str(folder))
-    # Root may write anywhere, so the current folder is taken away instead.
+    # Root may write anywhere, so the current folder is removed instead.
     gone = tmp_path / "gone"
     gone.mkdir()
     monkeypatch.chdir(gone)

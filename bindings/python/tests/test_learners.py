@@ -36,7 +36,7 @@ OPENDR_ARGUMENTS = {
 
 
 class Plain(Learner):
-    """Finds nothing."""
+    """Detects nothing."""
 
     def infer(self, batch: Any) -> Any:
         return []
@@ -249,7 +249,7 @@ def test_usual_names_are_the_registrys():
 
 def test_several_outputs():
     class Both(Plain):
-        """Answers two things."""
+        """Returns two outputs."""
 
         name = "both"
         task = "object_detection_2d"

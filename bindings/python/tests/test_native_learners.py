@@ -45,7 +45,7 @@ def test_class(entry):
 
 
 def inputs(entry, photo):
-    """Something for every input of a learner, by name."""
+    """Returns a value for every input of a learner, by name."""
     noise = np.random.default_rng(0).uniform(-1, 1, 16000)
     image = Image.open(photo)
     height, width = image.opencv().shape[:2]
@@ -68,13 +68,13 @@ def inputs(entry, photo):
 
 
 def json_of(entry, answer):
-    """The JSON of each output, which are of the types that the entry names."""
+    """Returns the JSON of each output, after checking its type."""
     answers = answer if len(entry["outputs"]) > 1 else (answer,)
     assert [type(target).__name__ for target in answers] == [output["type"] for output in entry["outputs"]]
     return [target.to_json() for target in answers]
 
 
-#: Policies act in environments, and some learners have to be trained first.
+#: Policies, and learners without pretrained models.
 PRETRAINED = [entry for entry in NATIVE if not entry["fit_in"] and _opendr.models(entry["name"])]
 
 
@@ -115,7 +115,7 @@ def test_every_kind_of_input_gives_the_same(nanodet, photo):
     assert nanodet.infer(photo).to_json() == wanted
     assert nanodet.infer(frame).to_json() == wanted
     assert nanodet.infer(np.asfortranarray(frame)).to_json() == wanted
-    # Planes go through another kernel: the same but for rounding.
+    # Planar layouts use another kernel: results are equal except for rounding.
     for box, planes in zip(nanodet.infer(frame), nanodet.infer(image.numpy())):
         assert (box.left, box.confidence) == pytest.approx((planes.left, planes.confidence), rel=1e-4)
     assert nanodet.infer(image=image.convert("channels_last", "bgr")).to_json() == wanted
@@ -276,7 +276,7 @@ def test_learner_by_name(zoo):
 
 
 def test_numbers_that_are_none(monkeypatch):
-    # What a network gives whose weights are damaged.
+    # The output of a network with damaged weights.
     found = '{"type": "BoundingBoxList", "boxes": [%s], "classes": ["null"]}'
     box = '{"name": 0, "left": %s, "top": 1.0, "width": 2.0, "height": 3.0, "confidence": 0.5}'
     right, wrong = found % (box % "4.0"), found % ", ".join((box % "4.0", box % "null"))
@@ -305,7 +305,7 @@ class PairOutputs(NamedTuple):
 
 
 class PairLearner(Learner):
-    """Gives its boxes back, and the sums of image and vector."""
+    """Returns its boxes, and the sums of image and vector."""
 
     name = "pair"
     task = "object_detection_2d"
@@ -337,7 +337,7 @@ def test_several_inputs_and_outputs(pair):
     for answer in (pair.infer(picture, boxes, [1, 2]), pair.infer(boxes=boxes, image=picture, start=Vector([3]))):
         assert type(answer).__name__ == "PairLearnerOutputs" and answer._fields == ("boxes", "heatmap")
         assert (answer.boxes, answer.heatmap.data.tolist()) == (boxes, [60, 3])
-    # The vector goes with the first of a list; the same boxes, or one list each, with all.
+    # The vector is used for the first item of a list; boxes are used for all, or one list per item.
     given = [boxes, BoundingBoxList(classes=["cat"])]
     first, second = pair.infer([picture, picture], given, [4, 5])
     assert [first.heatmap.data[1], second.heatmap.data[1]] == [9, 9]

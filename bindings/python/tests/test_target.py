@@ -216,7 +216,7 @@ def test_pose():
     assert text.endswith("l_ear: [-1, -1]\n")
     names = [line.split(":")[0] for line in text.splitlines()[3:]]
     assert tuple(names) == found.joints == tuple(Pose.kpt_names)
-    # OpenDR's own crashes for a list.
+    # OpenDR crashes for a list.
     assert str(Pose(found.data.tolist(), 0.75)) == text
     assert (found["neck"].x, found[1].y, len(found), found.skeleton) == (64.0, 32.0, 18, "opendr18")
     assert (found.data.dtype, found.data.shape) == (np.float32, (18, 2))
@@ -434,7 +434,7 @@ def test_boxes_in_space():
 
 def test_tracks_in_space():
     found = TrackingAnnotation3D(*PLACE_3D, 3, 0.8, 12)
-    # OpenDR's own raises AttributeError.
+    # OpenDR raises AttributeError.
     assert (found.action, found.id, found.frame) == (None, 3, 12)
     assert str(found) == str(found.kitti(True))
     assert {"id", "frame"} & set(found.kitti(False)) == set()

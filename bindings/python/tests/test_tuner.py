@@ -1,4 +1,4 @@
-"""OpenDR's tuner: arguments, studies that go on, several seeds, pruning, failures."""
+"""OpenDR's tuner: arguments, resumed studies, several seeds, pruning, failures."""
 
 import math
 
@@ -16,7 +16,7 @@ SPACE = [
 
 
 class Bowl(Learner):
-    """Nothing is learnt; the loss is what the arguments are worth."""
+    """A learner without training, whose loss is a function of its arguments."""
 
     def __init__(self, lr, momentum=0.0, optimizer="sgd", size=8, offset=0.0, device="cpu"):
         super().__init__()
@@ -47,7 +47,7 @@ class Declared(Bowl):
 
 
 class Steps(Bowl):
-    """Tells how it stands while it trains."""
+    """Reports intermediate values during the training."""
 
     def fit(self, dataset, report=None):
         for step in range(1, 10):

@@ -1,4 +1,4 @@
-"""DeepSORT of images that carry their boxes, and of images and boxes apart."""
+"""DeepSORT with image and boxes as one input, and as two."""
 
 import os
 

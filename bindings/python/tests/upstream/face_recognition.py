@@ -1,4 +1,4 @@
-"""Persons are made known by a folder of images, then recognised."""
+"""Persons are enrolled from a folder of images, then recognised."""
 
 import os
 import shutil

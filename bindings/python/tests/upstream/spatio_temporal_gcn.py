@@ -1,4 +1,4 @@
-"""What a person does by the moving skeleton."""
+"""The action of a person from the skeleton sequence."""
 
 import numpy as np
 from opendr.engine.data import SkeletonSequence

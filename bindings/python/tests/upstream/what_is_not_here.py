@@ -1,4 +1,4 @@
-"""Learners of OpenDR that are not here yet can be imported, and say what to use instead."""
+"""Learners of OpenDR that are not available yet can be imported, and name a replacement."""
 
 from opendr.control.mobile_manipulation import MobileRLLearner
 from opendr.control.multi_object_search import MultiObjectSearchRLLearner

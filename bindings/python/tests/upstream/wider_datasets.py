@@ -1,4 +1,4 @@
-"""WIDER FACE and WiderPerson, in the folders that are unpacked."""
+"""WIDER FACE and WiderPerson, in the folders of their archives."""
 
 import os
 
