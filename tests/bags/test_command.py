@@ -169,7 +169,7 @@ def test_answers_to_videos_are_recorded(tmp_path, opendr, recording):
     shutil.copy(video, tmp_path / "again.mp4")
     opendr(*DETECTOR, video, tmp_path / "again.mp4", "--out", out, "--with-input")
     times = [logged for logged, _, _ in on(BOXES, read(out, True))]
-    # Ten frames a second, as the recording had them.
+    # Ten frames per second, as in the recording.
     first = [max(number * robot.STEP, 1) for number in range(robot.FRAMES)]
     assert times[: robot.FRAMES] == pytest.approx(first, abs=1_000_000)
     second = [time - times[robot.FRAMES] for time in times[robot.FRAMES :]]

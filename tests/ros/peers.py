@@ -1,6 +1,6 @@
 """Real ROS nodes in processes of their own, for tests: `Ros2Peer`, `Ros1Peer`, `CyclonePeer` and `Roscore`.
 
-Each runs peer/peer_*.py with the interpreter that has its ROS and is told what to do over pipes:
+Each runs peer/peer_*.py with the Python interpreter of its ROS and sends it commands over pipes:
 
     with Ros2Peer("jazzy") as peer:
         subscription = peer.subscribe("/out", "vision_msgs/msg/Detection2DArray")

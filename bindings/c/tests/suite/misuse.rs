@@ -1,4 +1,4 @@
-//! Whatever a C program hands in, it gets a status: one test a case.
+//! Invalid arguments from a C program return a status: one test per case.
 
 use std::ffi::{CStr, CString, c_char};
 use std::ptr::{NonNull, null, null_mut};

@@ -1,4 +1,4 @@
-//! Networks through C give what sessions give.
+//! Networks run through C return the same outputs as sessions.
 
 use std::ffi::{CStr, CString};
 use std::fs;
@@ -13,13 +13,13 @@ use opendr_c::*;
 
 use crate::{last_error, refused};
 
-/// A network of 14 actions from 8 frames, `clip` `[8, 3, 48, 48]` to `logits` `[1, 14]`.
+/// Network that classifies 8 frames into 14 actions, `clip` `[8, 3, 48, 48]` to `logits` `[1, 14]`.
 fn stick_figures() -> PathBuf {
     Path::new(&std::env::var("CARGO_MANIFEST_DIR").unwrap())
         .join("../../models/weights/x3d/stick_figures.onnx")
 }
 
-/// A container of that network, removed at the end.
+/// Container with that network, removed on drop.
 struct Container(PathBuf);
 
 impl Container {
@@ -55,7 +55,7 @@ fn open(path: &Path) -> *mut opendr_network {
     network
 }
 
-/// A clip with changing numbers.
+/// Clip with varying values.
 fn clip() -> Vec<f32> {
     (0..8 * 3 * 48 * 48).map(|at| (at % 17) as f32 / 8.0 - 1.0).collect()
 }
@@ -70,7 +70,7 @@ fn tensor(name: Option<&CStr>, numbers: &[f32], shape: &[usize]) -> opendr_tenso
     }
 }
 
-/// Runs a network, and gives its only output.
+/// Runs a network and returns its only output.
 #[track_caller]
 fn run(network: *const opendr_network, name: Option<&CStr>) -> Vec<f32> {
     let (numbers, shape, mut tensors) = (clip(), [8, 3, 48, 48], null_mut());
