@@ -98,7 +98,7 @@ def pose(entry):
 
 
 def samples(truth, results, kind):
-    """Picture by image in the order of their numbers, which is pycocotools' order."""
+    """Samples by image in ascending order of their ids, the order of pycocotools."""
     name, field, convert = ("PoseList", "poses", pose) if kind == "keypoints" else ("BoundingBoxList", "boxes", box)
     pictures = {picture["id"]: ([], []) for picture in sorted(truth["images"], key=lambda picture: picture["id"])}
     for side, entries in enumerate((results, truth["annotations"])):

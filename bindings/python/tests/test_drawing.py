@@ -142,7 +142,7 @@ def test_a_folder_that_cannot_be_written(headless, tmp_path, monkeypatch):
     gone.mkdir()
     monkeypatch.chdir(gone)
     gone.rmdir()
-    assert _show.write_picture(Image(black())) == str(folder / "opendr.png")
+    assert _show.write_image(Image(black())) == str(folder / "opendr.png")
     monkeypatch.chdir(tmp_path)
 
 

@@ -19,7 +19,7 @@ class Detector(Learner):
 
     def infer(self, image: Image) -> BoundingBoxList:
         if int(image.numpy().flat[0]) == 99:
-            raise ValueError("a picture that cannot be read")
+            raise ValueError("an image that cannot be read")
         count = int(image.numpy().flat[0])
         return BoundingBoxList([BoundingBox(left=n, top=0, width=1, height=1, name=0, score=0.5) for n in range(count)])
 

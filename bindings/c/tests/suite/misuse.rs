@@ -172,7 +172,11 @@ fn handles_of_another_kind_are_refused() {
         assert_eq!(opendr_bounding_box_list_count(boxes), 0);
         assert!(last_error().contains("takes a BoundingBoxList, not a Image"), "{}", last_error());
         let mut json = null_mut();
-        refused(opendr_value_to_json(image.cast(), &mut json), OPENDR_UNSUPPORTED, "Image cannot be written as JSON");
+        refused(
+            opendr_value_to_json(image.cast(), &mut json),
+            OPENDR_UNSUPPORTED,
+            "Image cannot be written as JSON",
+        );
         refused(opendr_value_draw(image.cast(), image), OPENDR_INVALID_INPUT, "on itself");
         // No handle at all: crooked, or leading to other bytes.
         let bytes = [0u64; 4];

@@ -142,7 +142,11 @@ fn a_network_tells_what_it_takes() {
         assert_eq!(opendr_network_output(network, 0, &mut info), OPENDR_OK);
         assert_eq!(std::slice::from_raw_parts(info.shape, info.axes), [1, 14]);
         refused(opendr_network_output(network, 1, &mut info), OPENDR_INVALID_INPUT, "there are 1 tensors");
-        refused(opendr_network_input(network, usize::MAX, &mut info), OPENDR_INVALID_INPUT, "there are 1 tensors");
+        refused(
+            opendr_network_input(network, usize::MAX, &mut info),
+            OPENDR_INVALID_INPUT,
+            "there are 1 tensors",
+        );
         assert_eq!(opendr_network_manifest(network, &mut json), OPENDR_OK);
         assert_eq!(CStr::from_ptr(opendr_string_text(json)), c"{}");
         assert_eq!(opendr_string_free(&mut json), OPENDR_OK);
@@ -186,7 +190,11 @@ fn wrong_inputs_are_refused() {
             OPENDR_INVALID_INPUT,
             "exceeds the address space",
         );
-        refused(call(&[opendr_tensor { axes: huge, ..good }]), OPENDR_INVALID_INPUT, "exceeds the address space");
+        refused(
+            call(&[opendr_tensor { axes: huge, ..good }]),
+            OPENDR_INVALID_INPUT,
+            "exceeds the address space",
+        );
         let shape = [huge, huge, huge, huge];
         let status = call(&[tensor(None, &numbers, &shape)]);
         refused(status, OPENDR_INVALID_INPUT, "elements given for a tensor");
@@ -279,7 +287,11 @@ fn a_picture_becomes_an_input() {
         let mut call = |how: &opendr_preprocess, length: usize| {
             opendr_image_preprocess(image, how, numbers.as_mut_ptr(), length)
         };
-        refused(call(&how, 11), OPENDR_INVALID_INPUT, "room for 11 numbers, and the input has the shape [1, 3, 2, 2]");
+        refused(
+            call(&how, 11),
+            OPENDR_INVALID_INPUT,
+            "room for 11 numbers, and the input has the shape [1, 3, 2, 2]",
+        );
         refused(call(&how, usize::MAX), OPENDR_INVALID_INPUT, "exceeds the address space");
         for (wrong, words) in [
             (opendr_preprocess { format: 3, ..how }, "alpha"),

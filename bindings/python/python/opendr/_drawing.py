@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Optional, TypeVar, Union
 
 from opendr import _opendr
-from opendr._show import show_picture
+from opendr._show import show_image
 from opendr.engine._checks import names_by_index
 from opendr.engine._equality import is_array
 from opendr.engine.data import Image
@@ -17,17 +17,17 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 #: OpenCV's image, ``[height, width, 3]`` BGR uint8, which is drawn on in place, or an :class:`Image`, which is copied.
-Picture = TypeVar("Picture", "NDArray[Any]", Image)
+ImageType = TypeVar("ImageType", "NDArray[Any]", Image)
 ClassNames = Union[Sequence[str], Mapping[int, str]]
 
 
 def draw_bounding_boxes(
-    img: Picture,
+    img: ImageType,
     bounding_boxes: Union[BoundingBoxList, TrackingAnnotationList],
     class_names: Optional[ClassNames] = None,
     show: bool = False,
     line_thickness: Optional[int] = None,
-) -> Picture:
+) -> ImageType:
     """Draws boxes with their class, score, landmarks and mask.
 
     Args:
@@ -51,11 +51,11 @@ def draw_bounding_boxes(
         warnings.warn(text, UserWarning, stacklevel=2)
     drawn = _drawn(img, bounding_boxes, class_names)
     if show:
-        show_picture(drawn if isinstance(drawn, Image) else _image_from_opencv(drawn))
+        show_image(drawn if isinstance(drawn, Image) else _image_from_opencv(drawn))
     return drawn
 
 
-def draw(img: Picture, pose: Union[Pose, PoseList]) -> Picture:
+def draw(img: ImageType, pose: Union[Pose, PoseList]) -> ImageType:
     """Draws the joints and bones of a person, or of several.
 
     Args:
@@ -74,7 +74,7 @@ def draw(img: Picture, pose: Union[Pose, PoseList]) -> Picture:
     return _drawn(img, pose, None)
 
 
-def draw_target(image: Picture, target: BaseTarget, class_names: Optional[ClassNames] = None) -> Picture:
+def draw_target(image: ImageType, target: BaseTarget, class_names: Optional[ClassNames] = None) -> ImageType:
     """Draws a target of any type; types that cannot be drawn leave the image unchanged.
 
     Args:
@@ -110,26 +110,26 @@ def get_bbox(pose: Pose) -> tuple[int, int, int, int]:
     return (left, top, right - left + 1, bottom - top + 1)
 
 
-def _drawn(picture: Picture, target: BaseTarget, class_names: Optional[ClassNames]) -> Picture:
+def _drawn(image: ImageType, target: BaseTarget, class_names: Optional[ClassNames]) -> ImageType:
     names = None if class_names is None else _list_of_names(class_names)
-    if isinstance(picture, Image):
-        return _opendr.draw(picture, target, names)
-    drawn = _opendr.draw(_image_from_opencv(picture), target, names)
-    picture[:, :, :3] = drawn.data[::-1].transpose(1, 2, 0)
-    return picture
+    if isinstance(image, Image):
+        return _opendr.draw(image, target, names)
+    drawn = _opendr.draw(_image_from_opencv(image), target, names)
+    image[:, :, :3] = drawn.data[::-1].transpose(1, 2, 0)
+    return image
 
 
-def _image_from_opencv(picture: NDArray[Any]) -> Image:
-    if not is_array(picture):
-        raise TypeError(f"an image is OpenCV's array [height, width, 3] or an Image, not {picture!r:.200}")
-    if picture.ndim != 3 or picture.shape[2] not in (3, 4) or picture.dtype != "uint8":
+def _image_from_opencv(image: NDArray[Any]) -> Image:
+    if not is_array(image):
+        raise TypeError(f"an image is OpenCV's array [height, width, 3] or an Image, not {image!r:.200}")
+    if image.ndim != 3 or image.shape[2] not in (3, 4) or image.dtype != "uint8":
         raise ValueError(
-            f"an array of {picture.dtype} and shape {picture.shape} cannot be drawn on; give OpenCV's uint8 "
+            f"an array of {image.dtype} and shape {image.shape} cannot be drawn on; give OpenCV's uint8 "
             "[height, width, 3], or an Image"
         )
-    if not picture.flags.writeable:
+    if not image.flags.writeable:
         raise ValueError("the array is read-only; give a copy of it, or an Image")
-    return Image(picture[:, :, 2::-1].transpose(2, 0, 1), guess_format=False)
+    return Image(image[:, :, 2::-1].transpose(2, 0, 1), guess_format=False)
 
 
 def _list_of_names(class_names: ClassNames) -> list[str]:

@@ -18,7 +18,7 @@ _TITLE = "OpenDR"
 _PROBE = "import cv2; cv2.namedWindow('OpenDR'); cv2.waitKey(1); cv2.destroyAllWindows()"
 
 
-def show_picture(image: Image) -> None:
+def show_image(image: Image) -> None:
     """Opens a window and waits for a key, or for the window to be closed. Without OpenCV or a display, writes a file with
     an unused name into the current folder (else the folder for temporary files) and prints its path.
 
@@ -28,7 +28,7 @@ def show_picture(image: Image) -> None:
     if window_works():
         _show_window(image.opencv())
     else:
-        print(f"image written to {write_picture(image)}")
+        print(f"image written to {write_image(image)}")
 
 
 def window_works() -> bool:
@@ -57,7 +57,7 @@ def _show_window(pixels: Any) -> None:
     cv2.destroyWindow(_TITLE)
 
 
-def write_picture(image: Image) -> str:
+def write_image(image: Image) -> str:
     """Writes a PNG file with an unused name.
 
     Returns:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING, Any, Optional, Union
 
-from opendr._drawing import ClassNames, Picture, draw_bounding_boxes, draw_target
+from opendr._drawing import ClassNames, ImageType, draw_bounding_boxes, draw_target
 from opendr.engine.data import Image
 from opendr.engine.target import BoundingBox, BoundingBoxList, Heatmap
 
@@ -16,14 +16,14 @@ __all__ = ["draw", "draw_bounding_boxes", "draw_detections", "visualize"]
 
 
 def draw_detections(
-    img: Picture,
+    img: ImageType,
     boxes: ArrayLike,
     scores: ArrayLike,
     classes: ArrayLike,
     class_names: Optional[ClassNames] = None,
     show: bool = False,
     line_thickness: Optional[int] = None,
-) -> Picture:
+) -> ImageType:
     """Draws boxes given as arrays.
 
     Args:
@@ -54,7 +54,7 @@ def draw_detections(
     return draw_bounding_boxes(img, BoundingBoxList(found), class_names, show, line_thickness)
 
 
-def draw(img: Picture, bounding_box_list: BoundingBoxList, w_sensor1: float = 1.0) -> Picture:
+def draw(img: ImageType, bounding_box_list: BoundingBoxList, w_sensor1: float = 1.0) -> ImageType:
     """Draws predictions of GemLearner, with a bar for the weight of its first sensor.
 
     Args:
@@ -98,11 +98,11 @@ def visualize(learner: Any, image_path: Union[str, os.PathLike[str]], show: bool
     Returns:
         The drawing, and the map.
     """
-    from opendr._show import show_picture
+    from opendr._show import show_image
 
     image = Image.open(image_path)
     found = learner.infer(image).map
     drawn = draw_target(image, found)
     if show:
-        show_picture(drawn)
+        show_image(drawn)
     return drawn, found

@@ -78,7 +78,7 @@ class PanopticPictures(NativeLearner):
             ValueError: ``figure_filename`` is missing.
         """
         from opendr._drawing import draw_target
-        from opendr._show import show_picture
+        from opendr._show import show_image
 
         if save_figure and figure_filename is None:
             raise ValueError("save_figure needs a file; give figure_filename")
@@ -87,5 +87,5 @@ class PanopticPictures(NativeLearner):
         if save_figure and figure_filename is not None:
             drawn.save(figure_filename)
         if show_figure:
-            show_picture(drawn)
+            show_image(drawn)
         return drawn
