@@ -164,7 +164,7 @@ def main():
     control.say({"event": "ready"})
     control.serve(peer)
     if "started" in vars(peer):
-        rospy.signal_shutdown("told to")
+        rospy.signal_shutdown("requested")
     # Waiting threads are not joined.
     os._exit(0)
 

@@ -178,7 +178,7 @@ fn handles_of_another_kind_are_refused() {
             "Image cannot be written as JSON",
         );
         refused(opendr_value_draw(image.cast(), image), OPENDR_INVALID_INPUT, "on itself");
-        // No handle at all: crooked, or leading to other bytes.
+        // Invalid handles: misaligned pointers and pointers to other data.
         let bytes = [0u64; 4];
         let other = bytes.as_ptr().cast::<opendr_value>();
         refused(opendr_value_copy(other, &mut null_mut()), OPENDR_INVALID_INPUT, "another type, or freed");
