@@ -132,7 +132,7 @@ def test_answers_are_recorded(tmp_path, opendr, recording, storage, name, flags)
     if not is_ros1:
         ((_, _, info),) = on("/single_shot_detector/label_info", messages)
         assert [(one.class_id, one.class_name) for one in info.class_map] == [(0, "person")]
-    assert "is there already" in opendr(*DETECTOR, path, "--out", out, *flags, code=12).stderr
+    assert "already exists" in opendr(*DETECTOR, path, "--out", out, *flags, code=12).stderr
     opendr(*DETECTOR, path, "--out", out, *flags, "--overwrite", "--limit", 1)
     assert len(on(BOXES, read(out, is_ros1))) == 1
 
@@ -184,7 +184,7 @@ def test_a_recording_that_was_cut_is_answered_as_far_as_it_goes(tmp_path, opendr
     cut.write_bytes(file.read_bytes()[: file.stat().st_size * 6 // 10])
     out = tmp_path / "answers.mcap"
     done = opendr(*DETECTOR, cut, "--out", out, "--json", code=1)
-    assert "cut off" in done.stderr
+    assert "truncated" in done.stderr
     told, *lines = done.lines
     assert (told["input"], told["error"]["kind"]) == (str(cut), "Format")
     assert len(on(BOXES, read(out, False))) == len(lines)
@@ -242,7 +242,7 @@ def test_messages_that_are_not_known_are_left_out_of_a_conversion(tmp_path, open
             fields = ["hi"] if topic == "/chatter" else [robot.header(store, 1, "a", 0, True), 20.0, 0.0]
             writer.write(connection, 10**9, store.serialize_ros1(store.types[kind](*fields), kind))
     done = opendr("bag", "convert", path, tmp_path / "a.mcap", "--ros2", code=1)
-    assert "left out: /heat (sensor_msgs/Temperature)" in done.stderr
+    assert "skipped: /heat (sensor_msgs/Temperature)" in done.stderr
     info = json.loads(opendr("bag", "info", tmp_path / "a.mcap", "--json").stdout)
     assert [(one["name"], one["messages"]) for one in info["topics"]] == [("/chatter", 1)]
     # As it is, everything is kept.
@@ -283,5 +283,5 @@ def test_a_recording_is_a_data_set(tmp_path, opendr, storage):
 
 def test_recordings_do_not_mix_with_files(tmp_path, opendr, recording):
     pictures = robot.write_pictures(tmp_path / "pictures")
-    assert "by a command each" in opendr(*DETECTOR, recording("bag1"), pictures, code=11).stderr
-    assert "no input is a recording" in opendr(*DETECTOR, pictures, "--topic", "/a", code=12).stderr
+    assert "use one command for each" in opendr(*DETECTOR, recording("bag1"), pictures, code=11).stderr
+    assert "needs a recording" in opendr(*DETECTOR, pictures, "--topic", "/a", code=12).stderr

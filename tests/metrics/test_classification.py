@@ -201,7 +201,7 @@ def test_roc(compute, levels):
         same(report, "best_f1", f1)
         same(report, "best_f1_threshold", threshold)
         rates = np.array(metrics.roc_curve(positive, scores)[:2]).T
-        (drawn,) = [line for line in report["figures"][0]["lines"] if line["label"] == "answers"]
+        (drawn,) = [line for line in report["figures"][0]["lines"] if line["label"] == "predictions"]
         np.testing.assert_allclose(drawn["points"], rates, atol=1e-12)
 
 

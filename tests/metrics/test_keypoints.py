@@ -177,5 +177,5 @@ def test_what_cannot_be_counted_is_an_error(compute):
     good = ([[0, 0], [1, 1]], everything, [[0, 0], [1, 1]], everything, [0, 0, 4, 4])
     short = ([[0, 0], [1, 1]], everything, [[0, 0]], [True], [0, 0, 4, 4])
     joints, odd = compute(case([short]), case([good], normalize="joints", joints=[1]))
-    assert "1 joints cannot answer one of 2" in joints["error"]
+    assert "1 joints cannot be compared with one of 2" in joints["error"]
     assert "even number" in odd["error"]

@@ -174,11 +174,11 @@ def test_poses_are_evaluated_on_coco(opendr, shared, tmp_path):
 def test_wrong_use_is_told(opendr, coco128, tmp_path):
     for arguments, code, text in [
         (("eval", "centernet", tmp_path / "none"), 13, "no data set at"),
-        (("eval", "centernet", tmp_path), 11, "no data set of a known format"),
-        (("eval", "centernet", coco128, "--format", "nonsense"), 13, "there are coco"),
+        (("eval", "centernet", tmp_path), 11, "not a data set of a known format"),
+        (("eval", "centernet", coco128, "--format", "nonsense"), 13, "choose one of coco"),
         (("eval", "centernet", coco128, "--metric", "transcription"), 11, "compares with"),
         (("eval", "centernet", coco128, "--metric-param", "use_classes"), 12, "NAME=VALUE"),
-        (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "there are max_detections"),
+        (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "it has max_detections"),
         (("score", tmp_path / "none.json", coco128, "--metric", "coco_detection"), 13, "none.json"),
         (("score", coco128, coco128), 12, "name a metric with --metric"),
     ]:

@@ -47,12 +47,12 @@ MESSAGE = struct.pack("<II", 6, 2) + b"hi"
 
 @pytest.mark.parametrize("answer, told", [
     (GREETING + struct.pack("<I", 0xFFFFFFFF) + b"x" * 100, "4294967295 bytes"),
-    (struct.pack("<I", 0xFFFFFFFF), "header of 4294967295 bytes"),
+    (struct.pack("<I", 0xFFFFFFFF), "header has 4294967295 bytes"),
     (header(b"callerid"), "without ="),
     (struct.pack("<II", 8, 1000) + b"abcd", "field of 1000 bytes"),
     (header(b"callerid=/fake"), "md5sum"),
     (header(b"error=go away \xff"), "go away"),
-    (b"HTTP/1.1 200 OK\r\n\r\n", "header of"),
+    (b"HTTP/1.1 200 OK\r\n\r\n", "header has"),
 ])
 def test_a_publisher_that_talks_nonsense(ros, answer, told):
     topic = "/nonsense"

@@ -203,7 +203,7 @@ def test_nobody_is_there_without_a_router():
     words = ["single_shot_detector", "--image", "/image", "--offline", "--rmw", "zenoh"]
     override = 'connect/endpoints=["tcp/127.0.0.1:9"]'
     with Node("ros2", *words, ZENOH_CONFIG_OVERRIDE=override, ready=0) as node:
-        node.wait_for_line("no Zenoh router is there yet", 120)
+        node.wait_for_line("no Zenoh router is reachable", 120)
 
 
 def test_a_wrong_override_is_told():

@@ -215,7 +215,7 @@ def test_image_files(tmp_path):
     (tmp_path / "text.png").write_text("no picture")
     with pytest.raises(ValueError):
         Image.open(tmp_path / "text.png")
-    with pytest.raises(opendr.Unsupported, match="end the name with"):
+    with pytest.raises(opendr.Unsupported, match="end the file name with"):
         image.save(tmp_path / "picture.unknown")
     with pytest.raises(OSError):
         image.save(tmp_path / "no_folder" / "picture.png")

@@ -1,4 +1,4 @@
-//! Checks, prints and converts data sets: what the Python tests drive.
+//! Checks, prints and converts data sets; used by the Python tests.
 //!
 //! ```console
 //! $ cargo run -p opendr-datasets --example data -- print coco set --target PoseList
@@ -47,10 +47,10 @@ fn main() -> Result<()> {
 
 fn type_called(name: &str) -> Result<ValueType> {
     let found = ValueType::ALL.iter().find(|each| each.name() == name);
-    found.copied().ok_or_else(|| Error::invalid_param(format!("there is no type {name}")))
+    found.copied().ok_or_else(|| Error::invalid_param(format!("unknown type {name}")))
 }
 
-/// A line for each sample: its name, id and target.
+/// Prints a line for each sample: its name, id and target.
 fn print(dataset: &dyn DatasetIterator) -> Result<()> {
     let classes: Vec<_> = dataset.classes().iter().map(str::to_owned).collect();
     println!("{}", serde_json::json!({"classes": classes, "class_ids": dataset.class_ids()}));

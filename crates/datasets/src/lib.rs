@@ -1,7 +1,27 @@
-//! Data set formats, one file each, lazy and readable from several threads; augmentation and the parallel loader.
+//! Data set formats, augmentation and the parallel loader.
 //!
-//! [`open`] recognises a data set; [`formats`] lists what there is. Nothing on disk is trusted: what is broken is told
-//! with its file and line or key, through [`Problems`].
+//! [`open`] opens a data set, whose format it can recognise, and [`formats`] lists the formats (COCO, YOLO, Pascal
+//! VOC, KITTI, MOT and more). Samples are read when they are needed, from any thread. Nothing on disk is trusted:
+//! problems are reported with file and line or key, through [`Problems`]. Module [`augment`] has augmentations of
+//! images, point clouds, audio and time series; module [`loader`] reads, augments and batches samples on several
+//! threads. The types of samples and targets are in `opendr-engine`, metrics in `opendr-metrics`, and evaluation in
+//! `opendr-evaluation`.
+//!
+//! ```
+//! use opendr_datasets::augment::{Augment, Flip, Others};
+//! use opendr_engine::data::Image;
+//! use opendr_engine::dataset::Sample;
+//! use opendr_engine::target::{BoundingBox, BoundingBoxList};
+//! use opendr_engine::{Random, Value};
+//!
+//! let image = Image::from_rgb8(vec![0; 100 * 80 * 3], 100, 80)?;
+//! let boxes = BoundingBoxList::from(vec![BoundingBox::new(0_i64, 10.0, 20.0, 30.0, 40.0, 1.0)]);
+//! let mut sample = Sample { data: vec![image.into()], target: Some(boxes.into()) };
+//! Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none())?;
+//! let Some(Value::BoundingBoxList(boxes)) = sample.target else { unreachable!() };
+//! assert_eq!(boxes.boxes[0].left, 60.0);
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
 
 mod any;
 pub mod augment;

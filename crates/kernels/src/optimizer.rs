@@ -1,4 +1,4 @@
-//! Optimisers on flat parameters: one slice holds all numbers of a network, another their gradients.
+//! Optimisers on flat parameters: one slice for all parameters of a network, another for their gradients.
 
 mod adam;
 mod gradient_norm;

@@ -1,4 +1,4 @@
-//! After the first step, training allocates nothing.
+//! Training allocates nothing after the first step.
 
 use opendr_kernels::{
     Activation, Adam, AdamOptions, Compute, Conv2d, Dense, Gru, GruTape, Layer, Network, Tape,

@@ -1,4 +1,4 @@
-//! Reads messages and writes them again: for every line `TYPE WIRE HEX` a line of hexadecimal digits, or `error: ...`.
+//! Reads and rewrites messages: for every line `TYPE WIRE HEX` prints a line of hexadecimal digits, or `error: ...`.
 //!
 //! WIRE is `cdr` or `ros1`, or two of them with `>` between to read the one and write the other. Requests and responses
 //! of services are types too (`std_srvs/srv/SetBool_Request`).
@@ -34,7 +34,7 @@ fn main() -> std::io::Result<()> {
 fn echo(line: &str) -> Result<Vec<u8>> {
     let mut words = line.splitn(3, ' ');
     let (Some(name), Some(wires), Some(digits)) = (words.next(), words.next(), words.next()) else {
-        return Err(Error::invalid_input("a line is TYPE WIRE HEX"));
+        return Err(Error::invalid_input("a line must be TYPE WIRE HEX"));
     };
     let (from, to) = wires.split_once('>').unwrap_or((wires, wires));
     let (from, to) = (wire(from)?, wire(to)?);
@@ -79,7 +79,9 @@ fn bytes(digits: &str) -> Result<Vec<u8>> {
         [high, low] => Some(digit(high)? << 4 | digit(low)?),
         _ => None,
     });
-    pairs.collect::<Option<_>>().ok_or_else(|| Error::invalid_input("odd digits, or none of hexadecimal"))
+    pairs
+        .collect::<Option<_>>()
+        .ok_or_else(|| Error::invalid_input("an odd number of digits, or not hexadecimal"))
 }
 
 fn hex(bytes: &[u8]) -> String {

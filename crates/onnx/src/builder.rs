@@ -1,4 +1,4 @@
-//! Writes a graph node by node, evaluating what is known and never writing the same node twice.
+//! Construction of a graph node by node, with constant folding and common-subexpression elimination.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -14,13 +14,13 @@ use super::proto::{
 };
 use super::wire::{Dim, Wire};
 
-/// No real model comes near; a hostile one could ask for a node per element of a huge axis.
+/// Maximum number of nodes. Real models have far fewer; a hostile one could need a node per element of a huge axis.
 const MAX_NODES: usize = 100_000;
 
-/// Elements that evaluation may produce over the whole graph; beyond, nodes are written instead.
+/// Maximum number of elements that constant folding may produce over the whole graph; beyond it, nodes are written.
 const MAX_FOLDED: usize = 1 << 26;
 
-/// Constants up to this size are compared by content, so that equal shapes share one initializer.
+/// Maximum size of constants that are compared by content, so that equal shapes share one initializer.
 const SMALL: usize = 16;
 
 /// A graph under construction.
@@ -38,18 +38,19 @@ pub struct Builder {
 }
 
 impl Builder {
-    /// An input of the graph; open dimensions get the names given, or none.
+    /// Adds an input of the graph. `open` has names of its open dimensions; an empty or missing name leaves a
+    /// dimension unnamed.
     pub fn input(&mut self, name: &str, kind: Kind, dims: Vec<Dim>, open: &[&str]) -> Wire {
         let name = self.unique(name);
         self.inputs.push(value_info(&name, kind, &dims, open));
         Wire::new(&name, kind, dims, None)
     }
 
-    /// Declares an output. The tensor gets that name; one that has a name of its own already (an input, a
-    /// constant, another output) is passed through an `Identity`. Open dimensions get the names given, or none.
+    /// Declares an output with the name `name`. A tensor that already has a name (an input, a constant, another
+    /// output) is passed through an `Identity`. `open` has names of its open dimensions, as in [`Builder::input`].
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn output(&mut self, name: &str, wire: &Wire, doc: &str, open: &[&str]) -> Result<()> {
         let source = self.source_name(wire)?;
         let mut node = Operator::new("Identity").into_node(name);
@@ -62,10 +63,10 @@ impl Builder {
         Ok(())
     }
 
-    /// Adds one operator with one output, or evaluates it.
+    /// Adds an operator with one output, or evaluates it.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn add(
         &mut self,
         hint: &str,
@@ -78,10 +79,10 @@ impl Builder {
         outputs.into_iter().next().ok_or_else(|| Error::internal("operator without output"))
     }
 
-    /// Adds one operator with several outputs, or evaluates it.
+    /// Adds an operator with several outputs, or evaluates it.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn add_many(
         &mut self,
         hint: &str,
@@ -119,7 +120,7 @@ impl Builder {
     fn push(&mut self, node: NodeProto) -> Result<()> {
         if self.nodes.len() >= MAX_NODES {
             return Err(Error::format(format!(
-                "the graph needs more than {MAX_NODES} nodes; it is damaged or hostile"
+                "the graph needs more than {MAX_NODES} nodes; the model is damaged or hostile"
             )));
         }
         self.nodes.push(node);
@@ -147,7 +148,7 @@ impl Builder {
         Some(known)
     }
 
-    /// The name by which a node refers to `wire`; constants become initializers here.
+    /// Returns the name by which a node refers to `wire`; writes an initializer for a constant.
     fn source_name(&mut self, wire: &Wire) -> Result<String> {
         let Some(array) = wire.array() else { return Ok(wire.name.to_string()) };
         let hint = if wire.name.is_empty() { "constant" } else { &*wire.name };
@@ -170,7 +171,7 @@ impl Builder {
         Ok(name)
     }
 
-    /// `hint`, or `hint_2`, `hint_3` where it is taken.
+    /// Returns `hint`, or `hint_2`, `hint_3` where it is used.
     fn unique(&mut self, hint: &str) -> String {
         let hint = if hint.is_empty() { "tensor" } else { hint };
         let mut name = hint.to_owned();
@@ -183,12 +184,12 @@ impl Builder {
         name
     }
 
-    /// Keeps a name free for an output.
+    /// Reserves a name for an output.
     pub fn reserve(&mut self, name: &str) {
         self.names.insert(name.to_owned(), 1);
     }
 
-    /// The finished graph.
+    /// Returns the finished graph.
     pub fn finish(self, name: &str) -> GraphProto {
         GraphProto {
             name: name.to_owned(),

@@ -1,22 +1,22 @@
-//! Floating-point numbers as they lie in files of weights.
+//! Floating-point formats of weight files.
 
 use crate::float_from_half;
 
-/// How wide the numbers of a file are.
+/// Floating-point format of the numbers of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FloatType {
     /// 64 bits.
     F64,
     /// 32 bits.
     F32,
-    /// 16 bits, of which five are the exponent.
+    /// 16 bits, with an exponent of five bits (IEEE 754 binary16).
     F16,
-    /// The upper 16 bits of 32.
+    /// The upper 16 bits of a 32-bit float (bfloat16).
     Bf16,
 }
 
 impl FloatType {
-    /// Bytes of one number.
+    /// Returns the bytes per number.
     pub fn bytes(self) -> usize {
         match self {
             Self::F64 => 8,
@@ -25,7 +25,7 @@ impl FloatType {
         }
     }
 
-    /// The numbers in little-endian `bytes`; what is left over at the end is dropped.
+    /// Decodes the numbers in little-endian `bytes`; an incomplete number at the end is ignored.
     pub fn numbers(self, bytes: &[u8]) -> Vec<f32> {
         match self {
             Self::F64 => bytes.as_chunks().0.iter().map(|&b| f64::from_le_bytes(b) as f32).collect(),

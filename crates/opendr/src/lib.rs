@@ -1,19 +1,22 @@
 //! OpenDR in Rust: the open deep-learning toolkit for robotics.
 //!
-//! Learners by name, from a registry, as every surface has them:
+//! The facade of the workspace: the [registry](registry()) of learners, [learners and models by name](learner()), [pipelines](Pipeline),
+//! training ([`fit()`], [`fit_in`]), hyperparameter search ([`tune()`]), [`export()`], and re-exports of the other crates. Algorithms are in
+//! the crates of `crates/perception`, data types and the trait `Learner` in `opendr-engine`; the command line, Python and C are in
+//! `apps` and `bindings`. Begin with [`learner()`]:
 //!
 //! ```no_run
 //! # fn main() -> opendr::Result<()> {
 //! use opendr::learner::Ports;
 //!
-//! let mut detector = opendr::learner("centernet")?;   // downloads once, with checksum
+//! let mut detector = opendr::learner("centernet")?;   // downloads the model once, checked by SHA-256
 //! let image = opendr::vision::open("street.jpg")?;
 //! println!("{:#}", detector.infer(&Ports::one(&image))?);
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! or by type, without a dispatch:
+//! A learner is also available by its type, without dynamic dispatch:
 //!
 //! ```no_run
 //! # fn main() -> opendr::Result<()> {
@@ -24,11 +27,20 @@
 //! let mut nanodet = Handle::<Nanodet>::new(params, Device::Auto)?;
 //! nanodet.load(opendr::download("nanodet")?)?;
 //! let image = opendr::vision::open("street.jpg")?;
-//! for found in &nanodet.infer(&image)?.boxes {
-//!     println!("{} {:?}", found.name, found.corners());
+//! for detection in &nanodet.infer(&image)?.boxes {
+//!     println!("{} {:?}", detection.name, detection.corners());
 //! }
 //! # Ok(())
 //! # }
+//! ```
+//!
+//! The registry lists the learners of this build:
+//!
+//! ```
+//! for entry in opendr::registry().entries() {
+//!     println!("{}: {}", entry.spec.name, entry.spec.about);
+//! }
+//! assert!(opendr::registry().find("no_such_learner").is_err());
 //! ```
 
 mod by_name;

@@ -1,4 +1,4 @@
-//! `optimize` of a loaded learner, as surfaces have it.
+//! Quantisation and FP16 conversion of a loaded learner.
 
 use std::fs;
 use std::path::Path;
@@ -12,14 +12,14 @@ use opendr_optimize::{OptimizeJob, OptimizeOptions, Report};
 
 use crate::Opening;
 
-/// The model as it was, beside the one that is written, until that is done.
+/// Name of the temporary copy of the original model.
 const ORIGINAL: &str = "original";
 
-/// Makes the model of a loaded learner smaller: writes it to `output`, and loads it. `calibration` is what it looks at,
-/// `validation` what it is measured on before and after.
+/// Quantises the model of a loaded learner to INT8 or converts it to FP16, writes it to `output`, and loads it. `calibration`
+/// is the data for the ranges of activations; on `validation` the model is evaluated before and after.
 ///
 /// # Errors
-/// `NotFound` when nothing is loaded; `InvalidParam` for options that do not fit; as [`OptimizeJob::run`].
+/// `NotFound` when no model is loaded; `InvalidParam` for wrong options; as [`OptimizeJob::run`].
 pub fn optimize_loaded(
     learner: &mut dyn AnyLearner,
     entry: &Entry,

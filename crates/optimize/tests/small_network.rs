@@ -1,4 +1,4 @@
-//! A small network of every kind of node that is quantised, on both engines.
+//! A small network with every kind of quantised node, on both runtimes.
 
 #![allow(clippy::unwrap_used)]
 
@@ -40,7 +40,8 @@ fn weights(random: &mut Random, dims: &[usize]) -> Wire {
     Wire::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
 }
 
-/// Convolutions (one by channel), a rectifier, a leaky one, pooling, a sum, a concatenation, a resize, a product with weights.
+/// A network of convolutions (one depthwise), a rectifier, a leaky one, pooling, a sum, a concatenation, a resize and
+/// a matrix product.
 fn network() -> Vec<u8> {
     let mut random = Random::new(3);
     let mut graph = Builder::default();
@@ -115,7 +116,7 @@ fn recordings(model: &Model, count: usize) -> Vec<Recording> {
     recording::take()
 }
 
-/// Signal to noise of each output of `model` beside those of `reference`, decibels, on each engine.
+/// Returns the signal-to-noise ratio in decibels of each output of `model` against `reference`, on each runtime.
 fn ratios(reference: &Model, model: &Model) -> Vec<f64> {
     let mut ratios = Vec::new();
     for runtime in runtimes() {
@@ -156,7 +157,7 @@ fn options(precision: Precision) -> OptimizeOptions {
 }
 
 #[test]
-fn int8_answers_nearly_the_same_on_every_engine() {
+fn int8_predicts_nearly_the_same_on_every_runtime() {
     let folder = Folder::new("int8");
     let model = container(&folder);
     let seen = recordings(&model, 16);
@@ -210,7 +211,8 @@ fn layers_go_back_to_floats_until_the_drop_is_small_enough() {
     let seen = recordings(&model, 4);
     let options = OptimizeOptions { max_drop: Some(0.5), ..options(Precision::Int8) };
     let mut sizes = Vec::new();
-    // Bytes lost stand for accuracy lost: the drop is small once half of the layers are in floats again.
+    // The number of quantised layers serves as the loss: it is small enough once half of the layers are in floats
+    // again.
     let mut judge = |judged: &Model| {
         let network = model_from_bytes(&judged.onnx()?)?.graph.unwrap_or_default();
         let rounded = network.node.iter().filter(|node| node.name.ends_with("weights/rounded")).count();
@@ -231,7 +233,7 @@ fn layers_go_back_to_floats_until_the_drop_is_small_enough() {
 }
 
 #[test]
-fn fp16_answers_the_same_on_every_engine() {
+fn fp16_predicts_the_same_on_every_runtime() {
     let folder = Folder::new("fp16");
     let model = container(&folder);
     let output = folder.0.join("out");
@@ -243,7 +245,7 @@ fn fp16_answers_the_same_on_every_engine() {
 }
 
 #[test]
-fn what_cannot_be_done_is_told() {
+fn unsupported_cases_are_errors() {
     let folder = Folder::new("told");
     let model = container(&folder);
     let output = folder.0.join("out");
@@ -253,7 +255,7 @@ fn what_cannot_be_done_is_told() {
     };
     let unseen = run(&model, &[]);
     assert_eq!(unseen.kind(), ErrorKind::InvalidInput);
-    assert!(unseen.to_string().contains("name a data set"), "{unseen}");
+    assert!(unseen.to_string().contains("pass a data set"), "{unseen}");
     let mut old = model_from_bytes(&model.onnx().unwrap()).unwrap();
     old.opset_import[0].version = 12;
     let mut writer = ModelWriter::new(folder.0.join("old"), Manifest::new("", "")).unwrap();

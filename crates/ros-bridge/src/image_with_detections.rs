@@ -1,4 +1,4 @@
-//! A picture with boxes: `opendr_msgs/ImageWithDetections`.
+//! An image with boxes: `opendr_msgs/ImageWithDetections`.
 
 use opendr_engine::Result;
 use opendr_engine::data::ImageWithDetections;
@@ -6,7 +6,7 @@ use opendr_messages::opendr_msgs;
 
 use crate::{Bridged, RosBridge, header_from_message, message_from_header};
 
-/// Picture and boxes as they are alone.
+/// Image and boxes, each as in its own message.
 impl Bridged<opendr_msgs::ImageWithDetections> for ImageWithDetections {
     fn from_message(message: opendr_msgs::ImageWithDetections, bridge: &RosBridge) -> Result<Self> {
         Ok(Self {

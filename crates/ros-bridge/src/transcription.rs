@@ -1,4 +1,4 @@
-//! What was said: `opendr_msgs/Transcription`.
+//! Transcriptions: `opendr_msgs/Transcription`.
 
 use opendr_engine::Result;
 use opendr_engine::target::{BaseTranscription, VoskTranscription, WhisperSegment, WhisperTranscription};
@@ -6,7 +6,7 @@ use opendr_messages::opendr_msgs::{Transcription, TranscriptionSegment};
 
 use crate::{Bridged, RosBridge, header_from_message, message_from_header};
 
-/// The words.
+/// The text.
 impl Bridged<Transcription> for BaseTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         Ok(Self { header: header_from_message(&message.header), text: message.text, action: None })
@@ -18,7 +18,7 @@ impl Bridged<Transcription> for BaseTranscription {
     }
 }
 
-/// The words so far, and whether they will stay.
+/// The text so far, and whether it is final.
 impl Bridged<Transcription> for VoskTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
@@ -32,7 +32,7 @@ impl Bridged<Transcription> for VoskTranscription {
     }
 }
 
-/// The words with their parts.
+/// The text with its segments.
 impl Bridged<Transcription> for WhisperTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         let segments = message.segments.into_iter().map(segment_from_message).collect();

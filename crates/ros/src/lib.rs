@@ -1,7 +1,19 @@
-//! Every learner as a node: ROS 2 over DDS or Zenoh and ROS 1, spoken natively.
+//! Learners and environments as nodes of ROS 2 (DDS, Zenoh) and ROS 1, without a ROS installation.
 //!
-//! A [`LearnerNode`] knows types and tables, never a learner: its topics follow from ports and outputs, its parameters from
-//! `Params`. It speaks through a [`Graph`], which ROS 2 and ROS 1 implement.
+//! A [`LearnerNode`] works for every learner: its topics follow from ports and outputs, its parameters from `Params`. It
+//! communicates through a [`Graph`], which ROS 2 ([`Ros2`]) and ROS 1 ([`Ros1Node`]) implement. Conversion between messages and
+//! values is in `opendr-ros-bridge`, message types in `opendr-messages`, the ROS 1 client in `opendr-ros1`. Begin with [`Names`], a
+//! `Graph` and [`LearnerNode::new`]:
+//!
+//! ```
+//! use opendr_ros::Names;
+//!
+//! let names = Names::new("/robot", "detector", ["image:=/camera/image_raw"])?;
+//! assert_eq!(names.full(), "/robot/detector");
+//! assert_eq!(names.resolve("image")?, "/camera/image_raw");
+//! assert_eq!(names.resolve("~/boxes")?, "/robot/detector/boxes");
+//! # Ok::<_, opendr_engine::Error>(())
+//! ```
 
 mod clock;
 mod environment_node;

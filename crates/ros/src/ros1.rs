@@ -1,4 +1,4 @@
-//! ROS 1, over the native client of `opendr-ros1`.
+//! ROS 1, through the native client of `opendr-ros1`.
 
 use std::sync::atomic::AtomicI64;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -16,16 +16,16 @@ use crate::clock::{self, NO_SIM_TIME};
 use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger, answer_to};
 use crate::{Names, ParameterTable};
 
-/// How long a node waits for a master that is just being started.
+/// Maximum wait for a master that is being started.
 const PATIENCE_WITH_MASTER: Duration = Duration::from_secs(10);
 
-/// A node of ROS 1.
+/// A ROS 1 node.
 pub struct Ros1Node {
     names: Names,
     full_name: String,
     log: Log,
     sim_time: Arc<AtomicI64>,
-    // What ends when it goes; the node last.
+    // Dropped in this order: the node last.
     listeners: Vec<Listener>,
     services: Vec<ServiceServer>,
     watches: Vec<ParameterWatch>,
@@ -33,16 +33,16 @@ pub struct Ros1Node {
 }
 
 impl Ros1Node {
-    /// A node at the master of `ROS_MASTER_URI`.
+    /// Creates a node at the master of `ROS_MASTER_URI`.
     ///
     /// # Errors
-    /// `Network` when the master does not answer within ten seconds; `InvalidParam` for names that are none.
+    /// `Network` when the master does not respond within ten seconds; `InvalidParam` for invalid names.
     pub fn new(names: Names) -> Result<Self> {
         let full_name = names.full();
         let log = terminal_log(&full_name);
-        let told = log.clone();
-        let mut options =
-            NodeOptions::new(names.node()).on_problem(move |error| told(Severity::Warn, &error.to_string()));
+        let logger = log.clone();
+        let mut options = NodeOptions::new(names.node())
+            .on_problem(move |error| logger(Severity::Warn, &error.to_string()));
         options.namespace = Some(names.namespace().to_owned());
         options.wait_for_master = PATIENCE_WITH_MASTER;
         let node = Arc::new(Node::new(options)?);
@@ -51,10 +51,10 @@ impl Ros1Node {
         Ok(Self { names, full_name, log, sim_time, listeners, services, watches, node })
     }
 
-    /// The node's private parameters that are set on the parameter server (by a launch file), as text.
+    /// Returns the node's private parameters on the parameter server (set by a launch file), as text.
     ///
     /// # Errors
-    /// `Network` when the master does not answer.
+    /// `Network` when the master does not respond.
     pub fn private_parameters(&self) -> Result<Vec<(String, String)>> {
         let Some(ParameterValue::Struct(parameters)) = self.node.parameter_if_set(&self.full_name)? else {
             return Ok(Vec::new());
@@ -109,7 +109,7 @@ impl Graph for Ros1Node {
         Ok(())
     }
 
-    /// On the parameter server, below the node's name; what is set there is followed, and put back when it does not fit.
+    /// Writes the parameters to the parameter server, below the node's name. Changes there are applied; invalid ones are reverted.
     fn declare(&mut self, parameters: Arc<ParameterTable>) -> Result<()> {
         let sim_time = self.node.parameter_if_set("/use_sim_time")?;
         let own = parameters.get("use_sim_time").map(|(_, value)| value);
@@ -119,7 +119,7 @@ impl Graph for Ros1Node {
         }
         for (field, value) in parameters.rows() {
             let key = format!("{}/{}", self.full_name, field.name);
-            // What is absent has no value there.
+            // Absent optional values are not written.
             let Some(shown) = parameter_value(&value) else { continue };
             self.node.set_parameter(&key, shown)?;
             let (table, node, log) = (parameters.clone(), Arc::downgrade(&self.node), self.log.clone());
@@ -140,7 +140,7 @@ impl Graph for Ros1Node {
         Ok(())
     }
 
-    /// By `rosnode kill` or a second node of the same name.
+    /// True after `rosnode kill` or when a second node has taken the name.
     fn is_over(&self) -> bool {
         self.node.is_shut_down()
     }

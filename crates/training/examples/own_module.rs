@@ -1,4 +1,4 @@
-//! A module of one's own in the same training as every learner's: an autoencoder of the pictures in a folder.
+//! Trains a custom module with the loop of every learner: an autoencoder of the images in a folder.
 //! `cargo run --release -p opendr-training --example own_module -- pictures runs/autoencoder`
 
 use burn::module::Module;

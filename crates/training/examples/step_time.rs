@@ -1,4 +1,4 @@
-//! How long a step of `fit` takes and how much memory the process, for benches/fit.py:
+//! Measures the time of a step of `fit` and the peak memory of the process, for benches/fit.py:
 //! `step_time mobilenet|resnet18|gru|mlp STEPS` prints `{"ms": .., "peak_mb": ..}`.
 
 use std::fs;
@@ -21,10 +21,10 @@ use opendr_training::layers::{Gru, GruConfig, MobileNetV1, MobileNetV1Config, Re
 use opendr_training::{Container, Loss, Objective, OptimizerKind, TrainingParams, begin, fit_network};
 
 const CLASSES: usize = 10;
-/// Steps before those that count.
+/// Number of warm-up steps, which are not measured.
 const WARM_UP: usize = 3;
 
-/// The four networks of the benchmark; benches/fit.py has the same in PyTorch.
+/// The networks of the benchmark; benches/fit.py has the same in PyTorch.
 #[derive(Module, Debug)]
 #[allow(clippy::large_enum_variant)]
 enum Network {
@@ -34,7 +34,7 @@ enum Network {
     Mlp(Mlp),
 }
 
-/// Features and a last layer.
+/// A network with a classification layer.
 #[derive(Module, Debug)]
 struct Classified<M: Module> {
     features: M,
@@ -48,7 +48,7 @@ struct Mlp {
     last: Linear,
 }
 
-/// A network, the shape of its batch, and what it is called.
+/// A network with its name and the shape of its batch.
 struct Case {
     name: &'static str,
     shape: &'static [usize],
@@ -106,7 +106,7 @@ impl Network {
     }
 }
 
-/// As many random samples as a batch has.
+/// A batch of random samples.
 struct Noise<'a>(&'a [usize]);
 
 impl Dataset for Noise<'_> {}
@@ -124,7 +124,7 @@ impl DatasetIterator for Noise<'_> {
     }
 }
 
-/// Numbers one after the other.
+/// Collates the values of the samples.
 struct Numbers;
 
 impl Collate for Numbers {
@@ -155,9 +155,9 @@ impl Objective for Classify<'_> {
     fn loss(&self, network: &Network, batch: &Vec<f32>, device: &Device) -> Result<Loss> {
         let count = batch.len() / self.0[1..].iter().product::<usize>();
         let shape: Vec<_> = [count].iter().chain(&self.0[1..]).copied().collect();
-        let answers = network.forward(TensorData::new(batch.clone(), shape), device);
+        let logits = network.forward(TensorData::new(batch.clone(), shape), device);
         let classes = Tensor::<1, Int>::arange(0..count as i64, device) % CLASSES as i64;
-        Ok(CrossEntropyLossConfig::new().init(device).forward(answers, classes).into())
+        Ok(CrossEntropyLossConfig::new().init(device).forward(logits, classes).into())
     }
 
     fn container(&self, _: &Network) -> Result<Container> {
@@ -165,7 +165,7 @@ impl Objective for Classify<'_> {
     }
 }
 
-/// When each step ended.
+/// End of each step.
 #[derive(Default)]
 struct Steps(Mutex<Vec<Instant>>);
 
@@ -212,12 +212,12 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The most memory that the process ever held, 10^6 bytes.
+/// Returns the peak memory of the process in 10^6 bytes.
 fn peak_mb() -> Result<f64> {
     let status = fs::read_to_string("/proc/self/status")?;
     let kilobytes = status.lines().find_map(|line| line.strip_prefix("VmHWM:")?.trim().strip_suffix("kB"));
     let kilobytes: Option<f64> = kilobytes.and_then(|text| text.trim().parse().ok());
     kilobytes
         .map(|kilobytes| kilobytes * 1.024e-3)
-        .ok_or_else(|| Error::unsupported("no VmHWM in /proc/self/status"))
+        .ok_or_else(|| Error::unsupported("/proc/self/status has no VmHWM"))
 }

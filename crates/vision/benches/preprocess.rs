@@ -1,6 +1,6 @@
-//! Pre-processing of a decoded frame, with as many threads as there are cores.
+//! Pre-processing of a decoded frame, with one thread per core.
 //!
-//! `benches/preprocess.py` runs this and what Python users write with OpenCV and NumPy, and prints both.
+//! `benches/preprocess.py` runs this and the same with OpenCV and NumPy, and prints both.
 
 #![allow(missing_docs, clippy::expect_used)]
 
@@ -13,7 +13,7 @@ use opendr_vision::{Anchor, ChannelOrder, InputSample, Preprocess, Similarity};
 fn frame(width: usize, height: usize, layout: Layout) -> Image {
     let samples: Vec<u8> =
         (0..width * height * 3).map(|index| ((index * 2_654_435_761) >> 7) as u8).collect();
-    Image::new(samples, width, height, PixelFormat::Bgr, layout).expect("as many samples as the size says")
+    Image::new(samples, width, height, PixelFormat::Bgr, layout).expect("the sample count matches the size")
 }
 
 fn case<T: InputSample + Default>(

@@ -1,6 +1,6 @@
-//! After the first frames, pre-processing allocates nothing, on any thread.
+//! Pre-processing allocates nothing after the first frames, on any thread.
 //!
-//! A program of its own: work of other threads counts, so no other test may run beside it.
+//! A separate test binary: allocations of other threads count, so no other test may run beside it.
 
 use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_test_allocator::{Counting, allocations};

@@ -1,4 +1,4 @@
-//! `opendr runtime`: what runs networks here.
+//! `opendr runtime`: the runtimes that execute networks on this machine.
 
 use clap::{ArgMatches, Command};
 use opendr::Result;
@@ -11,13 +11,13 @@ use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
     Command::new("runtime")
-        .about("Show which runtime runs networks and why, or install ONNX Runtime")
+        .about("Show which runtime executes networks and why, or install ONNX Runtime")
         .subcommand(
-            Command::new("list").about("Every runtime that was found, with its devices (the default)"),
+            Command::new("list").about("List the available runtimes with their devices (the default)"),
         )
         .subcommand(
             Command::new("install")
-                .about("Get ONNX Runtime's library with pip into the cache")
+                .about("Download ONNX Runtime's library with pip into the cache")
                 .args([loading::offline(), loading::quiet()]),
         )
         .disable_help_subcommand(true)
@@ -39,7 +39,7 @@ fn list() -> Result<()> {
         stdout::print(format_args!("found: {} on {}", runtime.describe(), devices.join(", ")))?;
     }
     for skipped in OnnxRuntime::skipped() {
-        stdout::print(format_args!("passed over: {skipped}"))?;
+        stdout::print(format_args!("skipped: {skipped}"))?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `opendr score`: a file of answers against a data set.
+//! `opendr score`: evaluates a file of predictions against a data set.
 
 use std::path::{Path, PathBuf};
 
@@ -17,19 +17,19 @@ use crate::{class_flags, dataset_flags, loading};
 const EXAMPLES: &str = "\
 Examples:
   opendr score results.json coco/annotations/instances_val2017.json --metric coco_detection
-  opendr score answers.jsonl coco/ --metric coco_detection      lines of \"opendr infer --json\"
-  opendr score tracker/ MOT17/train/ --metric hota              files of the data set's own format
+  opendr score predictions.jsonl coco/ --metric coco_detection  lines of \"opendr infer --json\"
+  opendr score tracker/ MOT17/train/ --metric hota              files in the data set's own format
   opendr score results/ KITTI/ --metric kitti --answers-format kitti";
 
 pub fn grammar() -> Command {
     Command::new("score")
-        .about("Measure answers that were written into files")
+        .about("Evaluate predictions that were written into files")
         .arg(
             Arg::new("answers")
                 .required(true)
-                .value_name("ANSWERS")
+                .value_name("PREDICTIONS")
                 .value_parser(value_parser!(PathBuf))
-                .help("COCO results, lines of JSON, or a data set whose annotations are the answers"),
+                .help("COCO results, lines of JSON, or a data set whose annotations are the predictions"),
         )
         .arg(dataset_flags::dataset())
         .args(dataset_flags::flags())
@@ -37,7 +37,7 @@ pub fn grammar() -> Command {
             Arg::new("answers-format")
                 .long("answers-format")
                 .value_name("FORMAT")
-                .help("The format of the answers; by default the data set's"),
+                .help("Format of the predictions [default: that of DATASET]"),
         )
         .args(eval::metric_flags())
         .args(class_flags::flags())
@@ -64,7 +64,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         if let Some(folder) = matches.get_one::<PathBuf>("out") {
             outcome.write_report(folder)?;
         }
-        return eval::tell(&outcome, matches, &problems, &bar);
+        return eval::print_outcome(&outcome, matches, &problems, &bar);
     }
     let dataset = evaluation::open_for(metric, &external, split, &problems)?;
     let answers = match path.extension().and_then(|extension| extension.to_str()) {
@@ -84,20 +84,20 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         ..Evaluation::new(subject, metric, &problems)
     };
     let outcome = evaluation.score(&answers, dataset.as_ref())?;
-    eval::tell(&outcome, matches, &problems, &bar)
+    eval::print_outcome(&outcome, matches, &problems, &bar)
 }
 
-/// The answers as a data set.
+/// Opens the predictions as a data set.
 fn open(
     path: &Path,
-    truth: &ExternalDataset,
+    ground_truth: &ExternalDataset,
     metric: &MetricEntry,
     matches: &ArgMatches,
     problems: &Problems,
 ) -> Result<Box<dyn opendr::dataset::DatasetIterator>> {
     let format = match matches.get_one::<String>("answers-format") {
         Some(format) => format,
-        None => datasets::format_of(truth)?.name,
+        None => datasets::format_of(ground_truth)?.name,
     };
     let options = OpenOptions { split: None, target: Some(metric.prediction) };
     datasets::open(&ExternalDataset::new(path, format), &options, problems)

@@ -279,7 +279,7 @@ fn huge_sizes_are_refused_before_anything_is_read() {
             refused(opendr_heatmap_create(&fields, &mut map), OPENDR_INVALID_INPUT, "cannot have 1");
             let mut audio = null_mut();
             let status = opendr_audio_create([0.0].as_ptr(), 1, huge, 1, &mut audio);
-            refused(status, OPENDR_INVALID_INPUT, "no sound of");
+            refused(status, OPENDR_INVALID_INPUT, "not audio of");
         }
     }
 }

@@ -180,7 +180,7 @@ fn wrong_inputs_are_refused() {
     let unknown = opendr_tensor { name: c"image".as_ptr(), ..good };
     refused(call(&[unknown]), OPENDR_INVALID_INPUT, "no input \"image\"; it takes clip");
     refused(call(&[opendr_tensor { name: c"\xff".as_ptr(), ..good }]), OPENDR_INVALID_INPUT, "not UTF-8");
-    refused(call(&[opendr_tensor { axes: 3, ..good }]), OPENDR_INVALID_INPUT, "elements given for a tensor");
+    refused(call(&[opendr_tensor { axes: 3, ..good }]), OPENDR_INVALID_INPUT, "elements do not match a tensor");
     refused(call(&[opendr_tensor { length: 5, ..good }]), OPENDR_INVALID_INPUT, "5 elements");
     refused(call(&[opendr_tensor { numbers: null(), ..good }]), OPENDR_INVALID_INPUT, "numbers of a tensor");
     refused(call(&[opendr_tensor { shape: null(), ..good }]), OPENDR_INVALID_INPUT, "shape of a tensor");
@@ -197,10 +197,10 @@ fn wrong_inputs_are_refused() {
         );
         let shape = [huge, huge, huge, huge];
         let status = call(&[tensor(None, &numbers, &shape)]);
-        refused(status, OPENDR_INVALID_INPUT, "elements given for a tensor");
+        refused(status, OPENDR_INVALID_INPUT, "elements do not match a tensor");
     }
     let (few, other) = ([0.0; 6], [1, 2, 3]);
-    refused(call(&[tensor(None, &few, &other)]), OPENDR_INVALID_INPUT, "was given f32[1, 2, 3]");
+    refused(call(&[tensor(None, &few, &other)]), OPENDR_INVALID_INPUT, "received f32[1, 2, 3]");
     let many = [1; 9];
     refused(call(&[tensor(None, &few[..1], &many)]), OPENDR_INVALID_INPUT, "at most 8");
     // SAFETY: a network and a variable.

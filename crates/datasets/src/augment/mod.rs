@@ -1,7 +1,8 @@
-//! Augmentation: samples changed at random, data and target together. One file each.
+//! Augmentation: random changes of samples, data and target together. One file for each augmentation.
 //!
-//! An [`Augment`] takes all its chance from the [`Random`](opendr_engine::Random) it is given, so that a sample comes out
-//! the same whichever thread works on it. What cannot follow a change (a 3D box when its picture is turned) is refused, never left behind.
+//! An [`Augment`] takes all randomness from the [`Random`](opendr_engine::Random) it receives, so a sample does not
+//! depend on the thread that processes it. A target that cannot be changed like the data (a 3D box when its image
+//! is rotated) is an error.
 
 mod audio;
 mod augmentation;

@@ -1,4 +1,4 @@
-//! The way through the layers.
+//! Conversion of the layers in order.
 
 use std::collections::HashMap;
 
@@ -11,7 +11,7 @@ use super::product::channels;
 use super::weights::Weights;
 use crate::tensorflow::ImportOptions;
 
-/// The graph under construction, the tensors that are known by name, and the weights that are left.
+/// The graph under construction, the converted tensors by name, and the unread weights.
 pub struct Trace<'a> {
     pub graph: Builder,
     pub weights: Weights<'a>,
@@ -19,10 +19,10 @@ pub struct Trace<'a> {
 }
 
 impl<'a> Trace<'a> {
-    /// Goes through all layers.
+    /// Converts all layers.
     ///
     /// # Errors
-    /// `Format` and `Unsupported`, naming the layer.
+    /// `Format` and `Unsupported`, with the layer's name.
     pub fn through(
         layers: &[Layer<'a>],
         graph: Builder,
@@ -45,7 +45,7 @@ impl<'a> Trace<'a> {
             }
             for &name in &layer.outputs {
                 if trace.tensors.insert(name, wire.clone()).is_some() {
-                    return Err(Error::format(format!("two layers give {name:?}")));
+                    return Err(Error::format(format!("two layers produce {name:?}")));
                 }
             }
         }
@@ -53,30 +53,31 @@ impl<'a> Trace<'a> {
         Ok(trace)
     }
 
-    /// A tensor by its name.
+    /// Returns a tensor by name.
     ///
     /// # Errors
-    /// `Format` when no layer gave it.
+    /// `Format` when no layer has produced it.
     pub fn tensor(&self, name: &str) -> Result<Wire> {
         self.tensors
             .get(name)
             .cloned()
-            .ok_or_else(|| Error::format(format!("no layer before gives {name:?}")))
+            .ok_or_else(|| Error::format(format!("no preceding layer produces {name:?}")))
     }
 
-    /// An input of a layer.
+    /// Returns an input of a layer.
     ///
     /// # Errors
-    /// `Format` when it has none there.
+    /// `Format` when the layer has no such input.
     pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<Wire> {
-        let few = || Error::format(format!("{} inputs, but input {index} is needed", layer.inputs.len()));
+        let few =
+            || Error::format(format!("it has {} inputs, but input {index} is needed", layer.inputs.len()));
         self.tensor(layer.inputs.get(index).ok_or_else(few)?)
     }
 
-    /// An operator on floats.
+    /// Adds an operator on floats.
     ///
     /// # Errors
-    /// `Format` when the graph has grown too large.
+    /// `Format` when the graph exceeds the maximum number of nodes.
     pub fn add(
         &mut self,
         layer: &Layer<'_>,
@@ -87,16 +88,16 @@ impl<'a> Trace<'a> {
         self.graph.add(layer.name, operator, inputs, Kind::Float, dims)
     }
 
-    /// The same, giving what is as large as its first input.
+    /// Adds an operator whose output has the dimensions of its first input.
     ///
     /// # Errors
-    /// As [`Trace::add`].
+    /// Those of [`Trace::add`].
     pub fn same(&mut self, layer: &Layer<'_>, operator: Operator, inputs: &[&Wire]) -> Result<Wire> {
         let dims = inputs.first().map(|input| input.dims().to_vec()).unwrap_or_default();
         self.add(layer, operator, inputs, dims)
     }
 
-    /// An input of the model: a picture, of open size where neither text nor options say it.
+    /// Adds an input of the model: an image, of open size where neither text nor options fix it.
     fn open(&mut self, layer: &Layer<'a>, layers: &[Layer<'a>], options: &ImportOptions) -> Result<Wire> {
         let name = layer.outputs.first().copied().unwrap_or_default();
         let given = |key: i64| layer.parameters.size(key, 0).map(|size| Some(size).filter(|size| *size > 0));
@@ -115,7 +116,7 @@ impl<'a> Trace<'a> {
     }
 }
 
-/// The first layer that does something with a tensor.
+/// Returns the first layer that processes a tensor.
 fn consumer<'l, 'a>(layers: &'l [Layer<'a>], name: &str) -> Option<&'l Layer<'a>> {
     layers.iter().find(|layer| layer.kind != "Input" && layer.inputs.contains(&name))
 }

@@ -7,8 +7,8 @@ use super::lowering::Lowering;
 use super::options::ImportOptions;
 use super::value::Value;
 
-/// An input of TensorFlow's dimensions `dims` (not above zero where open). Images become `1x3xHxW` floats, whatever
-/// element type TensorFlow wants; other inputs stay as they are.
+/// Adds an input of TensorFlow's dimensions `dims` (zero or negative where open). Images become `1x3xHxW` floats,
+/// whatever element type TensorFlow declares; other inputs are unchanged.
 pub fn input(ctx: &mut Lowering, options: &ImportOptions, name: &str, kind: Kind, dims: &[i64]) -> Value {
     let mut dims: Vec<Dim> =
         dims.iter().map(|&dim| usize::try_from(dim).ok().filter(|&dim| dim > 0)).collect();

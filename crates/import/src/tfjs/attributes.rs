@@ -1,4 +1,4 @@
-//! Parameters of TensorFlow nodes, as protobuf's JSON mapping writes them.
+//! Parameters of TensorFlow nodes in protobuf's JSON mapping.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use serde_json::Value as Json;
 
 use crate::tensorflow::{Attribute, Attributes};
 
-/// Reads the parameters of a node; those of no use to the importer are left out.
+/// Reads the parameters of a node; those that the importer does not use are omitted.
 ///
 /// # Errors
-/// Where there is no object.
+/// When the value is not an object.
 pub fn deserialize<'de, D: Deserializer<'de>>(json: D) -> Result<Attributes, D::Error> {
     let parameters = BTreeMap::<String, Json>::deserialize(json)?;
     Ok(parameters.into_iter().filter_map(|(key, json)| Some((key, attribute(&json)?))).collect())
@@ -40,7 +40,7 @@ fn list(json: &Json) -> Option<Attribute> {
     }
 }
 
-/// `None` for an element type that ONNX graphs of ours do not hold (strings, complex numbers).
+/// Returns an element type; `None` for a type that the graphs do not support (strings, complex numbers).
 fn kind(json: &Json) -> Option<Kind> {
     let name = json.as_str().map_or_else(|| json.to_string(), str::to_owned);
     Some(match name.as_str() {
@@ -52,7 +52,7 @@ fn kind(json: &Json) -> Option<Kind> {
     })
 }
 
-/// Dimensions, -1 where open; `None` when even their number is.
+/// Returns dimensions, -1 where open; `None` when the rank is open.
 fn shape(json: &Json) -> Option<Vec<i64>> {
     if json.get("unknownRank").and_then(Json::as_bool).unwrap_or(false) {
         return None;

@@ -1,4 +1,4 @@
-//! From tokens to the next one.
+//! The decoder: logits of the next token.
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
@@ -8,7 +8,7 @@ use super::layers::Layers;
 use super::sizes::{CONTEXT, PLACES, Sizes};
 use super::{HEAD, WhisperWeights};
 
-/// The graph of [`super::WhisperOnnx::decoder`].
+/// Returns the graph of [`super::WhisperOnnx::decoder`].
 pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> {
     let &Sizes { width, inner, tokens: count, .. } = sizes;
     let mut layers = Layers::new(weights, width, inner);
@@ -63,7 +63,7 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
     let last = vec![Some(1), Some(width)];
     let last = layers.add("last", Operator::new("Slice"), &[&places, &from, &to, &axis], last)?;
     let last = layers.norm("decoder.layer_norm", &last)?;
-    // The words' own embeddings are what the end is compared with.
+    // The output layer shares the weights of the token embeddings.
     let product = Operator::new("Gemm").int("transB", 1);
     let logits = layers.add("logits", product, &[&last, &embeddings], vec![Some(1), Some(count)])?;
     layers.graph.output("logits", &logits, "", &[])?;
@@ -74,7 +74,7 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
     Ok(layers.graph.finish("whisper_decoder"))
 }
 
-/// What is remembered, and what is new behind it.
+/// Returns the cached keys or values followed by the new ones.
 fn remembered(layers: &mut Layers<'_>, past: &Wire, new: &Wire) -> Result<Wire> {
     let width = new.dims().last().copied().flatten();
     layers.add("own", Operator::new("Concat").int("axis", 0), &[past, new], vec![None, width])

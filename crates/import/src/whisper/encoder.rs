@@ -1,4 +1,4 @@
-//! From a spectrogram to what the decoder attends to.
+//! The encoder: keys and values for the decoder's cross-attention, from a spectrogram.
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
@@ -8,7 +8,7 @@ use super::WhisperWeights;
 use super::layers::Layers;
 use super::sizes::{FRAMES, PLACES, Sizes};
 
-/// The graph of [`super::WhisperOnnx::encoder`].
+/// Returns the graph of [`super::WhisperOnnx::encoder`].
 pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> {
     let &Sizes { bands, width, inner, .. } = sizes;
     let mut layers = Layers::new(weights, width, inner);
@@ -40,7 +40,7 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
     Ok(layers.graph.finish("whisper_encoder"))
 }
 
-/// Two convolutions, of which the second halves the number of places, and the places' encodings.
+/// Writes two convolutions, of which the second halves the number of positions, and adds the position encodings.
 fn convolutions(layers: &mut Layers<'_>, mel: &Wire, bands: usize, width: usize) -> Result<Wire> {
     let mut features = mel.clone();
     for (name, channels, stride, places) in

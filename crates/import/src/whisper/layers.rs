@@ -1,11 +1,11 @@
-//! What encoder and decoder are made of. Places are rows: tensors are `[places, features]`.
+//! Layers of encoder and decoder. Positions are rows: tensors are `[positions, features]`.
 
 use opendr_engine::{Error, Result};
 use opendr_onnx::{Array, Builder, Data, Dim, Kind, Operator, Wire};
 
 use super::{HEAD, WhisperWeights};
 
-/// A graph under construction, and where its weights come from.
+/// A graph under construction and its weights.
 pub struct Layers<'a> {
     pub graph: Builder,
     weights: &'a dyn WhisperWeights,
@@ -18,7 +18,7 @@ impl<'a> Layers<'a> {
         Self { graph: Builder::default(), weights, width, inner }
     }
 
-    /// A weight of known shape.
+    /// Returns a weight of known shape.
     pub fn weight(&self, name: &str, dims: &[usize]) -> Result<Wire> {
         self.array(name, dims).map(|array| Wire::named_constant(name, array))
     }
@@ -28,17 +28,17 @@ impl<'a> Layers<'a> {
         match array.dims() == dims {
             true => Ok(array),
             false => {
-                Err(Error::format(format!("{name} has the shape {:?}, {dims:?} is wanted", array.dims())))
+                Err(Error::format(format!("{name} has the shape {:?} instead of {dims:?}", array.dims())))
             }
         }
     }
 
-    /// An operator on floats.
+    /// Adds an operator on floats.
     pub fn add(&mut self, hint: &str, operator: Operator, inputs: &[&Wire], dims: Vec<Dim>) -> Result<Wire> {
         self.graph.add(hint, operator, inputs, Kind::Float, dims)
     }
 
-    /// A dense layer; its bias is left out where it is none or zero.
+    /// Adds a dense layer; a missing or zero bias is omitted.
     pub fn linear(&mut self, name: &str, input: &Wire, columns: usize) -> Result<Wire> {
         let rows = input.dims().last().copied().flatten().unwrap_or_default();
         let (weight, bias) = (format!("{name}.weight"), format!("{name}.bias"));
@@ -49,7 +49,7 @@ impl<'a> Layers<'a> {
             return Ok(product);
         }
         let array = self.array(&bias, &[columns])?;
-        // Keys have no bias; where they are stored with queries, theirs is zero.
+        // Keys have no bias; where they are stored together with queries, theirs is zero.
         if array.as_floats().is_some_and(|values| values.iter().all(|value| *value == 0.0)) {
             return Ok(product);
         }
@@ -63,7 +63,7 @@ impl<'a> Layers<'a> {
         self.add(name, operator, &[input, &scale, &bias], input.dims().to_vec())
     }
 
-    /// The activation x / 2 (1 + erf(x / sqrt 2)), in the order in which runtimes know it and compute it at once.
+    /// Adds the activation x / 2 (1 + erf(x / sqrt 2)), in the order of operations that runtimes recognise and fuse.
     pub fn gelu(&mut self, input: &Wire) -> Result<Wire> {
         let dims = input.dims().to_vec();
         let scaled = Wire::scalar(std::f32::consts::SQRT_2);
@@ -78,7 +78,7 @@ impl<'a> Layers<'a> {
         self.add("sum", Operator::new("Add"), &[a, b], a.dims().to_vec())
     }
 
-    /// The block's two dense layers, and the way past them.
+    /// Adds the block's feed-forward network with its residual connection.
     pub fn dense(&mut self, block: &str, input: &Wire) -> Result<Wire> {
         let hidden = self.norm(&format!("{block}.final_layer_norm"), input)?;
         let hidden = self.linear(&format!("{block}.fc1"), &hidden, self.inner)?;
@@ -87,7 +87,7 @@ impl<'a> Layers<'a> {
         self.sum(input, &hidden)
     }
 
-    /// Places apart by heads: `[heads, places, HEAD]`, or transposed, as keys are multiplied, `[heads, HEAD, places]`.
+    /// Splits positions by heads: `[heads, positions, HEAD]`, or transposed for keys, `[heads, HEAD, positions]`.
     pub fn heads(&mut self, input: &Wire, transpose: bool) -> Result<Wire> {
         let (places, heads) = (input.dims().first().copied().flatten(), self.width / HEAD);
         let shape = Wire::ints([-1, heads as i64, HEAD as i64]);
@@ -100,7 +100,8 @@ impl<'a> Layers<'a> {
         self.add("heads", Operator::new("Transpose").ints("perm", order), &[&parted], dims)
     }
 
-    /// What `queries` `[places, width]` find among `keys` and `values`, both apart by heads; `mask` is added to the scores.
+    /// Adds attention of `queries` `[positions, width]` to `keys` and `values`, both split by heads; `mask` is added
+    /// to the scores.
     pub fn attend(
         &mut self,
         queries: &Wire,
@@ -139,7 +140,7 @@ fn with_last(dims: &[Dim], last: usize) -> Vec<Dim> {
 }
 
 fn transposed(array: &Array) -> Result<Array> {
-    let wrong = || Error::internal("only matrices are transposed");
+    let wrong = || Error::internal("only matrices can be transposed");
     let (&[rows, columns], Some(floats)) = (array.dims(), array.as_floats()) else { return Err(wrong()) };
     let column = |at: usize| floats.iter().skip(at).step_by(columns.max(1)).copied();
     let floats = (0..columns).flat_map(column).collect();

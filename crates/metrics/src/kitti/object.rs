@@ -1,4 +1,4 @@
-//! An object as KITTI's rules look at it.
+//! Objects with the properties that KITTI's rules use.
 
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Name};
 use opendr_engine::{Error, Result};
@@ -6,31 +6,31 @@ use opendr_engine::{Error, Result};
 use super::rules::ObjectKind;
 use crate::StandingBox;
 
-/// An object of truth or answer.
+/// A ground-truth or predicted object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KittiObject {
     /// Type as in KITTI's files, e.g. `Car`, `Person_sitting` or `DontCare`; case does not matter.
     pub class: String,
-    /// Share that lies outside the picture; only of truth.
+    /// Fraction outside the image; ground truth only.
     pub truncated: f64,
-    /// 0 visible, 1 partly, 2 largely hidden, 3 not known; only of truth.
+    /// Occlusion: 0 visible, 1 partly, 2 largely occluded, 3 unknown; ground truth only.
     pub occluded: i32,
-    /// Angle under which it is seen, radians; -10 when it is not known.
+    /// Observation angle in radians; -10 if unknown.
     pub alpha: f64,
-    /// Corners `[x0, y0, x1, y1]` in the picture, pixels.
+    /// Corners `[x0, y0, x1, y1]` in the image, in pixels.
     pub in_image: [f64; 4],
-    /// Length, height and width, metres.
+    /// Length, height and width in metres.
     pub dimensions: [f64; 3],
-    /// The middle of its floor in the camera's frame, metres.
+    /// Center of the base in the camera frame, in metres.
     pub location: [f64; 3],
-    /// Turn about the vertical axis, radians.
+    /// Rotation about the vertical axis, in radians.
     pub rotation_y: f64,
-    /// Score; only of answers.
+    /// Score; predictions only.
     pub score: f64,
 }
 
 impl KittiObject {
-    /// The box in space.
+    /// Returns the 3D box.
     pub fn standing_box(&self) -> StandingBox {
         StandingBox::in_camera(self.dimensions, self.location, self.rotation_y)
     }
@@ -39,7 +39,7 @@ impl KittiObject {
         ObjectKind::from_name(&self.class)
     }
 
-    /// Height in the picture, pixels.
+    /// Returns the height in the image, in pixels.
     pub(super) fn height_in_image(&self) -> f64 {
         self.in_image[3] - self.in_image[1]
     }
@@ -51,13 +51,13 @@ impl KittiObject {
             return Ok(());
         }
         Err(Error::invalid_input(format!(
-            "a {} has numbers that are not finite: {self:?}; give finite ones",
+            "a {} has numbers that are not finite: {self:?}; give finite numbers",
             self.class
         )))
     }
 }
 
-/// The objects of a list.
+/// Converts a list of boxes to objects.
 pub(super) fn objects_from_list(list: &BoundingBox3DList) -> Result<Vec<KittiObject>> {
     list.boxes.iter().map(|found| object_from_box(found, list)).collect()
 }
@@ -68,13 +68,13 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
         (None, Name::Label(label)) => label.to_string(),
         (None, Name::Index(index)) => {
             return Err(Error::invalid_input(format!(
-                "a box has class number {index}, but its list names no classes; give labels such as \"Car\""
+                "a box has class index {index}, but its list has no class names; give labels such as \"Car\""
             )));
         }
     };
     if found.bbox2d == [0.0; 4] {
         return Err(Error::invalid_input(format!(
-            "a {class} has no place in the picture (\"bbox2d\"), which KITTI's rules look at; project it into the picture"
+            "a {class} has no box in the image (\"bbox2d\"), which KITTI's rules need; project it into the image"
         )));
     }
     Ok(KittiObject {
@@ -90,8 +90,8 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
     })
 }
 
-/// The number that KITTI's file has: its two decimals lie on the rules' limits (0.15, 25 pixels), and an `f32` would
-/// fall on either side of them.
+/// Returns the decimal number in KITTI's file. Its two decimals may equal the limits of the rules (0.15, 25 pixels), and an
+/// `f32` could be on either side of them.
 fn as_written(number: f32) -> f64 {
     number.to_string().parse().unwrap_or_else(|_| f64::from(number))
 }

@@ -1,7 +1,7 @@
-//! Weights in 16 bits: stored as `float16`, widened by a `Cast` as the model is opened.
+//! Weights in 16 bits: stored as `float16`, converted by a `Cast` when the model is opened.
 //!
-//! The arithmetic stays that of `float32`, so that every engine runs the model and answers as before, up to the
-//! rounding of the weights (one part in 2048).
+//! The arithmetic stays `float32`, so that every runtime runs the model and the outputs change only by the rounding
+//! of the weights (one part in 2048).
 
 use std::collections::HashSet;
 
@@ -9,13 +9,14 @@ use crate::half::half_from_float;
 use crate::proto::{DataType, GraphProto, NodeProto};
 use crate::{Array, Operator};
 
-/// Smaller tensors stay: they would not pay for their `Cast`, and sizes and limits are among them.
+/// Minimum size of converted tensors: for smaller ones, which include sizes and limits, the `Cast` costs more than it
+/// saves.
 const LEAST_ELEMENTS: usize = 128;
 
-/// The largest `float16`.
+/// Largest finite `float16`.
 const LARGEST: f32 = 65504.0;
 
-/// Stores the float weights as `float16`; how many tensors.
+/// Stores the float weights as `float16`; returns the number of converted tensors.
 pub fn halve_weights(graph: &mut GraphProto) -> usize {
     let inputs: HashSet<String> = graph.input.iter().map(|input| input.name.clone()).collect();
     let mut casts = Vec::new();

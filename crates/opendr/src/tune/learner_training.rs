@@ -1,4 +1,4 @@
-//! A learner's training as something that a tuner carries out.
+//! Training of a learner as a trial of a tuner.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use super::until::Until;
 use super::{TuneData, TuneOptions};
 use crate::{ActingStream, FitData, FitEnvironments, FitOptions, eval_in, fit, fit_in};
 
-/// One configuration with one seed: `fit`, stopped at every point with its checkpoint, and resumed.
+/// Training of one configuration with one seed, which stops with a checkpoint at each evaluation and resumes.
 pub struct LearnerTraining<'a> {
     entry: &'static Entry,
     data: TuneData<'a>,
@@ -25,16 +25,16 @@ pub struct LearnerTraining<'a> {
 
 static COUNTER: AtomicU64 = AtomicU64::new(0);
 
-/// Parameters of trainings in environments by their names: length, seed, measurements of their own.
+/// Names of the parameters that set the length of a training.
 const LENGTH: [&str; 2] = ["total_timesteps", "max_steps"];
 const SEED: &str = "seed";
 const MEASUREMENTS: &str = "eval_freq";
 
 impl<'a> LearnerTraining<'a> {
-    /// A training that has not begun; it works in a folder of its own below `work`.
+    /// Creates a training that has not begun, with a folder of its own below `work`.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters that do not fit, `Unsupported` for data that nothing is trained on.
+    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::Answers`], which trains nothing.
     pub fn new(
         entry: &'static Entry,
         data: TuneData<'a>,
@@ -45,7 +45,9 @@ impl<'a> LearnerTraining<'a> {
         progress: &'a dyn Progress,
     ) -> Result<Self> {
         if matches!(data, TuneData::Answers { .. }) {
-            return Err(Error::unsupported("these data are to measure a learner as it is, not to train it"));
+            return Err(Error::unsupported(
+                "these data are for the evaluation of a learner without training",
+            ));
         }
         let mut params = options.fit_params.clone();
         let has = |name: &str| entry.fit_params.iter().any(|field| field.name == name);
@@ -69,7 +71,7 @@ impl<'a> LearnerTraining<'a> {
         Ok(Self { entry, data, learner, params, folder, progress })
     }
 
-    /// Whether it came as far.
+    /// Trains up to step `until` and returns whether the training got there.
     fn train(&mut self, until: u64) -> Result<bool> {
         let options = FitOptions {
             params: self.params.clone(),
@@ -132,7 +134,7 @@ impl Drop for LearnerTraining<'_> {
     }
 }
 
-/// Copies a folder so that the copy is there whole or not at all.
+/// Copies a folder atomically: the copy is complete or absent.
 fn copied(from: &Path, to: &Path) -> Result<()> {
     let context = || format!("copying {} to {}", from.display(), to.display());
     let number = COUNTER.fetch_add(1, Ordering::Relaxed);

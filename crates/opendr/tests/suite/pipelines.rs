@@ -1,4 +1,4 @@
-//! Learners one behind the other, with the models of the zoo.
+//! Pipelines with the models of the zoo.
 
 use opendr::data::Image;
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};

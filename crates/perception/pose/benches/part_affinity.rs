@@ -1,4 +1,4 @@
-//! From the maps of a picture with one, five and twenty persons to poses.
+//! Encoding and decoding of the maps of one, five and twenty persons.
 //!
 //! `cargo bench -p opendr-pose --bench part_affinity`
 
@@ -12,10 +12,10 @@ use opendr_pose::pose_estimation::part_affinity::{
     FIELDS, Grid, HEAT_MAPS, JOINTS, Memory, Painter, PartAffinity, PartMaps,
 };
 
-/// The maps of a picture of 16:9 at 256 pixels height.
+/// The maps of a 16:9 image at a height of 256 pixels.
 const GRID: Grid = Grid { rows: 32, columns: 57, stride: 8.0 };
 
-/// Joints on two columns, so that limbs lie apart.
+/// Returns joints in two columns, so that limbs are separate.
 fn person(number: usize) -> [Keypoint; JOINTS] {
     let [left, top] = [20.0 + (number % 10) as f32 * 42.0, 10.0 + (number / 10) as f32 * 120.0];
     std::array::from_fn(|joint| {

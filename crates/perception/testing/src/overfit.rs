@@ -1,4 +1,4 @@
-//! What the tests of learners that train have in common: each can learn one batch by heart.
+//! Test that a trainable learner overfits one batch.
 
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams};
@@ -9,7 +9,7 @@ use opendr_engine::Random;
 use opendr_engine::dataset::Sample;
 use opendr_training::Objective;
 
-/// Returns the loss of `samples`, one batch, before training and after 300 steps on it alone.
+/// Returns the loss of `samples`, one batch, before and after 300 training steps on it.
 pub fn losses_on_one_batch<O: Objective>(
     objective: &O,
     network: impl FnOnce(&Device) -> O::Network,

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use opendr_engine::Result;
 
-/// How long a picture may take.
+/// Time budget of an image.
 #[derive(Debug, Clone, Copy)]
 pub struct Allowance {
     begun: Instant,
@@ -13,27 +13,27 @@ pub struct Allowance {
 }
 
 impl Allowance {
-    /// From now on so many milliseconds; 0 or no number: no limit.
+    /// Starts a budget of so many milliseconds; without a limit for 0 and NaN.
     pub fn of_milliseconds(milliseconds: f32) -> Self {
         let limit = (milliseconds > 0.0).then(|| Duration::from_secs_f32(milliseconds.min(1e9) / 1000.0));
         Self { begun: Instant::now(), limit }
     }
 
-    /// Whether there is time for something that takes `long`.
+    /// Returns whether the budget has `long` left.
     fn has(&self, long: Duration) -> bool {
         self.limit.is_none_or(|limit| self.begun.elapsed() + long <= limit)
     }
 }
 
-/// Does `jobs` in their order, at most `workers` side by side, while the allowance has time for one more that takes as long as
-/// the longest so far; the first is always done. `work` is given the number of its worker and the job; what was done
-/// is in the order of the jobs.
+/// Runs `jobs` in their order, at most `workers` in parallel, while the budget has time for one more that takes as long as
+/// the longest so far; the first is always run. `work` receives the index of its worker and the job. The results are in the
+/// order of the jobs.
 ///
 /// # Errors
-/// The first error of `work`; what is under way is finished.
+/// The first error of `work`; jobs in progress are finished.
 ///
 /// # Panics
-/// Goes on with a panic of `work`.
+/// When `work` panics.
 pub fn look_side_by_side<R: Send>(
     workers: usize,
     jobs: &[usize],
@@ -80,18 +80,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn all_is_done_in_order_without_a_limit() {
+    fn all_jobs_run_in_order_without_a_limit() {
         for workers in [0, 1, 3] {
             let jobs: Vec<usize> = (0..50).rev().collect();
             let done =
                 look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), |_, job| Ok(job * 2));
-            let wanted: Vec<_> = jobs.iter().map(|job| (*job, job * 2)).collect();
-            assert_eq!(done.unwrap(), wanted);
+            let expected: Vec<_> = jobs.iter().map(|job| (*job, job * 2)).collect();
+            assert_eq!(done.unwrap(), expected);
         }
     }
 
     #[test]
-    fn one_is_done_when_the_time_is_over_already() {
+    fn one_job_runs_when_the_time_is_over() {
         let allowance = Allowance::of_milliseconds(1e-6);
         thread::sleep(Duration::from_millis(1));
         let done = look_side_by_side(1, &[7, 8, 9], allowance, |_, job| Ok(job)).unwrap();
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn what_would_take_too_long_is_not_begun() {
+    fn jobs_beyond_the_budget_are_not_started() {
         let begun = Instant::now();
         let (long, limit) = (Duration::from_millis(30), Duration::from_millis(75));
         let allowance = Allowance { begun, limit: Some(limit) };
@@ -108,12 +108,12 @@ mod tests {
             thread::sleep(long);
             Ok(job)
         });
-        // Two fit; the machine may be slow, so that there may be fewer, never more.
+        // Two fit; on a slow machine there may be fewer, never more.
         assert!((1..=2).contains(&done.unwrap().len()));
     }
 
     #[test]
-    fn an_error_ends_it() {
+    fn an_error_ends_the_run() {
         let work = |_: usize, job: usize| {
             if job == 3 { Err(Error::invalid_input("three")) } else { Ok(job) }
         };

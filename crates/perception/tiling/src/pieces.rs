@@ -2,32 +2,31 @@ use opendr_engine::target::BoundingBox;
 use opendr_perception_common::regions::Region;
 use opendr_perception_common::suppression::iou;
 
-/// At which of its sides a box ends because its tile does: left, top, right, bottom.
+/// Sides of a box at which its tile's border cuts it: left, top, right, bottom.
 pub type Cut = [bool; 4];
 
-/// A box that was found in a tile, in the pixels of the whole picture.
+/// A box that was detected in a tile, in pixels of the whole image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// The box.
     pub found: BoundingBox,
-    /// Where its tile cut it.
+    /// Sides at which its tile cuts it.
     pub cut: Cut,
 }
 
-/// A border cuts boxes that end within this share of the tile's side before it.
+/// Distance to the border of a tile, as a share of its side, within which a box counts as cut.
 const NEAR: f32 = 0.015;
-/// Two boxes that a border cuts are one object if they share so much of what they measure along the border (intersection over
-/// union).
+/// Minimum IoU along the border of two cut boxes of one object.
 const ALONG: f32 = 0.5;
-/// They may be so many pixels apart.
+/// Maximum distance between them, in pixels.
 const APART: f32 = 4.0;
-/// A piece of which so much lies in another box is a piece of that object.
+/// Share of a cut box inside another box above which it is part of that object.
 const COVERED: f32 = 0.7;
-/// More pieces are noise, and time grows with their square.
+/// Maximum number of pieces; more are noise, and time grows with the square.
 const MOST: usize = 2000;
 
 impl Piece {
-    /// A box of a tile, in the tile's pixels, as a piece of a picture of `size`.
+    /// Converts a box in pixels of a tile to a piece of an image of `size`.
     pub fn new(mut found: BoundingBox, tile: &Region, [width, height]: [usize; 2]) -> Self {
         let near = 1.0 + NEAR * tile.width.max(tile.height) as f32;
         let [left, top, right, bottom] = found.corners();
@@ -42,7 +41,7 @@ impl Piece {
         for point in &mut found.landmarks {
             *point = [point[0] + x, point[1] + y];
         }
-        // Masks stay with their tile.
+        // Masks are in pixels of the tile and are dropped.
         found.segment = None;
         Self { found, cut }
     }
@@ -51,7 +50,7 @@ impl Piece {
         self.cut.contains(&true)
     }
 
-    /// Both as one, if they are what a border between two tiles left of one object.
+    /// Merges two parts of one object at the border of two tiles; `None` when they are not.
     fn joined(&self, other: &Self) -> Option<Self> {
         if self.found.name != other.found.name {
             return None;
@@ -67,7 +66,7 @@ impl Piece {
         });
         meet?;
         let corners = [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])];
-        // It is still cut where the one that reaches further is.
+        // The result is cut where the box that reaches further is.
         let cut = std::array::from_fn(|side| {
             let own = (a[side] - corners[side]).abs() <= APART && self.cut[side];
             own || ((b[side] - corners[side]).abs() <= APART && other.cut[side])
@@ -80,23 +79,23 @@ impl Piece {
     }
 }
 
-/// Intersection over union of two boxes along one axis.
+/// Returns the intersection over union of two boxes along one axis.
 fn shared_along(axis: usize, a: &[f32; 4], b: &[f32; 4]) -> f32 {
     let shared = a[axis + 2].min(b[axis + 2]) - a[axis].max(b[axis]);
     let all = a[axis + 2].max(b[axis + 2]) - a[axis].min(b[axis]);
     if all > 0.0 { shared / all } else { 0.0 }
 }
 
-/// The share of `a` that lies in `b`.
+/// Returns the share of `a` inside `b`.
 fn cover(a: &[f32; 4], b: &[f32; 4]) -> f32 {
     let side = |axis: usize| (a[axis + 2].min(b[axis + 2]) - a[axis].max(b[axis])).max(0.0);
     let area = (a[2] - a[0]) * (a[3] - a[1]);
     if area > 0.0 { side(0) * side(1) / area } else { 0.0 }
 }
 
-/// Makes one box an object of the pieces that tiles which overlap have found of it: the two sides of what a border cuts are
-/// joined, what is cut gives way to what is whole, and of boxes of a class that overlap more than `overlap`
-/// (intersection over union) the best stays. Leaves them in the order of their confidence.
+/// Merges the pieces of overlapping tiles to one box per object: both parts of an object at a border are joined, cut boxes
+/// are dropped for whole ones, and of boxes of a class that overlap by more than `overlap` (IoU) the one with the highest
+/// score is kept. The result is sorted by descending confidence.
 pub fn merge_pieces(pieces: &mut Vec<Piece>, overlap: f32) {
     pieces.retain(|piece| {
         piece.found.corners().iter().all(|edge| edge.is_finite()) && piece.found.area() > 0.0
@@ -104,7 +103,7 @@ pub fn merge_pieces(pieces: &mut Vec<Piece>, overlap: f32) {
     best_first(pieces);
     pieces.truncate(MOST);
     join(pieces);
-    // What is whole first, then what has more of its object.
+    // Whole boxes first, then those with more of their object.
     pieces.sort_by(|a, b| {
         let rank = |piece: &Piece| if piece.is_cut() { piece.found.area() } else { piece.found.confidence };
         a.is_cut().cmp(&b.is_cut()).then(rank(b).total_cmp(&rank(a)))
@@ -140,7 +139,7 @@ fn best_first(pieces: &mut [Piece]) {
     });
 }
 
-/// Joins what borders cut, until nothing more can be joined.
+/// Joins cut boxes until no more can be joined.
 fn join(pieces: &mut Vec<Piece>) {
     let mut at = 0;
     while at < pieces.len() {
@@ -154,7 +153,7 @@ fn join(pieces: &mut Vec<Piece>) {
             false => None,
         };
         match other {
-            // What grew may reach an earlier one.
+            // A joined box may reach an earlier one.
             Some((index, joined)) => {
                 pieces.swap_remove(index);
                 pieces[at] = joined;
@@ -173,7 +172,7 @@ mod tests {
 
     const SIZE: [usize; 2] = [1000, 800];
 
-    /// What a detector that sees all would say of `objects` in each tile.
+    /// Returns the boxes of a perfect detector for `objects` in each tile.
     fn pieces(objects: &[[f32; 4]], side: usize, overlap: usize) -> Vec<Piece> {
         let picture = Region { x: 0, y: 0, width: SIZE[0], height: SIZE[1] };
         let mut pieces = Vec::new();
@@ -199,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn small_and_large_objects_are_told_once() {
+    fn small_and_large_objects_have_one_box() {
         let objects =
             [[150.0, 90.0, 190.0, 130.0], [300.0, 300.0, 620.0, 420.0], [700.0, 60.0, 760.0, 700.0]];
         let mut found = pieces(&objects, 200, 50);
@@ -207,8 +206,8 @@ mod tests {
         merge_pieces(&mut found, 0.5);
         let found = boxes(&found);
         assert_eq!(found.len(), 3, "{found:?}");
-        for (found, wanted) in found.iter().zip(objects) {
-            assert!(iou(found, &wanted) > 0.95, "{found:?} {wanted:?}");
+        for (found, expected) in found.iter().zip(objects) {
+            assert!(iou(found, &expected) > 0.95, "{found:?} {expected:?}");
         }
     }
 
@@ -236,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_whole_wins_over_what_is_cut() {
+    fn whole_boxes_replace_cut_ones() {
         let whole =
             Piece { found: BoundingBox::from_corners(1, [180.0, 50.0, 260.0, 130.0], 0.4), cut: [false; 4] };
         let cut = BoundingBox::from_corners(1, [180.0, 50.0, 200.0, 130.0], 0.9);
@@ -249,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_left_out() {
+    fn invalid_boxes_are_dropped() {
         let odd = |left: f32, width: f32| Piece {
             found: BoundingBox::new(0, left, 0.0, width, 5.0, 0.5),
             cut: [true; 4],
@@ -261,11 +260,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_object_is_told_once(
+        fn every_object_has_one_box(
             places in prop::collection::vec((0usize..8, 0usize..6, 12.0f32..100.0, 12.0f32..100.0), 1..12),
             side in 150usize..400, overlap in 40usize..70,
         ) {
-            // One object at most in each cell of 120 pixels, so that none overlap.
+            // At most one object per cell of 120 pixels, so that none overlap.
             let mut cells: Vec<_> = places;
             cells.sort_by_key(|place| (place.0, place.1));
             cells.dedup_by_key(|place| (place.0, place.1));
@@ -285,7 +284,7 @@ mod tests {
         }
 
         #[test]
-        fn any_pieces_end(
+        fn merging_ends_for_any_pieces(
             boxes in prop::collection::vec((0.0f32..900.0, 0.0f32..700.0, 0.0f32..300.0, 0.0f32..300.0, 0u8..16), 0..80),
         ) {
             let mut found: Vec<_> = boxes

@@ -1,4 +1,4 @@
-//! How it is trained.
+//! The training of end-to-end planning.
 
 use opendr_engine::Result;
 use opendr_engine::environment::{Environment, EnvironmentSpec};
@@ -10,24 +10,24 @@ use opendr_simulation::uav_corridor::Remembered;
 
 use super::{DenseEpisodes, EndToEndPlanningRl, SternRewards};
 
-/// What a user may set of the training, with OpenDR's names and defaults where OpenDR has them.
+/// Parameters of the training, with OpenDR's names, and its defaults unless stated otherwise.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct EndToEndPlanningFitParams {
-    /// Learning rate of Adam at the beginning; it falls evenly to zero.
-    /// With OpenDR's values of this and of the next two (3e-4, 1024, 64) chance moves the policy away from the way that the
-    /// drone proposes by itself.
+    /// Initial learning rate of Adam; it decreases linearly to zero.
+    /// With OpenDR's values of this and the next two parameters (3e-4, 1024, 64) noise moves the policy away from the
+    /// proposals of the planner.
     #[param(default = 1e-4, range = 0.0..=1.0, log)]
     pub lr: f32,
     /// Steps of all environments together between two updates.
     #[param(default = 8192, range = 1..=1_000_000, log)]
     pub n_steps: usize,
-    /// Steps in a minibatch.
+    /// Minibatch size in steps.
     #[param(default = 1024, range = 1..=1_000_000, log)]
     pub batch_size: usize,
-    /// What fixes everything random.
+    /// Seed of all random numbers.
     #[param(default = 0)]
     pub seed: u64,
-    /// Of any training in environments.
+    /// Parameters of every training in environments.
     #[param(
         flatten,
         total_timesteps = 300_000,
@@ -39,7 +39,7 @@ pub struct EndToEndPlanningFitParams {
     pub training: RlTrainingParams,
 }
 
-/// PPO on what a drone remembers of its flight and proposes, with rewards that make it worth while to arrive.
+/// PPO on the memory of a flight and the proposals of the planner, with rewards that favour arrival.
 #[derive(Debug, Clone, Copy)]
 pub struct PpoInCorridors;
 
@@ -74,7 +74,7 @@ impl Method for PpoInCorridors {
             learning_rate_schedule: Schedule::Linear,
             n_steps: (params.n_steps / params.training.n_envs).max(1),
             batch_size: params.batch_size,
-            // The proposals are good: to try much else would spoil them.
+            // The proposals are good, so exploration should stay near them.
             log_std_init: -2.0,
             norm_reward: true,
             seed: params.seed,

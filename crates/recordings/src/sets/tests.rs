@@ -19,7 +19,7 @@ fn boxes(stamp_ns: i64) -> Value {
     BoundingBoxList { header: Header::new(stamp_ns, "camera"), ..vec![found].into() }.into()
 }
 
-/// Ten series, and boxes for all but the fifth, 5 ms apart by stamp and recorded half a second later.
+/// Records ten series, and boxes for all but the fifth, 5 ms apart by stamp and recorded half a second later.
 fn record(path: &Path, format: BagFormat) {
     let mut answers = Answers::create(path, format).unwrap();
     for number in 0..10 {
@@ -40,7 +40,7 @@ fn ports(need: Need) -> Vec<PortTopic> {
 }
 
 #[test]
-fn what_belongs_together_comes_together() {
+fn sets_have_matching_stamps() {
     let folder = tempfile::tempdir().unwrap();
     for format in BagFormat::ALL {
         let path = folder.path().join(format.name());

@@ -47,7 +47,7 @@ fn along(graph: &mut Lowering<'_>, name: &'static str, op: &DimOpIr) -> Result<(
     graph.apply(Operator::new(name).int("axis", op.axis as i64), &[&op.input], &op.out)
 }
 
-/// `x / 2 * (1 + erf(x / √2))`; ONNX has an operator for it from opset 20 on.
+/// Exact GELU, `x / 2 * (1 + erf(x / √2))`; ONNX has an operator for it only from opset 20 on.
 fn gelu(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let x = graph.wire(input)?;
     let scaled = graph.step_like(Operator::new("Mul"), &[&x, &Wire::scalar(FRAC_1_SQRT_2)], &x)?;

@@ -1,4 +1,4 @@
-//! Sums, products, powers, bounds and borders.
+//! Arithmetic, powers, clamping and padding.
 
 use burn::backend::ir::{BinaryOpIr, NumericOperationIr, PadModeIr, PadOpIr, ScalarOpIr, TensorIr};
 use opendr_engine::Result;
@@ -52,7 +52,7 @@ fn with_scalar(graph: &mut Lowering<'_>, name: &'static str, op: &ScalarOpIr) ->
     graph.write(Operator::new(name), &[&x, &value], &op.out)
 }
 
-/// A power; squares as products, which are faster and keep the sign out of the logarithm.
+/// Writes a power; squares are products, which are faster and also correct for negative bases.
 pub(super) fn power(graph: &mut Lowering<'_>, op: &ScalarOpIr) -> Result<()> {
     if op.rhs.elem::<f64>() == 2.0 {
         return graph.apply(Operator::new("Mul"), &[&op.lhs, &op.lhs], &op.out);

@@ -6,7 +6,7 @@ use opendr_onnx::{Data, Kind, Operator, Wire};
 
 use super::lowering::{Lowering, array};
 
-/// `softmax(q kᵀ · scale) v`, with what Burn adds to the scores: a soft cap, masks, a bias.
+/// Writes `softmax(q kᵀ · scale) v` with Burn's options for the scores: a soft cap, masks, a bias.
 pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> Result<bool> {
     let ModuleOperationIr::Attention(op) = operation else { return Ok(false) };
     let weights = scores(graph, op)?;
@@ -25,7 +25,9 @@ fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<Wire> {
     let scale = match (op.options.scale, depth) {
         (Some(scale), _) => scale.elem(),
         (None, Some(depth)) => 1.0 / (*depth as f32).sqrt(),
-        (None, None) => return Err(Error::unsupported("attention over an open number of features")),
+        (None, None) => {
+            return Err(Error::unsupported("attention over an open number of features is not supported"));
+        }
     };
     let mut transposed = key.dims().to_vec();
     transposed.swap(2, 3);
@@ -45,7 +47,7 @@ fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<Wire> {
     }
     let mask = op.mask.as_ref().map(|mask| graph.wire(mask)).transpose()?;
     let causal = if op.options.is_causal { Some(future(steps, others)?) } else { None };
-    // Finite, so that a row in which all is masked has no NaN.
+    // A finite value, so that a fully masked row is not NaN.
     let lowest = Wire::scalar(f32::MIN);
     for mask in mask.iter().chain(&causal) {
         scores = graph.step_like(Operator::new("Where"), &[mask, &lowest, &scores], &product)?;
@@ -58,13 +60,13 @@ fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<Wire> {
 }
 
 fn rank() -> Error {
-    Error::internal("attention between tensors that have not four axes")
+    Error::internal("attention needs tensors of four axes")
 }
 
-/// Which of `others` come after each of `steps`.
+/// Returns the mask of causal attention: which of `others` come after each of `steps`.
 fn future(steps: Option<usize>, others: Option<usize>) -> Result<Wire> {
     let (Some(steps), Some(others)) = (steps, others) else {
-        return Err(Error::unsupported("causal attention over an open number of steps"));
+        return Err(Error::unsupported("causal attention over an open number of steps is not supported"));
     };
     let after = (0..steps).flat_map(|step| (0..others).map(move |other| other > step)).collect();
     Ok(Wire::constant(array(vec![1, 1, steps, others], Data::Bool(after))?))

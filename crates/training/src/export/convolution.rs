@@ -64,7 +64,7 @@ pub(super) fn ints(values: &[usize]) -> Vec<i64> {
     values.iter().map(|&value| value as i64).collect()
 }
 
-/// ONNX's order: all that goes before, then all that goes after.
+/// ONNX's order: padding before each axis, then padding after each axis.
 pub(super) fn pads(padding: &[(usize, usize)]) -> Vec<i64> {
     padding.iter().map(|pad| pad.0 as i64).chain(padding.iter().map(|pad| pad.1 as i64)).collect()
 }

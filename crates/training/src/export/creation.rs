@@ -1,4 +1,4 @@
-//! Tensors of one value.
+//! Tensors filled with one value.
 
 use burn::backend::ir::{BaseOperationIr, NumericOperationIr, ScalarIr, TensorIr};
 use opendr_engine::Result;

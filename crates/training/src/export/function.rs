@@ -1,4 +1,4 @@
-//! Functions of one number, and conversions.
+//! Element-wise functions and conversions.
 
 use burn::backend::ir::{FloatOperationIr, IntOperationIr, TensorIr, UnaryOpIr};
 use opendr_engine::Result;

@@ -1,4 +1,4 @@
-//! Products of matrices.
+//! Matrix products.
 
 use burn::backend::ir::{FloatOperationIr, ModuleOperationIr};
 use opendr_engine::Result;
@@ -14,7 +14,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &FloatOperationIr) -> R
     Ok(true)
 }
 
-/// `x W + b`, with `W` of `[in, out]`.
+/// Writes `x W + b`, with `W` of shape `[in, out]`.
 pub(super) fn lower_module(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> Result<bool> {
     let ModuleOperationIr::Linear(op) = operation else { return Ok(false) };
     let Some(bias) = &op.bias else {

@@ -1,4 +1,4 @@
-//! Elements moved, repeated and converted, not changed.
+//! Operations that move, repeat or convert elements.
 
 use burn::backend::ir::{BaseOperationIr, SliceOpIr, TensorIr};
 use burn::tensor::Slice;
@@ -43,7 +43,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &BaseOperationIr) -> Re
     Ok(true)
 }
 
-/// The same numbers as another kind. Burn's types of one kind are one type in the file.
+/// Writes a conversion to another element type. Burn's types of one kind are one type in the file.
 pub(super) fn cast(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let (x, kind) = (graph.wire(input)?, kind_from_dtype(out.dtype)?);
     if x.kind() == kind {
@@ -53,7 +53,7 @@ pub(super) fn cast(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -
     graph.write(Operator::new("Cast").int("to", kind.data_type() as i64), &[&x], out)
 }
 
-/// One open size can be left to the runtime to infer; further ones are computed.
+/// One open size is inferred by the runtime; further ones are computed.
 fn reshape(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let (from, to) = (graph.sizes(input), graph.sizes(out));
     let x = graph.wire(input)?;
@@ -69,7 +69,7 @@ fn reshape(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result
     graph.write(Operator::new("Reshape"), &[&x, &shape], out)
 }
 
-/// ONNX expands both ways, so that a one keeps an open size.
+/// ONNX broadcasts both ways, so a size of one keeps an open size.
 fn expand(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let (from, to) = (graph.sizes(input), graph.sizes(out));
     let x = graph.wire(input)?;
@@ -103,7 +103,7 @@ fn repeat(
     match (from.get(axis), to.get(axis)) {
         (Some(Size::Fixed(1)), _) => expand(graph, input, out),
         (Some(Size::Fixed(_)), Some(Size::Batch(_))) => Err(Error::unsupported(
-            "repeats several elements as often as the batch is large; repeat one, and reshape",
+            "repeats several elements by the batch size; repeat one element and reshape",
         )),
         _ => {
             let repeats = (0..from.len()).map(|other| if other == axis { times as i64 } else { 1 });
@@ -136,8 +136,8 @@ fn slice(graph: &mut Lowering<'_>, op: &SliceOpIr) -> Result<()> {
     graph.write(Operator::new("Slice"), &[&x, &starts, &ends, &axes, &steps], &op.out)
 }
 
-/// First position and the one after the last. With a negative step Burn goes through `start..end` backwards, while
-/// ONNX wants the position to start from, and the one before the last.
+/// Returns the first position and the one after the last. With a negative step Burn traverses `start..end` backwards, while
+/// ONNX takes the first position and the one before the last.
 fn bounds(range: &Slice) -> (i64, i64) {
     let (start, end) = (range.start as i64, range.end.map(|end| end as i64));
     match range.step > 0 {

@@ -9,10 +9,10 @@ use opendr_onnx::{Kind, Operator, Wire};
 
 use super::lowering::Lowering;
 
-/// What the operation is called in a recording.
+/// Name of the operation in a recording.
 const GRU: &str = "Gru";
 
-/// Records a gated recurrent unit as one operation; `None` on a device that executes.
+/// Records a gated recurrent unit as one operation; returns `None` on a device that executes.
 ///
 /// `input` is `[batch, time, features]`; the weights are `[3 hidden, features]` and `[3 hidden, hidden]`, the biases
 /// `[3 hidden]`, each for the gates reset, update, new. The result is `[batch, time, hidden]`.
@@ -45,17 +45,17 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &CustomOpIr) -> Result<
         return Ok(false);
     };
     let hidden =
-        out.shape.last().copied().ok_or_else(|| Error::internal("a recurrent unit without features"))?;
+        out.shape.last().copied().ok_or_else(|| Error::internal("a recurrent unit has no features"))?;
     let [weight, recurrence] = [gates(graph, weight, hidden)?, gates(graph, recurrence, hidden)?];
     let [bias, recurrence_bias] = [gates(graph, bias, hidden)?, gates(graph, recurrence_bias, hidden)?];
     let dims = vec![Some(1), Some(6 * hidden)];
     let biases =
         graph.step(Operator::new("Concat").int("axis", 1), &[&bias, &recurrence_bias], Kind::Float, dims)?;
-    // ONNX wants time first: rten has no other layout.
+    // The time axis comes first, the only layout of rten.
     let x = graph.wire(x)?;
     let x = swapped(graph, &x)?;
     let [time, batch, _] = *x.dims() else {
-        return Err(Error::internal("a recurrent unit over other than three axes"));
+        return Err(Error::internal("a recurrent unit needs an input of three axes"));
     };
     let operator = Operator::new("GRU").int("hidden_size", hidden as i64).int("linear_before_reset", 1);
     let states = graph.step(
@@ -71,14 +71,15 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &CustomOpIr) -> Result<
     Ok(true)
 }
 
-/// Batch and time exchanged.
+/// Swaps batch and time.
 fn swapped(graph: &mut Lowering<'_>, x: &Wire) -> Result<Wire> {
     let mut dims = x.dims().to_vec();
     dims.swap(0, 1);
     graph.step(Operator::new("Transpose").ints("perm", [1, 0, 2]), &[x], Kind::Float, dims)
 }
 
-/// Weights or biases of one direction, in ONNX's order of gates (update, reset, new) from PyTorch's (reset, update, new).
+/// Returns weights or biases of one direction with the gates in ONNX's order (update, reset, new) instead of PyTorch's (reset,
+/// update, new).
 fn gates(graph: &mut Lowering<'_>, tensor: &TensorIr, hidden: usize) -> Result<Wire> {
     let all = graph.wire(tensor)?;
     let mut dims = all.dims().to_vec();

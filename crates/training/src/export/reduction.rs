@@ -1,4 +1,4 @@
-//! Sums, means and extremes over axes.
+//! Reductions over axes.
 
 use burn::backend::ir::{BaseOperationIr, NumericOperationIr, ReduceDimOpIr, TensorIr};
 use opendr_engine::Result;
@@ -49,7 +49,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &NumericOperationIr) ->
     Ok(true)
 }
 
-/// Whether all or any are true, as the least or the largest of zeros and ones.
+/// Writes all and any, as minimum and maximum of zeros and ones.
 pub(super) fn lower_base(graph: &mut Lowering<'_>, operation: &BaseOperationIr) -> Result<bool> {
     use BaseOperationIr as Op;
     let (name, input, axes, out) = match operation {
@@ -63,7 +63,7 @@ pub(super) fn lower_base(graph: &mut Lowering<'_>, operation: &BaseOperationIr) 
     let to_float = Operator::new("Cast").int("to", Kind::Float.data_type() as i64);
     let numbers = graph.step(to_float, &[&x], Kind::Float, x.dims().to_vec())?;
     let one = reduced(graph, name, &numbers, &axes)?;
-    let one = as_large_as(graph, one, out)?;
+    let one = reshaped_as(graph, one, out)?;
     graph.write(Operator::new("Cast").int("to", Kind::Bool.data_type() as i64), &[&one], out)?;
     Ok(true)
 }
@@ -90,26 +90,26 @@ fn reduce(
     out: &TensorIr,
 ) -> Result<()> {
     let result = reduced(graph, name, x, axes)?;
-    let result = as_large_as(graph, result, out)?;
+    let result = reshaped_as(graph, result, out)?;
     graph.define(out, result);
     Ok(())
 }
 
-/// The reduction, with ones where the axes were.
+/// Returns the reduction with size one along the axes.
 fn reduced(graph: &mut Lowering<'_>, name: &'static str, x: &Wire, axes: &[usize]) -> Result<Wire> {
     let mut dims = x.dims().to_vec();
     axes.iter().for_each(|&axis| dims[axis] = Some(1));
     let axes = axes.iter().map(|&axis| axis as i64);
     let operator = Operator::new(name).int("keepdims", 1);
     match name {
-        // Axes are an input of the sum from opset 13 on, of the others from 18 on.
+        // The axes are an input of the sum from opset 13 on, of the others from 18 on.
         "ReduceSum" => graph.step(operator, &[x, &Wire::ints(axes)], x.kind(), dims),
         _ => graph.step(operator.ints("axes", axes), &[x], x.kind(), dims),
     }
 }
 
-/// Burn's reductions keep the axis, or answer `[1]`.
-fn as_large_as(graph: &mut Lowering<'_>, x: Wire, out: &TensorIr) -> Result<Wire> {
+/// Burn's reductions keep the axis, or return `[1]`.
+fn reshaped_as(graph: &mut Lowering<'_>, x: Wire, out: &TensorIr) -> Result<Wire> {
     if x.rank() == out.shape.num_dims() {
         return Ok(x);
     }

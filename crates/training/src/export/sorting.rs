@@ -1,4 +1,4 @@
-//! Sorted values and the largest of them.
+//! Sorting and top-k.
 
 use burn::backend::ir::{NumericOperationIr, TensorIr};
 use opendr_engine::{Error, Result};

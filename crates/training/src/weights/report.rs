@@ -1,41 +1,41 @@
-//! What became of the weights of a file.
+//! Report of an import of weights.
 
 use std::fmt;
 
 use opendr_engine::{Error, Result};
 
-/// A weight that does not fit the parameter of its name.
+/// A weight whose shape differs from that of its parameter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mismatch {
-    /// The module's name of the parameter.
+    /// Name of the parameter in the module.
     pub parameter: String,
-    /// Its shape in the module.
+    /// Shape in the module.
     pub wanted: Vec<usize>,
-    /// Its shape in the file.
+    /// Shape in the file.
     pub given: Vec<usize>,
 }
 
-/// What was taken, what was left, and what is missing.
+/// Result of an import: loaded, missing, mismatched and unused weights.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Report {
-    /// Parameters that have their values from the file now, by the module's names.
+    /// Parameters with values from the file, by the module's names.
     pub taken: Vec<String>,
-    /// Parameters that the file has nothing for, by the module's names; they are as they were.
+    /// Parameters without a weight in the file, by the module's names; they are unchanged.
     pub missing: Vec<String>,
-    /// Parameters for which the file has another shape; they are as they were.
+    /// Parameters for which the file has another shape; they are unchanged.
     pub mismatched: Vec<Mismatch>,
-    /// Weights that went nowhere, by the file's names.
+    /// Unused weights, by the file's names.
     pub left: Vec<String>,
 }
 
-/// How many names a message shows.
-const SHOWN: usize = 3;
+/// Maximum number of names in a message.
+const MAX_NAMES: usize = 3;
 
 impl Report {
-    /// The report, when every parameter that the rules cover has its values from the file.
+    /// Checks that every parameter covered by the rules has its values from the file.
     ///
     /// # Errors
-    /// `InvalidInput` that names the first ones that have none.
+    /// `InvalidInput` with the names of the first parameters that have none.
     pub fn complete(&self) -> Result<()> {
         if let Some(Mismatch { parameter, wanted, given }) = self.mismatched.first() {
             return Err(Error::invalid_input(format!(
@@ -46,7 +46,7 @@ impl Report {
         match self.missing.len() {
             0 => Ok(()),
             count => Err(Error::invalid_input(format!(
-                "the file has no weights for {count} of {} parameters: {}; its own {} were left: {}",
+                "the file has no weights for {count} of {} parameters: {}; {} of its weights are unused: {}",
                 count + self.taken.len(),
                 first(&self.missing),
                 self.left.len(),
@@ -57,8 +57,8 @@ impl Report {
 }
 
 fn first(names: &[String]) -> String {
-    let mut text = names.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
-    if names.len() > SHOWN {
+    let mut text = names.iter().take(MAX_NAMES).map(String::as_str).collect::<Vec<_>>().join(", ");
+    if names.len() > MAX_NAMES {
         text += ", ...";
     }
     text
@@ -68,7 +68,7 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { taken, missing, mismatched, left } = self;
         let all = taken.len() + missing.len() + mismatched.len();
-        write!(f, "{} of {all} parameters taken", taken.len())?;
+        write!(f, "{} of {all} parameters loaded", taken.len())?;
         if !missing.is_empty() {
             write!(f, "; missing: {}", first(missing))?;
         }
@@ -76,7 +76,7 @@ impl fmt::Display for Report {
             write!(f, "; {} of another shape: {parameter} ({given:?} for {wanted:?})", mismatched.len())?;
         }
         if !left.is_empty() {
-            write!(f, "; {} weights left: {}", left.len(), first(left))?;
+            write!(f, "; {} weights unused: {}", left.len(), first(left))?;
         }
         Ok(())
     }

@@ -69,7 +69,7 @@ fn numbers(count: usize, seed: u64) -> Vec<f32> {
     (0..count).map(|_| random.uniform(-1.0, 1.0)).collect()
 }
 
-/// A convolution, perhaps with bias and norm, and a dense layer, as PyTorch names and lays them.
+/// Returns a convolution, optionally with bias and normalisation, and a linear layer, with PyTorch's names and layout.
 fn weights(bias: bool, norm: bool) -> Vec<(String, Vec<usize>, Vec<f32>)> {
     let mut weights = vec![("0.weight".to_owned(), vec![2, 1, 2, 2], numbers(8, 1))];
     if bias {
@@ -106,7 +106,7 @@ fn safetensors(weights: &[(String, Vec<usize>, Vec<f32>)]) -> Vec<u8> {
     [&(header.len() as u64).to_le_bytes(), header.as_slice(), data.as_slice()].concat()
 }
 
-/// What `torch.save(state_dict)` writes, in pickle protocol 2.
+/// Returns the bytes that `torch.save(state_dict)` writes, in pickle protocol 2.
 fn checkpoint(weights: &[(String, Vec<usize>, Vec<f32>)]) -> Vec<u8> {
     let text = |text: &str| [b"X", &(text.len() as u32).to_le_bytes()[..], text.as_bytes()].concat();
     let number = |number: usize| [b"J", &(number as u32).to_le_bytes()[..]].concat();
@@ -136,7 +136,7 @@ fn checkpoint(weights: &[(String, Vec<usize>, Vec<f32>)]) -> Vec<u8> {
     zip.finish().unwrap().into_inner()
 }
 
-/// A file that lives as long as the test.
+/// A file that is removed at the end of the test.
 struct Temporary(PathBuf);
 
 impl Temporary {
@@ -154,7 +154,7 @@ impl Drop for Temporary {
 }
 
 #[test]
-fn every_kind_of_file_gives_the_same_table() {
+fn every_format_yields_the_same_table() {
     let wanted = table(true, true);
     let safetensors = Temporary::new("a.bin", &safetensors(&weights(true, true)));
     let checkpoint = Temporary::new("b.bin", &checkpoint(&weights(true, true)));
@@ -168,7 +168,7 @@ fn every_kind_of_file_gives_the_same_table() {
 }
 
 #[test]
-fn names_find_their_parameters() {
+fn weights_are_assigned_by_name() {
     let rules = Rules::by_name().rename("0.*", "conv.*").rename("1.*", "norm.*").rename("2.*", "dense.*");
     let (module, report) = table(true, true).apply(normed(true), &rules).unwrap();
     report.complete().unwrap();
@@ -181,7 +181,7 @@ fn names_find_their_parameters() {
 }
 
 #[test]
-fn what_does_not_fit_is_told() {
+fn mismatches_are_reported() {
     let rules = Rules::by_name().rename("0.*", "conv.*");
     let mut table = table(true, false);
     table.add("dense.bias", vec![5], vec![0.0; 5]).unwrap();
@@ -210,7 +210,7 @@ fn norms_are_kept_made_and_folded() {
         module.run()
     };
     for bias in [true, false] {
-        // With a norm in the file: kept, its bias in the mean, or folded.
+        // With a normalisation in the file: kept, its bias in the mean, or folded.
         let source = table(bias, true);
         let wanted = run_normed(&source, true);
         assert_near(&run_normed(&source, false), &wanted);

@@ -1,11 +1,11 @@
-//! Every path against one plain reference in double precision, written from the definition.
+//! Every path against one plain reference in double precision.
 
 use opendr_engine::data::{Image, ImageView, Layout, PixelFormat, Pixels, Samples};
 use proptest::prelude::*;
 
 use super::*;
 
-/// The level of one sample.
+/// Returns the level of one sample.
 pub(super) fn level(view: &ImageView<'_>, x: usize, y: usize, channel: usize) -> f64 {
     let [row, column, plane] = view.strides();
     let at = y * row + x * column + channel * plane;
@@ -16,7 +16,7 @@ pub(super) fn level(view: &ImageView<'_>, x: usize, y: usize, channel: usize) ->
     }
 }
 
-/// OpenCV's `INTER_LINEAR` at output pixel `(x, y)` of `width` x `height`.
+/// Returns OpenCV's `INTER_LINEAR` at output pixel `(x, y)` of `width` x `height`.
 fn blended(view: &ImageView<'_>, channel: usize, x: usize, y: usize, width: usize, height: usize) -> f64 {
     let position = |index: usize, source: usize, target: usize| {
         let at = (index as f64 + 0.5) * source as f64 / target as f64 - 0.5;
@@ -29,7 +29,7 @@ fn blended(view: &ImageView<'_>, channel: usize, x: usize, y: usize, width: usiz
     row(upper) * (1.0 - down) + row(lower) * down
 }
 
-/// What `preprocess` should write for `view`.
+/// Returns the expected output of `preprocess` for `view`.
 fn reference(preprocess: &Preprocess, view: &ImageView<'_>) -> Vec<f64> {
     let [width, height] = preprocess.size;
     let channels = preprocess.order.channels();
@@ -64,7 +64,7 @@ fn reference(preprocess: &Preprocess, view: &ImageView<'_>) -> Vec<f64> {
     out
 }
 
-/// Samples without a pattern.
+/// Pseudo-random samples.
 fn noise(count: usize, seed: u64) -> impl Iterator<Item = u32> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     (0..count).map(move |_| {
@@ -234,7 +234,7 @@ fn plain_kernel_is_the_reference_where_the_packed_one_runs() {
 }
 
 proptest! {
-    /// Sizes, strides and alignments at random: crops begin at any byte and end with the picture's memory or before.
+    /// Random sizes, strides and alignments: crops begin at any byte and end at or before the end of the memory.
     #[test]
     fn any_crop_to_any_size(
         source in [1usize..90, 1usize..40],

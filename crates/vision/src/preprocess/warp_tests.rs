@@ -1,4 +1,4 @@
-//! Turned crops against plain resizing, against copies, and against a reference in double precision.
+//! Rotated crops against plain resizing, copies, and a reference in double precision.
 
 use opendr_engine::data::{Image, ImageView, Layout, PixelFormat};
 use proptest::prelude::*;
@@ -12,7 +12,7 @@ fn warped(preprocess: &Preprocess, view: ImageView<'_>, crop: &Similarity) -> Ve
     out
 }
 
-/// Channel `channel` at a position: OpenCV's `warpAffine` in double precision.
+/// Returns channel `channel` at a position: OpenCV's `warpAffine` in double precision.
 fn sampled(view: &ImageView<'_>, [x, y]: [f64; 2], channel: usize, border: Border) -> f64 {
     let (x, y) = (x - 0.5, y - 0.5);
     let tap = |x: f64, y: f64| {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc;
 
-/// A folder of its own that goes when the test ends.
+/// A temporary folder that is removed on drop.
 struct Folder(PathBuf);
 
 impl Folder {
@@ -18,7 +18,7 @@ impl Folder {
         Self(path)
     }
 
-    /// A grey-level picture that tells by its first sample which one it is.
+    /// Writes a grey image with the level `level`, which identifies it.
     fn picture(&self, name: impl AsRef<Path>, level: u8) -> PathBuf {
         let path = self.0.join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -102,7 +102,7 @@ fn broken_files_are_named_and_passed() {
         }
         let found: Vec<_> = items.iter().map(|(item, _)| item.as_ref().ok().map(level)).collect();
         let wanted = [Some(1), None, None, None, None, Some(6)];
-        // A pattern is matched by files alone, as a shell's is not.
+        // A pattern matches files only, as in a shell.
         let wanted: Vec<_> =
             wanted.into_iter().enumerate().filter(|(index, _)| *index != 3 || input == folder.0).collect();
         assert_eq!(found, wanted.iter().map(|(_, level)| *level).collect::<Vec<_>>());
@@ -141,7 +141,7 @@ fn a_file_whose_name_looks_like_a_pattern_is_that_file() {
 }
 
 #[test]
-fn nothing_to_read_is_said() {
+fn inputs_without_images_are_errors() {
     let folder = Folder::new("empty");
     fs::write(folder.0.join("notes.txt"), "").unwrap();
     let kind_and_text = |input: &Path| {
@@ -166,7 +166,7 @@ fn several_inputs_follow_each_other() {
 }
 
 #[test]
-fn content_tells_where_the_name_does_not() {
+fn image_without_extension_is_detected_by_content() {
     let folder = Folder::new("content");
     let path = folder.picture("picture", 9);
     assert_eq!(level(&Source::open(path).unwrap().next().unwrap().unwrap()), 9);
@@ -200,7 +200,7 @@ fn live_frames_are_the_newest() {
         sender.send(still(number)).unwrap();
     }
     drop(sender);
-    // Wait until the thread has ended: the queue is closed and holds the newest frame alone.
+    // Wait until the thread has ended: the queue is closed and contains only the newest frame.
     let Some(Reading::Threaded(threaded)) = &mut source.reading else { panic!("a thread reads") };
     threaded.wait();
     assert_eq!(taken.load(Ordering::SeqCst), 10);

@@ -1,4 +1,4 @@
-//! The scene in a mirror.
+//! Mirroring of a scene.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
@@ -7,7 +7,7 @@ use opendr_engine::{Random, Result};
 use crate::augment::cloud::scene::SceneChange;
 use crate::augment::{Augment, Augmentation, Others};
 
-/// Mirrors points and boxes: left and right of the lidar change places.
+/// Mirrors points and boxes: left and right of the lidar are swapped.
 #[derive(Debug, Clone, Params)]
 pub struct CloudFlip {}
 

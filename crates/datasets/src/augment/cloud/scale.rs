@@ -1,4 +1,4 @@
-//! The scene larger or smaller.
+//! Scaling of a scene.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
@@ -20,7 +20,7 @@ pub struct CloudScale {
 
 impl Augmentation for CloudScale {
     const NAME: &'static str = "cloud_scale";
-    const ABOUT: &'static str = "makes a point cloud larger or smaller";
+    const ABOUT: &'static str = "scales a point cloud";
 }
 
 impl Augment for CloudScale {

@@ -1,4 +1,4 @@
-//! Mirror images.
+//! Mirroring.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
@@ -8,25 +8,25 @@ use crate::augment::picture::{Border, PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
 
 opendr_engine::choices! {
-    /// What changes places.
+    /// Direction of mirroring.
     pub enum FlipDirection {
-        /// Left and right.
+        /// Swaps left and right.
         Horizontal = "horizontal",
-        /// Top and bottom.
+        /// Swaps top and bottom.
         Vertical = "vertical",
     }
 }
 
-/// Turns a picture into its mirror image; what was a left hand is a right one then.
+/// Mirrors an image. Left and right keypoints are swapped: a left hand becomes a right one.
 #[derive(Debug, Clone, Params)]
 pub struct Flip {
-    /// What changes places.
+    /// Direction of mirroring.
     pub direction: FlipDirection,
 }
 
 impl Augmentation for Flip {
     const NAME: &'static str = "flip";
-    const ABOUT: &'static str = "mirrors a picture; left and right joints change their names";
+    const ABOUT: &'static str = "mirrors an image; left and right keypoints are swapped";
 }
 
 impl Augment for Flip {

@@ -1,4 +1,4 @@
-//! Pictures, with the boxes, outlines, joints and label maps in them.
+//! Augmentations of images, with their boxes, masks, keypoints and label maps.
 
 mod affine;
 mod blur;

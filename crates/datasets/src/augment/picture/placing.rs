@@ -1,28 +1,28 @@
-//! Maps without turns: which window of a picture is shown in which rectangle of another.
+//! Maps without rotation, as pairs of a window of the input and a rectangle of the output.
 
 use std::ops::Range;
 
 use crate::augment::picture::map::PictureMap;
 
-/// How far edges may be from whole pixels to count as there: what rounding leaves.
+/// Largest distance from whole pixels that counts as rounding error.
 const SLACK: f64 = 1e-6;
 
-/// One axis: whole pixels `from` of the picture are shown at whole pixels `to` of the output.
+/// One axis: whole pixels `from` of the input are mapped to whole pixels `to` of the output.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Span {
     pub(super) from: Range<usize>,
     pub(super) to: Range<usize>,
-    /// Last pixel first.
+    /// Whether the pixels are in reverse order.
     pub(super) mirrored: bool,
 }
 
 impl Span {
-    /// Whether pixels stay as large as they are.
+    /// Returns whether the size of pixels is unchanged.
     pub(super) fn keeps_size(&self) -> bool {
         self.from.len() == self.to.len()
     }
 
-    /// The span of an axis of the map; `None` when its edges do not lie on whole pixels.
+    /// Returns the span of an axis of the map; `None` if its edges are not on whole pixels.
     fn new([scale, shift]: [f64; 2], input: usize, output: usize) -> Option<Self> {
         let place = |at: f64| scale * at + shift;
         let (first, last) = (place(0.0), place(input as f64));
@@ -43,7 +43,7 @@ fn whole(edge: f64) -> Option<usize> {
     ((edge - rounded).abs() <= SLACK * (1.0 + edge.abs()) && rounded >= 0.0).then_some(rounded as usize)
 }
 
-/// The spans along x and y of a map that turns nothing and whose edges lie on whole pixels.
+/// Returns the spans along x and y; `None` if the map rotates or its edges are not on whole pixels.
 pub(super) fn spans(map: &PictureMap) -> Option<[Span; 2]> {
     let [x, y] = map.along_axes()?;
     let ([width, height], [columns, rows]) = (map.input_size(), map.output_size());

@@ -1,4 +1,4 @@
-//! Another size, the same shape.
+//! Random size with the aspect ratio kept.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
@@ -7,7 +7,7 @@ use opendr_engine::{Random, Result};
 use crate::augment::picture::{Border, PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
 
-/// Makes a picture larger or smaller by a random factor; a crop usually follows.
+/// Scales an image by a random factor; a crop usually follows.
 #[derive(Debug, Clone, Params)]
 pub struct RandomScale {
     /// Smallest factor.
@@ -20,13 +20,13 @@ pub struct RandomScale {
 
 impl Augmentation for RandomScale {
     const NAME: &'static str = "random_scale";
-    const ABOUT: &'static str = "makes larger or smaller";
+    const ABOUT: &'static str = "scales by a random factor";
 }
 
 impl Augment for RandomScale {
     fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
         let (size, scale) = (picture_size(sample)?, random.uniform(self.min_scale, self.max_scale));
-        let wanted = size.map(|side| (side as f32 * scale).round().max(1.0) as usize);
-        transform(sample, &PictureMap::stretch(size, wanted), &Border::default())
+        let output_size = size.map(|side| (side as f32 * scale).round().max(1.0) as usize);
+        transform(sample, &PictureMap::stretch(size, output_size), &Border::default())
     }
 }

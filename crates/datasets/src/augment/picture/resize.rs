@@ -1,4 +1,4 @@
-//! Another size.
+//! Resizing.
 
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
@@ -7,7 +7,7 @@ use opendr_engine::{Random, Result};
 use crate::augment::picture::{Border, PictureMap, picture_size, transform};
 use crate::augment::{Augment, Augmentation, Others};
 
-/// Stretches a picture to a fixed size; its aspect ratio changes.
+/// Resizes an image to a fixed size without keeping its aspect ratio.
 #[derive(Debug, Clone, Params)]
 pub struct Resize {
     /// Width of the result.
@@ -20,7 +20,7 @@ pub struct Resize {
 
 impl Augmentation for Resize {
     const NAME: &'static str = "resize";
-    const ABOUT: &'static str = "stretches to a fixed size";
+    const ABOUT: &'static str = "resizes to a fixed size";
 }
 
 impl Augment for Resize {

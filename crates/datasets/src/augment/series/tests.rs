@@ -15,7 +15,7 @@ fn changed(augment: &dyn Augment, numbers: Vec<f32>, shape: [usize; 2], seed: u6
 }
 
 #[test]
-fn jitter_is_in_proportion_to_the_feature() {
+fn jitter_is_proportional_to_the_deviation() {
     // The first feature varies a hundred times as much as the second; the third does not.
     let numbers = (0..3000).flat_map(|time| {
         let wave = (time as f32 * 0.1).sin();

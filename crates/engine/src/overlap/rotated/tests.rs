@@ -8,18 +8,18 @@ fn rectangle(center: [f64; 2], size: [f64; 2], angle: f64) -> RotatedRectangle {
     RotatedRectangle { center, size, angle }
 }
 
-fn near(value: f64, wanted: f64) {
-    assert!((value - wanted).abs() < 1e-12, "{value} is not {wanted}");
+fn near(value: f64, expected: f64) {
+    assert!((value - expected).abs() < 1e-12, "{value} is not {expected}");
 }
 
-/// A square and itself turned by 45 degrees share a regular octagon: the square of side 2 without four corners, each a
+/// A square and itself rotated by 45 degrees share a regular octagon: the square of side 2 without four corners, each a
 /// right triangle whose height is half the diagonal less half the side, sqrt(2) - 1, hence of area (sqrt(2) - 1)².
 #[test]
-fn turned_squares_share_an_octagon() {
-    let [upright, turned] = [0.0, FRAC_PI_4].map(|angle| rectangle([3.0, -7.0], [2.0, 2.0], angle));
+fn rotated_squares_share_an_octagon() {
+    let [upright, rotated] = [0.0, FRAC_PI_4].map(|angle| rectangle([3.0, -7.0], [2.0, 2.0], angle));
     let octagon = 4.0 - 4.0 * (SQRT_2 - 1.0).powi(2);
-    near(upright.shared_area(&turned), octagon);
-    near(upright.overlap(&turned), octagon / (8.0 - octagon));
+    near(upright.shared_area(&rotated), octagon);
+    near(upright.overlap(&rotated), octagon / (8.0 - octagon));
 }
 
 /// A 4 x 2 rectangle and itself at a right angle share the 2 x 2 square in the middle: 4 of 8 + 8 - 4.
@@ -53,7 +53,7 @@ fn apart_touching_and_flat() {
     near(inside.shared_area(&square), 0.125);
 }
 
-/// Octagon floor as above, heights 2 and 3 that share 1.
+/// Octagon base as above, heights 2 and 3 that share 1.
 #[test]
 fn standing_boxes() {
     let [low, high] = [([0.0, 2.0], 0.0), ([1.0, 4.0], FRAC_PI_4)]

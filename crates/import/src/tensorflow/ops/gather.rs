@@ -19,7 +19,7 @@ pub fn gather(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     dims.splice(axis..=axis, indices.dims());
     let picked = ctx.plain(indices)?;
     let picked = ctx.cast(&picked, Kind::Int)?;
-    // With one index axis in place of the old one the order survives.
+    // With one index axis in place of the old one the order is kept.
     let (wire, stored, order) = match indices.rank() {
         0 => (x.wire.clone(), x.order.stored(axis), x.order.without(&[axis])),
         1 => (x.wire.clone(), x.order.stored(axis), x.order.clone()),
@@ -29,12 +29,14 @@ pub fn gather(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![ctx.emit(call, operator, &[&wire, &picked], x.kind(), &dims, order)?])
 }
 
-/// One list of indices per element of the first axis, as `GatherND` with batches.
+/// Gathers one list of indices per element of the first axis, as `GatherND` with batches.
 fn gather_batched(ctx: &mut Lowering, call: &Call, axis: usize) -> Result<Vec<Value>> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
     let batch = call.attr().int("batch_dims").unwrap_or(0);
     if batch != axis as i64 || indices.rank() < axis {
-        return Err(Error::unsupported(format!("gathering with {batch} batch dimensions on axis {axis}")));
+        return Err(Error::unsupported(format!(
+            "gathering with {batch} batch dimensions on axis {axis} is not supported"
+        )));
     }
     let data = ctx.plain(x)?;
     let picked = ctx.plain(indices)?;
@@ -51,7 +53,8 @@ pub fn gather_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
     let mut dims: Vec<Dim> = indices.dims();
     let depth = dims.pop().flatten().filter(|&depth| depth <= x.rank());
-    let depth = depth.ok_or_else(|| Error::unsupported("gathering by tuples of open length"))?;
+    let depth =
+        depth.ok_or_else(|| Error::unsupported("gathering by tuples of open length is not supported"))?;
     dims.extend_from_slice(&x.dims()[depth..]);
     let data = ctx.plain(x)?;
     let picked = ctx.plain(indices)?;
@@ -70,7 +73,7 @@ pub fn scatter_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![ctx.emit_plain(call, Operator::new("ScatterND"), &inputs, zeros.kind(), &zeros.dims())?])
 }
 
-/// `indices`, `output_shape`, `values`, `default_value`. In the models at hand there is nothing to scatter.
+/// Inputs: `indices`, `output_shape`, `values`, `default_value`. Supported where there is nothing to scatter.
 pub fn sparse_to_dense(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (indices, shape, values) = (call.input(0)?, call.input(1)?, call.input(2)?);
     let default = &call.input(3)?.wire;
@@ -79,7 +82,7 @@ pub fn sparse_to_dense(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
         return Ok(vec![filled]);
     }
     if indices.rank() != 2 || values.rank() != 1 {
-        return Err(Error::unsupported("sparse tensor with a single index or value"));
+        return Err(Error::unsupported("a sparse tensor with a single index or value is not supported"));
     }
     let inputs = [&filled.wire, &indices.wire, &values.wire];
     Ok(vec![ctx.emit_plain(call, Operator::new("ScatterND"), &inputs, filled.kind(), &filled.dims())?])

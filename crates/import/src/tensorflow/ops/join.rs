@@ -1,4 +1,4 @@
-//! Tensors side by side.
+//! Concatenation, stacking and tiling.
 
 use opendr_engine::{Error, Result};
 
@@ -10,9 +10,9 @@ use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
 pub fn concat(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
-    let last = call.inputs().len().checked_sub(1).ok_or_else(|| Error::format("no inputs"))?;
+    let last = call.inputs().len().checked_sub(1).ok_or_else(|| Error::format("it has no inputs"))?;
     let parts = &call.inputs()[..last];
-    let rank = parts.first().ok_or_else(|| Error::format("nothing to join"))?.rank();
+    let rank = parts.first().ok_or_else(|| Error::format("it has no tensors to concatenate"))?.rank();
     let axis = axis_in(call.int(last)?, rank)?;
     Ok(vec![joined(ctx, call, parts, axis)?])
 }
@@ -28,14 +28,18 @@ pub fn pack(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![joined(ctx, call, &parts, axis)?])
 }
 
-/// Joins along TensorFlow's axis `axis`, in the order of the largest part.
+/// Concatenates along TensorFlow's axis `axis`, in the order of the largest part.
 fn joined(ctx: &mut Lowering, call: &Call, parts: &[Value], axis: usize) -> Result<Value> {
-    let first = parts.first().ok_or_else(|| Error::format("nothing to join"))?;
+    let first = parts.first().ok_or_else(|| Error::format("it has no tensors to concatenate"))?;
     let mut dims = first.dims();
     let mut total: Dim = Some(0);
     for part in parts {
         if part.rank() != dims.len() {
-            return Err(Error::format(format!("ranks {} and {} side by side", dims.len(), part.rank())));
+            return Err(Error::format(format!(
+                "tensors of ranks {} and {} cannot be concatenated",
+                dims.len(),
+                part.rank()
+            )));
         }
         total = total.zip(part.dims()[axis]).and_then(|(total, dim)| total.checked_add(dim));
         for (own, other) in dims.iter_mut().zip(part.dims()) {

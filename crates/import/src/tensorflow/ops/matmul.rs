@@ -9,13 +9,17 @@ use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
 use opendr_onnx::{Dim, Kind, Operator, Wire};
 
-/// `MatMul` of two matrices, and `_FusedMatMul` with bias and activation.
+/// Converts `MatMul` of two matrices, and `_FusedMatMul` with bias and activation.
 pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let epilogue = Epilogue::of(call)?;
     let (a, b) = (call.input(0)?, call.input(1)?);
     let kind = a.kind();
     if a.rank() != 2 || b.rank() != 2 {
-        return Err(Error::format(format!("matrix product of ranks {} and {}", a.rank(), b.rank())));
+        return Err(Error::format(format!(
+            "a matrix product of ranks {} and {} is not possible",
+            a.rank(),
+            b.rank()
+        )));
     }
     let a = operand(ctx, a, call.attr().flag("transpose_a"))?;
     let b = operand(ctx, b, call.attr().flag("transpose_b"))?;
@@ -38,7 +42,11 @@ pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (a, b) = (call.input(0)?, call.input(1)?);
     let (kind, rank) = (a.kind(), a.rank().max(b.rank()));
     if a.rank() < 2 || b.rank() < 2 {
-        return Err(Error::format(format!("matrix product of ranks {} and {}", a.rank(), b.rank())));
+        return Err(Error::format(format!(
+            "a matrix product of ranks {} and {} is not possible",
+            a.rank(),
+            b.rank()
+        )));
     }
     let a = operand(ctx, a, call.attr().flag("adj_x"))?;
     let b = operand(ctx, b, call.attr().flag("adj_y"))?;
@@ -54,7 +62,7 @@ pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![Value::plain(ctx.cast(&product.wire, kind)?)])
 }
 
-/// A matrix, or one per batch element, with rows and columns exchanged if asked. Runtimes multiply floats only.
+/// Returns a matrix, or one per batch element, transposed where requested. Runtimes multiply floats only.
 fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<Wire> {
     let mut perm: Vec<usize> = (0..x.rank()).collect();
     if transposed {
@@ -67,9 +75,9 @@ fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<Wire> {
 
 fn check_inner(columns: Dim, rows: Dim) -> Result<()> {
     match (columns, rows) {
-        (Some(columns), Some(rows)) if columns != rows => {
-            Err(Error::format(format!("product of {columns} columns and {rows} rows")))
-        }
+        (Some(columns), Some(rows)) if columns != rows => Err(Error::format(format!(
+            "a matrix of {columns} columns cannot be multiplied by one of {rows} rows"
+        ))),
         _ => Ok(()),
     }
 }

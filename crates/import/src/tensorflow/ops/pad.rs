@@ -1,4 +1,4 @@
-//! Elements around a tensor.
+//! Padding.
 
 use opendr_engine::{Error, Result};
 
@@ -11,7 +11,10 @@ pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let pads = call.ints(1)?;
     if pads.len() != 2 * x.rank() || pads.iter().any(|&pad| !(0..=1 << 24).contains(&pad)) {
-        return Err(Error::format(format!("padding {pads:?} of a tensor of rank {}", x.rank())));
+        return Err(Error::format(format!(
+            "the padding {pads:?} does not match a tensor of rank {}",
+            x.rank()
+        )));
     }
     if pads.iter().all(|&pad| pad == 0) {
         return Ok(vec![x.clone()]);
@@ -24,7 +27,7 @@ pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let operator = Operator::new("Pad");
     let operator = match call.op() {
         "MirrorPad" if call.attr().text("mode") == Some("REFLECT") => operator.text("mode", "reflect"),
-        "MirrorPad" => return Err(Error::unsupported("padding that repeats the border pixel")),
+        "MirrorPad" => return Err(Error::unsupported("symmetric padding is not supported")),
         "PadV2" => {
             let value = ctx.cast(&call.input(2)?.wire, x.kind())?;
             inputs.push(value);

@@ -1,4 +1,4 @@
-//! Maximum and average over sliding windows.
+//! Maximum and average pooling.
 
 use opendr_engine::Result;
 
@@ -8,7 +8,7 @@ use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
 use opendr_onnx::{Kind, Operator};
 
-/// ONNX leaves the padding out of averages by default, as TensorFlow does.
+/// By default ONNX, like TensorFlow, excludes the padding from averages.
 pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let axes = Axes::of(call);

@@ -1,4 +1,4 @@
-//! Sums, means and extremes over whole axes.
+//! Reductions over axes: sum, mean, extremes.
 
 use opendr_engine::Result;
 
@@ -48,7 +48,7 @@ pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![value?])
 }
 
-/// The mean over an image, for which runtimes have a faster operator.
+/// Writes the mean over an image with a faster operator.
 fn global_mean(ctx: &mut Lowering, call: &Call, x: &Value, keep: bool) -> Result<Value> {
     let mut dims = x.dims();
     dims[1..3].fill(Some(1));

@@ -1,4 +1,4 @@
-//! Changing the size of images.
+//! Resizing of images.
 
 use opendr_engine::{Error, Result};
 
@@ -13,7 +13,7 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let axes = Axes { height: 1, width: 2, channels: 3 };
     axes.spatial(&x.dims())?;
     if size.dims() != [Some(2)] {
-        return Err(Error::format(format!("resize to a size of shape {:?}", size.dims())));
+        return Err(Error::format(format!("a size of shape {:?} is not valid for a resize", size.dims())));
     }
     let coordinates = match (call.attr().flag("align_corners"), call.attr().flag("half_pixel_centers")) {
         (true, _) => "align_corners",
@@ -23,7 +23,8 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let operator = Operator::new("Resize").text("coordinate_transformation_mode", coordinates);
     let operator = match call.op() {
         "ResizeBilinear" => operator.text("mode", "linear"),
-        // TensorFlow rounds half up; without centres it rounds down. floor((i + 0.5) * s) is half_pixel rounded half up.
+        // TensorFlow rounds half up; without centres it rounds down. floor((i + 0.5) * s) is half_pixel rounded half
+        // up.
         _ => {
             let rounding = if coordinates == "asymmetric" { "floor" } else { "round_prefer_ceil" };
             operator.text("mode", "nearest").text("nearest_mode", rounding)
@@ -49,11 +50,13 @@ pub fn depth_to_space(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let axes = Axes::of(call);
     let spatial = axes.spatial(&x.dims())?;
     let block = call.attr().int("block_size").filter(|block| (1..=1 << 10).contains(block));
-    let block = block.ok_or_else(|| Error::format("block size"))?;
+    let block = block.ok_or_else(|| Error::format("the block size is out of range"))?;
     let size = block as usize;
     let channels = x.dims()[axes.channels];
     if channels.is_some_and(|channels| channels % (size * size) != 0) {
-        return Err(Error::format(format!("{channels:?} channels in blocks of {size} by {size}")));
+        return Err(Error::format(format!(
+            "{channels:?} channels are not divisible into blocks of {size} by {size}"
+        )));
     }
     let grown = spatial.map(|dim| dim.and_then(|dim| dim.checked_mul(size)));
     let dims = axes.dims(x.dims()[0], channels.map(|channels| channels / (size * size)), grown);

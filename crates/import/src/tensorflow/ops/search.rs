@@ -1,4 +1,4 @@
-//! Operators whose result says where something is.
+//! Operators that return positions.
 
 use opendr_engine::{Error, Result};
 
@@ -9,10 +9,10 @@ use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
 use opendr_onnx::{Array, Dim, Kind, Operator, Wire};
 
-/// The largest values of the last axis, and their positions.
+/// Returns the largest values of the last axis, and their positions.
 pub fn top_k(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?.clone();
-    let last = x.rank().checked_sub(1).ok_or_else(|| Error::format("largest values of a scalar"))?;
+    let last = x.rank().checked_sub(1).ok_or_else(|| Error::format("top-k needs at least one axis"))?;
     let k = as_list(ctx, &call.input(1)?.wire)?;
     let count = k.array().and_then(|k| usize::try_from(*k.as_ints()?.first()?).ok());
     let mut dims = x.dims();
@@ -36,8 +36,8 @@ pub fn top_k(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(values)
 }
 
-/// What `x` is the flattening of, if its elements would have to move for that and it is a single list. Searching the
-/// elements as they are stored and translating the few positions found is cheaper than moving a heat map.
+/// Returns the source of which `x` is the flattening, if that would move elements and `x` is a single list. Searching
+/// the elements in stored order and translating the few positions is cheaper than transposing a heat map.
 fn unflattened(ctx: &Lowering, x: &Value) -> Option<Value> {
     let source = ctx.flattened(&x.wire)?;
     let dims = x.known_dims()?;
@@ -45,7 +45,7 @@ fn unflattened(ctx: &Lowering, x: &Value) -> Option<Value> {
     (single && source.known_dims().is_some()).then(|| source.clone())
 }
 
-/// The elements of `source` in stored order, in the shape of `x`.
+/// Returns the elements of `source` in stored order, in the shape of `x`.
 fn stored_flat(ctx: &mut Lowering, source: &Value, x: &Value) -> Result<Value> {
     let dims = x.wire.dims().to_vec();
     let shape = Wire::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
@@ -59,8 +59,8 @@ fn stored_flat(ctx: &mut Lowering, source: &Value, x: &Value) -> Result<Value> {
     )?))
 }
 
-/// Axes that lie side by side both in memory and in TensorFlow's order: how many elements they have together, and how
-/// far apart those lie in either order.
+/// Axes that are adjacent both in memory and in TensorFlow's order: their number of elements, and the strides in both
+/// orders.
 struct Run {
     size: usize,
     stored_stride: usize,
@@ -86,9 +86,9 @@ fn runs(source: &Value) -> Option<Vec<Run>> {
     Some(runs)
 }
 
-/// Positions in `source` flattened as stored, as positions in `source` flattened in TensorFlow's order.
+/// Converts positions in `source` flattened as stored to positions in `source` flattened in TensorFlow's order.
 fn logical_positions(ctx: &mut Lowering, call: &Call, positions: &Value, source: &Value) -> Result<Value> {
-    let runs = runs(source).ok_or_else(|| Error::internal("flattened tensor of open size"))?;
+    let runs = runs(source).ok_or_else(|| Error::internal("a flattened tensor has an open size"))?;
     let constant = |value: usize| Value::plain(Wire::constant(Array::int(value as i64)));
     let mut total: Option<Value> = None;
     for (i, run) in runs.iter().enumerate() {
@@ -110,7 +110,7 @@ fn logical_positions(ctx: &mut Lowering, call: &Call, positions: &Value, source:
     Ok(total.unwrap_or_else(|| positions.clone()))
 }
 
-/// Position of the largest or smallest value along an axis; the axis is gone afterwards.
+/// Returns the position of the largest or smallest value along an axis, which is removed.
 pub fn arg(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let axis = axis_in(call.int(1)?, x.rank())?;
@@ -121,7 +121,7 @@ pub fn arg(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![ctx.emit(call, operator, &[&x.wire], Kind::Int, &dims, x.order.without(&[axis]))?])
 }
 
-/// Index tuples of the elements that are true.
+/// Returns the index tuples of the true elements.
 pub fn where_true(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let plain = ctx.plain(x)?;
@@ -133,11 +133,11 @@ pub fn where_true(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![ctx.emit_plain(call, operator, &[&found], Kind::Int, &[None, rank])?])
 }
 
-/// Boxes, scores, number of boxes wanted, overlap and score thresholds; `V5` also gives out the scores.
+/// Inputs: boxes, scores, maximum number of boxes, overlap and score thresholds; `V5` also returns the scores.
 pub fn non_max_suppression(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let softened = call.inputs().get(5).is_some_and(|sigma| sigma.array() != Some(&Array::scalar(0.0)));
     if softened || call.attr().flag("pad_to_max_output_size") {
-        return Err(Error::unsupported("soft or padded non-maximum suppression"));
+        return Err(Error::unsupported("soft or padded non-maximum suppression is not supported"));
     }
     let (boxes, scores) = (call.input(0)?, call.input(1)?);
     let [boxes_plain, scores_plain] = [ctx.plain(boxes)?, ctx.plain(scores)?];

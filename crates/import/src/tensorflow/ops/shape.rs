@@ -1,4 +1,4 @@
-//! Shapes as data, and tensors made from shapes.
+//! Shapes as values, and tensors created from shapes.
 
 use opendr_engine::{Error, Result};
 
@@ -7,7 +7,7 @@ use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
 use opendr_onnx::{Array, Data, Dim, Kind, Operator, Wire};
 
-/// TensorFlow's dimensions as integers; those that are known stay known through later arithmetic.
+/// Returns TensorFlow's dimensions as integers; known ones stay known in later arithmetic.
 pub fn shape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let rank = [Some(x.rank())];
@@ -34,20 +34,20 @@ pub fn fill(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     Ok(vec![fill_shape(ctx, call, &value.wire, call.input(0)?)?])
 }
 
-/// A scalar repeated over a shape.
+/// Returns a scalar repeated over a shape.
 pub fn fill_shape(ctx: &mut Lowering, call: &Call, scalar: &Wire, shape: &Value) -> Result<Value> {
     let dims = shape_dims(shape)?;
     ctx.emit_plain(call, Operator::new("Expand"), &[scalar, &shape.wire], scalar.kind(), &dims)
 }
 
-/// Dimensions of a tensor of the shape that `shape` holds.
+/// Returns the dimensions of a tensor of the shape in `shape`.
 fn shape_dims(shape: &Value) -> Result<Vec<Dim>> {
     match (shape.wire.elements(), shape.dims().as_slice()) {
         (Some(elements), _) => {
             Ok(elements.iter().map(|dim| dim.and_then(|dim| usize::try_from(dim).ok())).collect())
         }
         (None, [Some(rank @ 0..=8)]) => Ok(vec![None; *rank]),
-        (None, dims) => Err(Error::unsupported(format!("shape of shape {dims:?}"))),
+        (None, dims) => Err(Error::unsupported(format!("a shape of shape {dims:?} is not supported"))),
     }
 }
 
@@ -60,11 +60,11 @@ pub fn range(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     }
     let inputs: Vec<&Wire> = limits.iter().collect();
     let value = ctx.emit_plain(call, Operator::new("Range"), &inputs, kind, &[None])?;
-    // When evaluated, the length is known after all.
+    // If it was evaluated, the length is known.
     Ok(vec![Value::plain(value.wire)])
 }
 
-/// Zeros or ones in the shape of another tensor.
+/// Returns zeros or ones in the shape of another tensor.
 pub fn filled_like(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let value = i64::from(call.op() == "OnesLike");
@@ -82,8 +82,10 @@ pub fn filled_like(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 pub fn broadcast_to(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, shape) = (call.input(0)?, call.input(1)?);
     let mut dims = shape_dims(shape)?;
-    let missing =
-        dims.len().checked_sub(x.rank()).ok_or_else(|| Error::format("broadcast to a lower rank"))?;
+    let missing = dims
+        .len()
+        .checked_sub(x.rank())
+        .ok_or_else(|| Error::format("a tensor cannot be broadcast to a lower rank"))?;
     for (own, dim) in dims[missing..].iter_mut().zip(x.dims()) {
         *own = own.or(dim.filter(|&dim| dim != 1));
     }

@@ -15,7 +15,7 @@ fn kept(kind: SuppressionKind, candidates: Vec<Candidate>) -> Vec<u32> {
     run(kind, candidates).iter().map(|candidate| candidate.index).collect()
 }
 
-/// Three boxes in a row, each overlapping only its neighbours, and one of another class.
+/// Returns three boxes in a row, each overlapping only its neighbours, and one of another class.
 fn row() -> Vec<Candidate> {
     vec![
         candidate(0, [4.0, 0.0, 10.0, 10.0], 0.6, 0),

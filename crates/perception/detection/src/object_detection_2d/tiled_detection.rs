@@ -1,8 +1,8 @@
-//! Any detector in tiles of a large picture: what is small in it is found.
+//! Any detector over the tiles of a large image, for objects that are small in it.
 //!
-//! How is said in [`tiling`](opendr_tiling). A stream remembers what was found in each tile, so that tiles in which nothing
-//! moves cost nothing, and those for which there was no time in one picture are looked at in the next. With a time budget, small
-//! parts of several tiles are looked at side by side, which keeps up with many small things that move.
+//! [`opendr_tiling`] describes the method. The state of a stream has the detections of each tile: tiles without motion cost
+//! nothing, and tiles for which there was no time in one image are processed in the next. With a time budget, small parts
+//! of several tiles share one inference, which keeps up with many small moving objects.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec};
@@ -17,24 +17,24 @@ use opendr_tiling::{
 
 use super::DETECTORS;
 
-/// What a user may set.
+/// Parameters of [`TiledDetection`].
 #[derive(Debug, Clone, Params)]
 pub struct TiledDetectionParams {
-    /// Detections below this score are dropped; the detector is not asked for any below 0.1.
+    /// Score below which detections are dropped; the detector itself drops those below 0.1.
     #[param(default = 0.35, range = 0.0..=1.0, live)]
     pub threshold: f32,
-    /// Boxes of one class from different tiles that overlap more than this (intersection over union) are one object.
+    /// IoU above which boxes of one class from different tiles count as one object.
     #[param(default = 0.5, range = 0.0..=1.0, live)]
     pub iou_threshold: f32,
-    /// At most this many boxes a picture.
+    /// Maximum number of boxes per image.
     #[param(default = 500, range = 1..=2000, live)]
     pub max_detections: usize,
-    /// How the picture is looked at.
+    /// Tiling of the image.
     #[param(flatten)]
     pub tiling: TilingParams,
 }
 
-/// A loaded detector, as often as tiles are looked at side by side.
+/// A loaded detector, with one copy per parallel tile.
 pub struct TiledDetection {
     params: TiledDetectionParams,
     detectors: Vec<Box<dyn PictureLearner<BoundingBoxList>>>,
@@ -48,37 +48,36 @@ struct Scratch {
     found: BoundingBoxList,
 }
 
-/// What was seen in the tiles of one stream.
+/// Detections in the tiles of one stream.
 #[derive(Default)]
 pub struct TiledDetectionState {
     tiles: Tiles,
     looks: Looks,
-    /// The numbers of the looks.
+    /// Indices of the inferences.
     numbers: Vec<usize>,
-    /// What was found in each tile when it was looked at last.
+    /// Detections of each tile's last inference.
     found: Vec<Vec<Piece>>,
     pieces: Vec<Piece>,
 }
 
-/// The part of the container.
+/// Name of the detector in the container.
 const DETECTOR: &str = "detector";
-/// What is found with a lower score is noise.
+/// Score below which detections are noise.
 const LOWEST: f64 = 0.1;
 
 impl Learner for TiledDetection {
-    const SPEC: Spec =
-        Spec::new("tiled_detection", Task::ObjectDetection2d).class("TiledDetectionLearner").about(
-            "Looks at large pictures in tiles with any detector, where it is worth it, within a time budget.",
-        );
+    const SPEC: Spec = Spec::new("tiled_detection", Task::ObjectDetection2d)
+        .class("TiledDetectionLearner")
+        .about("Runs any detector on the relevant tiles of large images, within a time budget.");
     type Params = TiledDetectionParams;
     type Input<'a> = &'a Image;
     type Target = BoundingBoxList;
     type State = TiledDetectionState;
 
     fn load(model: &Model, params: TiledDetectionParams, device: Device) -> Result<Self> {
-        let wishes = ParamMap::from([("threshold".to_owned(), LOWEST.into())]);
+        let overrides = ParamMap::from([("threshold".to_owned(), LOWEST.into())]);
         let copies = params.tiling.parallel_tiles;
-        let detectors = open_copies(model, DETECTOR, DETECTORS, copies, &wishes, device)?;
+        let detectors = open_copies(model, DETECTOR, DETECTORS, copies, &overrides, device)?;
         let classes = detectors.first().map(|detector| detector.classes()).unwrap_or_default();
         Ok(Self { params, detectors, classes, scratch: Pool::default() })
     }
@@ -137,7 +136,7 @@ impl Learner for TiledDetection {
 }
 
 impl TiledDetection {
-    /// What is in a tile or in parts of several: by the place of the part.
+    /// Returns the detections in a tile or in parts of several, each with the index of its part.
     fn look(&self, worker: usize, image: &Image, slots: &[Slot]) -> Result<Vec<(usize, Piece)>> {
         let Some(detector) = self.detectors.get(worker) else { return Ok(Vec::new()) };
         let Scratch { tile: picture, found } = &mut *self.scratch.take();
@@ -159,7 +158,7 @@ impl TiledDetection {
         Ok(pieces.collect())
     }
 
-    /// What is known to be in the picture now.
+    /// Collects the detections of all tiles that are valid for the current image.
     fn gather(&self, tiles: &Tiles, found: &[Vec<Piece>], pieces: &mut Vec<Piece>) {
         pieces.clear();
         for (index, found) in found.iter().enumerate() {
@@ -179,7 +178,7 @@ impl TiledDetection {
     }
 }
 
-/// The middle of a box.
+/// Returns the centre of a box.
 fn middle(one: &BoundingBox) -> [f32; 2] {
     [one.left + one.width / 2.0, one.top + one.height / 2.0]
 }

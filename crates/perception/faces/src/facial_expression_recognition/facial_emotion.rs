@@ -1,7 +1,7 @@
-//! Facial emotion: one of seven, of the largest face in a picture.
+//! Facial emotion: one of seven emotions of the largest face in an image.
 //!
 //! mini-XCEPTION (Arriaga et al., Real-time Convolutional Neural Networks for Emotion and Gender Classification, 2017),
-//! trained on FER2013: angry, disgust, fear, happy, sad, surprise, neutral. The network tells no valence and arousal.
+//! trained on FER2013: angry, disgust, fear, happy, sad, surprise, neutral. It does not predict valence and arousal.
 
 use opendr_engine::data::{Image, Layout};
 use opendr_engine::learner::{Learner, Spec};
@@ -14,20 +14,20 @@ use opendr_perception_common::category_scores::category_from_scores;
 use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{Border, ChannelOrder, Preprocess};
 
-/// What a user may set.
+/// Parameters of [`FacialEmotion`].
 #[derive(Debug, Clone, Params)]
 pub struct FacialEmotionParams {
-    /// What the detector scores below this is no face.
+    /// Score of the detector below which faces are dropped.
     #[param(default = 0.6, range = 0.0..=1.0)]
     pub face_threshold: f32,
-    /// What pictures show.
+    /// Content of the images.
     #[param(live)]
     pub picture: FaceInput,
 }
 
 /// A loaded network with its face detector.
 ///
-/// Of several faces the largest counts. Where there is none the answer is class -1, `no face`, with confidence 0 and no
+/// Of several faces the largest counts. Without a face the prediction is class -1, `no face`, with confidence 0 and no
 /// probabilities.
 pub struct FacialEmotion {
     params: FacialEmotionParams,
@@ -38,17 +38,17 @@ pub struct FacialEmotion {
     scratch: Pool<BoundingBoxList>,
 }
 
-/// Side of the network's input, pixels.
+/// Side of the network's input, in pixels.
 const SIDE: usize = 64;
-/// Sides of the crop in longer sides of the face's box.
+/// Side of the crop in longer sides of the face's box.
 const SCALE: f32 = 1.2;
 
 impl Learner for FacialEmotion {
     const SPEC: Spec = Spec::new("facial_emotion", Task::FacialExpressionRecognition)
         .class("FacialEmotionLearner")
-        .about("mini-XCEPTION tells which of seven emotions the largest face in a frame shows.")
+        .about("mini-XCEPTION classifies the emotion of the largest face in an image, one of seven.")
         .without_effect(&[
-            ("device_ind", "`device` says where"),
+            ("device_ind", "`device` sets it"),
             ("validation_interval", Spec::OF_TRAINING),
             ("max_training_epoch", Spec::OF_TRAINING),
             ("momentum", Spec::OF_TRAINING),

@@ -1,4 +1,4 @@
-//! Which word was spoken.
+//! Keyword spotting: classification of spoken words.
 
 mod cepstra;
 mod ds_cnn;

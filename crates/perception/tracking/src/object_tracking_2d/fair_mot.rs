@@ -1,7 +1,7 @@
-//! Detector and tracker in one call, behind the interface of OpenDR's FairMOT.
+//! Detector and tracker in one learner, with the interface of OpenDR's FairMOT.
 //!
-//! It is not FairMOT's network (Y. Zhang et al., IJCV 2021), of which there are no weights that may be used: NanoDet finds the
-//! persons, [`ByteTrack`] follows them, and the frame tells how the camera moved.
+//! It is not FairMOT's network (Y. Zhang et al., IJCV 2021), which has no freely usable weights: NanoDet detects the
+//! persons, [`ByteTrack`] tracks them, and the motion of the camera is estimated from the frames.
 
 use opendr_detection::object_detection_2d::{Nanodet, NanodetParams};
 use opendr_engine::data::Image;
@@ -13,22 +13,22 @@ use opendr_engine::{Device, Result, Task};
 
 use super::{ByteTrack, ByteTrackParams, ByteTrackState, TrackerInputs};
 
-/// What a user may set.
+/// Parameters of [`FairMot`].
 #[derive(Debug, Clone, Params)]
 pub struct FairMotParams {
-    /// Detections from this score on are paired first; 0.1 more begins a track.
+    /// Score above which detections are associated first; 0.1 more starts a track.
     #[param(default = 0.3, range = 0.1..=1.0, live)]
     pub threshold: f32,
-    /// Frames for which an object may be out of sight.
+    /// Number of frames that a track is kept without a detection.
     #[param(default = 30, range = 0..=1000, live)]
     pub track_buffer: u32,
-    /// Smaller boxes are left out.
+    /// Area below which boxes are ignored.
     #[param(default = 100.0, range = 0.0..=1e6, unit = "px^2", live)]
     pub min_box_area: f32,
-    /// Whether all classes of the detector are followed, or persons alone.
+    /// Whether all classes of the detector are tracked, instead of persons only.
     #[param(default = false, live)]
     pub every_class: bool,
-    /// Whether frames tell how the camera moved; a camera that stands still needs it not.
+    /// Whether the motion of the camera is compensated; a fixed camera does not need it.
     #[param(default = true, live)]
     pub camera_motion: bool,
 }
@@ -37,35 +37,35 @@ pub struct FairMotParams {
 pub struct FairMot {
     params: FairMotParams,
     detector: Nanodet,
-    /// The detector's number of persons.
+    /// The detector's class index of persons.
     person: Option<i64>,
 }
 
-/// The objects of one stream.
+/// The tracks of one stream.
 #[derive(Default)]
 pub struct FairMotState {
     tracks: ByteTrackState,
     found: BoundingBoxList,
 }
 
-/// The part of the container.
+/// Name of the detector in the container.
 const DETECTOR: &str = "detector";
-/// What is found with a lower score is noise.
+/// Score below which detections are noise.
 const LOWEST: f32 = 0.1;
 
 impl Learner for FairMot {
     const SPEC: Spec = Spec::new("fair_mot", Task::ObjectTracking2d)
         .class("ObjectTracking2DFairMotLearner")
-        .about("NanoDet and ByteTrack in one call follow the persons in a video.")
+        .about("NanoDet and ByteTrack in one learner track the persons in a video.")
         .without_effect(&[
             ("backbone", "the detector is NanoDet"),
             ("network_head", "the detector is NanoDet"),
             ("scale", "the detector scales frames itself"),
-            ("num_classes", "`every_class` says whether more than persons are followed"),
-            ("max_objs", "the detector finds at most a hundred"),
+            ("num_classes", "`every_class` selects the tracked classes"),
+            ("max_objs", "the detector returns at most 100 boxes"),
             ("frame_rate", "`track_buffer` counts frames"),
-            ("image_mean", "the detector knows it"),
-            ("image_std", "the detector knows it"),
+            ("image_mean", "the detector defines it"),
+            ("image_std", "the detector defines it"),
             ("lr", Spec::OF_TRAINING),
             ("iters", Spec::OF_TRAINING),
             ("batch_size", Spec::OF_TRAINING),
@@ -121,7 +121,7 @@ impl Learner for FairMot {
         &self,
         state: &mut FairMotState,
         image: &Image,
-        answer: &mut TrackingAnnotationList,
+        target: &mut TrackingAnnotationList,
     ) -> Result<()> {
         let FairMotParams { threshold, track_buffer, min_box_area, every_class, camera_motion } = self.params;
         let FairMotState { tracks, found } = state;
@@ -138,6 +138,6 @@ impl Learner for FairMot {
             ..ByteTrackParams::default()
         });
         let input = TrackerInputs { detections: found, image: camera_motion.then_some(image) };
-        tracker.infer_into(tracks, input, answer)
+        tracker.infer_into(tracks, input, target)
     }
 }

@@ -1,24 +1,23 @@
-//! What a tracker takes of a detector's list.
+//! Valid boxes of a detector's list.
 
 use opendr_engine::target::BoundingBoxList;
 
-/// So many of the best boxes of a frame are looked at, and so many tracks are kept: more are noise or malice, and time
-/// grows with their product.
+/// Maximum number of boxes per frame, by score, and of tracks. More are noise, and time grows with their product.
 pub const MOST_BOXES: usize = 1000;
 
-/// A box that can be followed.
+/// A valid box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SoundBox {
-    /// `[x0, y0, x1, y1]`, finite, with x1 > x0 and y1 > y0.
+    /// Corners `[x0, y0, x1, y1]`, finite, with x1 > x0 and y1 > y0.
     pub corners: [f64; 4],
-    /// Its score.
+    /// Score.
     pub confidence: f64,
-    /// Its place in the list.
+    /// Index in the list.
     pub index: usize,
 }
 
-/// Fills `sound` with the boxes of a list that score at least `threshold`, are finite and have an area, in the order of the
-/// list; of more than [`MOST_BOXES`] the best.
+/// Fills `sound` with the boxes of a list that have at least the score `threshold`, are finite and have an area, in the
+/// order of the list; of more than [`MOST_BOXES`], those with the highest scores.
 pub fn sound_boxes(list: &BoundingBoxList, threshold: f64, sound: &mut Vec<SoundBox>) {
     sound.clear();
     sound.extend(list.boxes.iter().enumerate().filter_map(|(index, found)| {
@@ -45,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_followed_is_left_out() {
+    fn invalid_boxes_are_dropped() {
         let rows = [
             [0.0, 0.0, 5.0, 5.0, 0.9],
             [f32::NAN, 0.0, 5.0, 5.0, 0.9],

@@ -1,4 +1,4 @@
-//! Topics to publish to.
+//! Publishers over Zenoh.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -24,7 +24,7 @@ pub(super) struct ZenohPublisher {
 impl Publisher for ZenohPublisher {
     fn publish(&self, message: Message) -> Result<()> {
         let attachment = Attachment {
-            // As rclcpp counts: from 1.
+            // rclcpp counts from 1.
             sequence_number: self.sent.fetch_add(1, Ordering::Relaxed) + 1,
             source_timestamp: system_time_ns(),
             source_gid: self.gid,

@@ -1,4 +1,4 @@
-//! Training.
+//! Training of multilinear compressive learning.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -13,10 +13,10 @@ use super::network::MultilinearCompressiveNetwork;
 use super::objective::CompressiveObjective;
 use super::{MultilinearCompressive, MultilinearCompressiveParams};
 
-/// How it is trained.
+/// Training parameters of [`MultilinearCompressive`].
 #[derive(Debug, Clone, Params)]
 pub struct MultilinearCompressiveFitParams {
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 300,
@@ -31,10 +31,10 @@ pub struct MultilinearCompressiveFitParams {
     /// Channels of the classifier's first block; the others have up to twice as many.
     #[param(default = 32, range = 4..=1024)]
     pub width: usize,
-    /// Share of the features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.1, range = 0.0..=0.9)]
     pub dropout: f64,
-    /// How often a picture is mirrored.
+    /// Probability of a horizontal flip.
     #[param(default = 0.5, range = 0.0..=1.0)]
     pub flip: f32,
 }
@@ -56,8 +56,8 @@ impl Fit for MultilinearCompressive {
         let smaller = measured.iter().zip(&pictures).all(|(measured, picture)| measured <= picture);
         if pictures[0] != 3 || !smaller {
             return Err(Error::invalid_param(format!(
-                "input_shape {:?} measured as {:?}; give pictures with 3 channels, and no more rows, columns and channels \
-                 of the measurement than of them",
+                "input_shape {:?} and compressed_shape {:?} are invalid; images need 3 channels, and the measurement at most as \
+                 many rows, columns and channels",
                 params.input_shape, params.compressed_shape
             )));
         }
@@ -73,12 +73,12 @@ impl Fit for MultilinearCompressive {
     }
 }
 
-/// `[channels, height, width]` of the user's height, width and channels.
+/// Returns `[channels, height, width]` of the user's height, width and channels.
 fn shape(numbers: &[usize], name: &str) -> Result<[usize; 3]> {
     match numbers {
         &[height, width, channels] => Ok([channels, height, width]),
         _ => Err(Error::invalid_param(format!(
-            "{name} has {} numbers; give height, width and channels",
+            "{name} has {} values; it needs height, width and channels",
             numbers.len()
         ))),
     }

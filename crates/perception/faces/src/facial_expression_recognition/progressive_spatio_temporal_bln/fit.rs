@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of PST-BLN.
 
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{Fit, FitJob};
@@ -13,10 +13,10 @@ use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::{ExpressionObjective, sequence_of};
 use super::{KINDS, ProgressiveSpatioTemporalBln, ProgressiveSpatioTemporalBlnParams};
 
-/// How a user may train it.
+/// Training parameters of [`ProgressiveSpatioTemporalBln`].
 #[derive(Debug, Clone, Params)]
 pub struct ProgressiveSpatioTemporalBlnFitParams {
-    /// What every training takes.
+    /// Parameters of every training.
     #[param(
         flatten,
         epochs = 400,
@@ -28,7 +28,7 @@ pub struct ProgressiveSpatioTemporalBlnFitParams {
         weight_decay = 0.0001
     )]
     pub training: TrainingParams,
-    /// Share of values between layers that are left out at random in each training step.
+    /// Dropout probability between layers.
     #[param(default = 0.2, range = 0.0..=0.99)]
     pub dropout: f64,
 }
@@ -56,10 +56,10 @@ impl Fit for ProgressiveSpatioTemporalBln {
     }
 }
 
-/// The network's sizes: as many landmarks as the first sample has, where nobody says.
+/// Returns the network's sizes; the number of landmarks defaults to that of the first sample.
 fn sizes(params: &ProgressiveSpatioTemporalBlnParams, dataset: &dyn DatasetIterator) -> Result<NetworkSizes> {
     if dataset.is_empty() {
-        return Err(Error::invalid_input("the data set to train on is empty"));
+        return Err(Error::invalid_input("the data set is empty; give one with samples"));
     }
     let there = sequence_of(&dataset.get(0)?)?.shape()[3];
     Ok(NetworkSizes {

@@ -1,4 +1,4 @@
-//! Batches, loss and container.
+//! Training objective of PST-BLN: batches, loss and container.
 
 use burn::tensor::Device;
 use opendr_datasets::loader::Collate;
@@ -18,7 +18,7 @@ use opendr_training::{Container, Loss, Objective};
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::{FILE, ProgressiveSpatioTemporalBln, ProgressiveSpatioTemporalBlnParams, first_face_into};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective of PST-BLN: the cross-entropy.
 pub(super) struct ExpressionObjective<'a> {
     pub params: &'a ProgressiveSpatioTemporalBlnParams,
     pub classes: Classes,
@@ -60,7 +60,7 @@ impl Objective for ExpressionObjective<'_> {
     }
 }
 
-/// Features of clips of one length.
+/// Collates sequences into features of clips of one length.
 pub(super) struct LandmarkBatches {
     features: FrameFeatures,
     frames: usize,
@@ -84,7 +84,7 @@ impl Collate for LandmarkBatches {
     }
 }
 
-/// The landmarks of a sample.
+/// Returns the landmarks of a sample.
 pub(super) fn sequence_of(sample: &Sample) -> Result<&SkeletonSequence> {
     match sample.data.first() {
         Some(Value::SkeletonSequence(sequence)) => Ok(sequence),

@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the gesture classifier.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -13,10 +13,10 @@ use super::network::{KeypointGestureNetwork, NetworkSizes};
 use super::objective::{GestureObjective, row_of};
 use super::{KeypointGesture, KeypointGestureParams};
 
-/// How a user may train it.
+/// Training parameters of [`KeypointGesture`].
 #[derive(Debug, Clone, Params)]
 pub struct KeypointGestureFitParams {
-    /// What every training takes.
+    /// Parameters of every training.
     #[param(
         flatten,
         epochs = 40,
@@ -43,7 +43,7 @@ impl Fit for KeypointGesture {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
         if dataset.is_empty() {
-            return Err(Error::invalid_input("the data set to train on is empty"));
+            return Err(Error::invalid_input("the data set is empty; give one with samples"));
         }
         let classes = classes_to_train(&*dataset, None, "classes")?;
         let numbers = row_of(&dataset.get(0)?)?.len();

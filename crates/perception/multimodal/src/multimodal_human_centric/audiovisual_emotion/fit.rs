@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the audiovisual emotion recognition.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -14,10 +14,10 @@ use super::network::AudiovisualNetwork;
 use super::objective::AudiovisualObjective;
 use super::{AudiovisualEmotion, AudiovisualEmotionParams, ModalityDrop};
 
-/// How a user may train it, on samples of two data: the sound and the faces.
+/// Training parameters of [`AudiovisualEmotion`]; samples have two inputs, audio and video of the face.
 #[derive(Debug, Clone, Params)]
 pub struct AudiovisualEmotionFitParams {
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 100,
@@ -29,15 +29,15 @@ pub struct AudiovisualEmotionFitParams {
         optimizer = OptimizerKind::Sgd
     )]
     pub training: TrainingParams,
-    /// What training does so that one sense alone is enough.
+    /// Dropout of modalities, so that one of them suffices.
     pub mod_drop: ModalityDrop,
-    /// Side of the network's faces; frames are stretched to it.
+    /// Side of the network's face images; frames are stretched to it.
     #[param(default = 64, range = 16..=512, unit = "px")]
     pub side: usize,
     /// Channels of the first block for faces; the others have up to twice as many.
     #[param(default = 32, range = 4..=1024)]
     pub width: usize,
-    /// Share of the features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.2, range = 0.0..=0.9)]
     pub dropout: f64,
 }

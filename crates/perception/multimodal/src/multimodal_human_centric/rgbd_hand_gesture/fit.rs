@@ -1,4 +1,4 @@
-//! How it trains.
+//! Training of the RGB-D hand gesture recognition.
 
 use opendr_engine::dataset::DatasetRef;
 use opendr_engine::learner::{Fit, FitJob};
@@ -13,10 +13,10 @@ use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_le
 use super::objective::RgbdObjective;
 use super::{CHANNELS, RgbdHandGesture, RgbdHandGestureParams};
 
-/// How a user may train it, on samples of two data: the picture and its depth.
+/// Training parameters of [`RgbdHandGesture`]; samples have two inputs, the image and its depth.
 #[derive(Debug, Clone, Params)]
 pub struct RgbdHandGestureFitParams {
-    /// What every training has.
+    /// Parameters common to all trainings.
     #[param(
         flatten,
         epochs = 200,
@@ -28,16 +28,16 @@ pub struct RgbdHandGestureFitParams {
         optimizer = OptimizerKind::Adam
     )]
     pub training: TrainingParams,
-    /// Side of the network's input; pictures are stretched to it.
+    /// Side of the network's input; images are stretched to it.
     #[param(default = 64, range = 8..=1024, unit = "px")]
     pub side: usize,
     /// Channels of the first block; the others have up to twice as many.
     #[param(default = 32, range = 4..=1024)]
     pub width: usize,
-    /// Share of the features that are left out at random.
+    /// Dropout probability.
     #[param(default = 0.1, range = 0.0..=0.9)]
     pub dropout: f64,
-    /// Whether each batch is also learnt without its depth, so that pictures without it are told by their colours.
+    /// Whether each batch is also trained without its depth, so that colour alone suffices.
     #[param(default = true)]
     pub drop_depth: bool,
 }

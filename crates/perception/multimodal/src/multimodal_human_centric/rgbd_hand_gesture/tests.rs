@@ -9,7 +9,7 @@ use opendr_perception_testing::promises::check;
 use super::objective::RgbdObjective;
 use super::*;
 
-/// Colours that hardly differ; the depth says the class: what is near is above, below, or nowhere.
+/// Images of almost equal colours; the depth determines the class: the near part is above, below or absent.
 struct Hands;
 
 impl Dataset for Hands {}
@@ -43,7 +43,7 @@ fn pictures(index: usize) -> (Image, Image) {
 }
 
 #[test]
-fn learns_one_batch_by_heart() {
+fn overfits_one_batch() {
     let params = RgbdHandGestureParams::default();
     let objective = RgbdObjective { params: &params, classes: Hands.classes(), side: 16, drop_depth: false };
     let samples = (0..Hands.len()).map(|index| Hands.get(index).unwrap()).collect();
@@ -53,7 +53,7 @@ fn learns_one_batch_by_heart() {
 }
 
 #[test]
-fn fit_makes_what_infer_loads_and_depth_decides() {
+fn infer_loads_the_model_of_fit_and_depth_decides() {
     let output = std::env::temp_dir().join(format!("opendr-rgbd-{}", std::process::id()));
     std::fs::remove_dir_all(&output).ok();
     let mut fit_params =
@@ -66,7 +66,7 @@ fn fit_makes_what_infer_loads_and_depth_decides() {
     let told = |handle: &mut Handle<RgbdHandGesture>, image: &Image, depth: &Image| {
         handle.infer(RgbdInputs { image, depth })
     };
-    // Colours of one, depth of another that was not seen with it.
+    // Colours of one sample, depth of another one that is not paired with it in training.
     let mut right = 0;
     for index in 0..12 {
         let ((image, _), (_, depth)) = (pictures(index + 100), pictures(index));

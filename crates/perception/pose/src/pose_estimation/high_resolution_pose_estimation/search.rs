@@ -1,4 +1,4 @@
-//! Which parts of a picture get a closer look.
+//! Selection of regions for the second pass.
 
 use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
@@ -6,14 +6,14 @@ use opendr_perception_common::regions::{CellGrid, CoarsePicture, Region, join_ov
 
 use super::{HighResolutionPoseEstimationParams, RegionMethod};
 
-/// A part of a picture, and how many pixels high the network sees it.
+/// A region, and the height of the network's input for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Look {
     pub region: Region,
     pub height: usize,
 }
 
-/// How the choice is made, with its work memory.
+/// Selection of regions, with its work memory.
 #[derive(Default)]
 pub(super) struct Search {
     scratch: Pool<Scratch>,
@@ -28,18 +28,18 @@ struct Scratch {
     known: Vec<Look>,
 }
 
-/// Parts are magnified at most so many times: beyond, there is nothing more to see.
+/// Maximum magnification of regions.
 const MOST_MAGNIFIED: usize = 3;
-/// A second pass that magnifies less than this, compared with the first, shows nothing new.
+/// Minimum magnification relative to the first pass.
 const LEAST_GAIN: f32 = 1.2;
-/// Sides of the coarse picture's cells.
+/// Side of the coarse image's cells, in pixels.
 const CELL: usize = 4;
-/// More groups of cells than this are noise.
+/// Maximum number of groups of cells; more are noise.
 const MOST_GROUPS: usize = 256;
 
 impl Search {
-    /// Runs the `first` pass, which marks the cells of its grid where heat maps are high, and lists what is worth a
-    /// closer look: parts with heat before parts with nothing but detail.
+    /// Runs the `first` pass, which marks the cells with high values of heat maps, and lists the regions for a second pass:
+    /// those of heat maps before those of detail only.
     pub fn begin(
         &self,
         params: &HighResolutionPoseEstimationParams,
@@ -67,7 +67,7 @@ impl Search {
         regions.clear();
         detail.take_regions(size, MOST_GROUPS, regions);
         grow(regions, params.percentage_around_crop, size);
-        // Where there is much of it, tiles of it follow, magnified as far as small persons need.
+        // Large regions are followed by their tiles, at the magnification that small persons need.
         let tile = (params.second_pass_height / MOST_MAGNIFIED).max(CELL);
         let tiles = |region: &Region| {
             let is_large = region.width.max(region.height) > 2 * tile;
@@ -80,8 +80,8 @@ impl Search {
         Ok(())
     }
 
-    /// Leaves as many looks as there may be: half of them around the persons of the frame before, and the others; both in turn.
-    /// Says whether that is all of them.
+    /// Selects the regions within the budget: half of them around the persons of the last frame, the others elsewhere; both
+    /// in rotation. Returns whether all regions are selected.
     pub fn choose(
         &self,
         params: &HighResolutionPoseEstimationParams,
@@ -116,20 +116,20 @@ impl Search {
 }
 
 impl Look {
-    /// How many pixels the network sees.
+    /// Returns the number of pixels of the network's input.
     fn pixels(&self) -> usize {
         self.height * (self.height * self.region.width).div_ceil(self.region.height.max(1))
     }
 }
 
-/// What there is time for.
+/// Budget of an image.
 struct Share {
     looks: usize,
     pixels: usize,
 }
 
 impl Share {
-    /// How many of `looks`, from the first on, there is time for; one at least, if any.
+    /// Returns the number of `looks` within the budget, from the first; at least one, if any.
     fn taken(&self, looks: &[Look]) -> usize {
         let mut pixels = 0;
         let fitting = looks.iter().take(self.looks).take_while(|look| {
@@ -140,7 +140,7 @@ impl Share {
     }
 }
 
-/// Leaves those whose turn it is.
+/// Keeps the regions whose turn it is.
 fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
     if looks.is_empty() {
         return;
@@ -151,7 +151,7 @@ fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
     *turn = begin + looks.len();
 }
 
-/// Marks the cells of the coarse picture in which brightness differs.
+/// Marks the cells of the coarse image with a high range of brightness.
 fn mark_detail(
     view: ImageView<'_>,
     params: &HighResolutionPoseEstimationParams,

@@ -19,11 +19,11 @@ use super::fit::TrainableWords;
 use super::{FILE, WordParams};
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 
-/// What the training minimises: the cross-entropy.
+/// Training objective: cross-entropy.
 pub(super) struct WordObjective<'a, K: TrainableWords> {
     pub params: &'a K::Params,
     pub classes: Classes,
-    /// Whether sound and cepstra are changed at random.
+    /// Whether audio and cepstra are augmented at random.
     pub augment: bool,
 }
 
@@ -77,7 +77,7 @@ impl<K: TrainableWords> Objective for WordObjective<'_, K> {
     }
 }
 
-/// Makes what stands for sound an [`Audio`] of one channel.
+/// Converts an audio input to an [`Audio`] of one channel.
 struct ToSound {
     sample_rate: u32,
 }
@@ -90,7 +90,7 @@ impl Augment for ToSound {
     }
 }
 
-/// Makes sound a [`Timeseries`] of its cepstra.
+/// Converts audio to a [`Timeseries`] of its cepstra.
 struct ToCepstra {
     front_end: FrontEnd,
     coefficients: usize,
@@ -110,11 +110,13 @@ fn sound_of(sample: &Sample) -> Result<Sound<'_>> {
     match sample.data.first() {
         Some(Value::Audio(audio)) => Ok(Sound::Audio(audio)),
         Some(Value::Timeseries(series)) => Ok(Sound::Series(series)),
-        _ => Err(Error::invalid_input("the sample has no sound; give Audio or a Timeseries")),
+        _ => Err(Error::invalid_input(
+            "the sample has no audio; the first input must be Audio or a Timeseries",
+        )),
     }
 }
 
-/// Cepstra as the network takes them.
+/// Batches of cepstra in the network's input layout.
 pub(super) struct CepstraBatches {
     front_end: FrontEnd,
     coefficients: usize,

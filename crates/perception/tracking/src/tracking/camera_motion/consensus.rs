@@ -1,19 +1,19 @@
-//! The motion that most points agree on.
+//! The motion that most points agree with.
 
 use opendr_vision::Similarity;
 
 use super::PlaneMotion;
 
-/// Fewer points tell nothing.
+/// Minimum number of points.
 const FEWEST: usize = 8;
 const ROUNDS: usize = 6;
-/// Points agree within so many parts of the picture's longer side.
+/// Tolerance of agreement, as a share of the image's longer side.
 const AGREEMENT: f32 = 1.0 / 320.0;
-/// In the first round, which knows only a shift, the tolerance is so many times larger: turns move the corners of a picture
-/// more than its middle.
+/// Factor of the tolerance in the first round, which fits a shift only: rotations move the corners of an image more than
+/// its centre.
 const FIRST: f32 = 8.0;
 
-/// Points of the frame before and where they are now.
+/// Points of the last frame and their positions in the current one.
 #[derive(Debug, Default)]
 pub(super) struct Consensus {
     pairs: Vec<[[f32; 2]; 2]>,
@@ -31,7 +31,7 @@ impl Consensus {
         self.pairs.push([from, to]);
     }
 
-    /// Begins with the median shift; then fits a similarity to the points that agree, ever more strictly.
+    /// Fits the median shift first, then a similarity to the points that agree, with a decreasing tolerance.
     pub fn motion(&mut self, size: [usize; 2]) -> PlaneMotion {
         if self.pairs.len() < FEWEST {
             return PlaneMotion::NONE;
@@ -67,7 +67,7 @@ impl Consensus {
     }
 }
 
-/// A similarity of pictures as a motion: the crop is the frame now.
+/// Converts a similarity of images to a motion: the crop is the current frame.
 fn motion_of(found: &Similarity) -> PlaneMotion {
     let scale = 1.0 / f64::from(found.scale());
     let (sine, cosine) = (-f64::from(found.angle())).sin_cos();

@@ -1,6 +1,6 @@
 use super::*;
 
-/// A texture of sums of waves with blobs: sharp corners at every place, without repeating itself soon.
+/// Returns a texture of sums of waves: sharp corners everywhere, no early repetition.
 fn level(x: f64, y: f64) -> f64 {
     let wave = |fx: f64, fy: f64, at: f64| (fx * x + fy * y + at).sin();
     let sum =
@@ -8,7 +8,7 @@ fn level(x: f64, y: f64) -> f64 {
     128.0 + 28.0 * sum
 }
 
-/// The texture as seen through `motion`: what was at p is at motion(p).
+/// Renders the texture through `motion`: a point p of it is at motion(p).
 fn picture(motion: &PlaneMotion, [width, height]: [usize; 2], object: Option<[usize; 4]>) -> Image {
     let norm = motion.scale().powi(2);
     let [sx, sy] = motion.map([0.0, 0.0]);
@@ -28,7 +28,7 @@ fn picture(motion: &PlaneMotion, [width, height]: [usize; 2], object: Option<[us
     Image::from_rgb8(samples, width, height).unwrap()
 }
 
-/// The largest distance between two motions over a picture, pixels.
+/// Returns the largest distance between two motions over an image, in pixels.
 fn distance(one: &PlaneMotion, other: &PlaneMotion, [width, height]: [usize; 2]) -> f64 {
     let corners = [[0, 0], [width, 0], [0, height], [width, height]].map(|corner| corner.map(|at| at as f64));
     let apart = corners.map(|corner| {
@@ -56,7 +56,7 @@ fn shifts_turns_and_scales_are_found() {
 }
 
 #[test]
-fn what_moves_by_itself_does_not_count() {
+fn moving_objects_are_ignored() {
     let (size, true_motion) = ([640, 480], PlaneMotion::new([1.0, 0.0], [6.0, 2.0]));
     let mut camera = CameraMotion::default();
     let object = SoundBox { corners: [100.0, 100.0, 380.0, 420.0], confidence: 1.0, index: 0 };
@@ -66,7 +66,7 @@ fn what_moves_by_itself_does_not_count() {
 }
 
 #[test]
-fn nothing_seen_is_no_motion() {
+fn images_without_corners_have_no_motion() {
     let flat = |grey: u8, [width, height]: [usize; 2]| {
         Image::from_rgb8(vec![grey; 3 * width * height], width, height).unwrap()
     };
