@@ -180,7 +180,11 @@ fn wrong_inputs_are_refused() {
     let unknown = opendr_tensor { name: c"image".as_ptr(), ..good };
     refused(call(&[unknown]), OPENDR_INVALID_INPUT, "no input \"image\"; it takes clip");
     refused(call(&[opendr_tensor { name: c"\xff".as_ptr(), ..good }]), OPENDR_INVALID_INPUT, "not UTF-8");
-    refused(call(&[opendr_tensor { axes: 3, ..good }]), OPENDR_INVALID_INPUT, "elements do not match a tensor");
+    refused(
+        call(&[opendr_tensor { axes: 3, ..good }]),
+        OPENDR_INVALID_INPUT,
+        "elements do not match a tensor",
+    );
     refused(call(&[opendr_tensor { length: 5, ..good }]), OPENDR_INVALID_INPUT, "5 elements");
     refused(call(&[opendr_tensor { numbers: null(), ..good }]), OPENDR_INVALID_INPUT, "numbers of a tensor");
     refused(call(&[opendr_tensor { shape: null(), ..good }]), OPENDR_INVALID_INPUT, "shape of a tensor");
