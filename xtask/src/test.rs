@@ -82,8 +82,9 @@ fn check_all(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     })
 }
 
-/// Checks the format, the terms, the layers, the lints of every combination of features that no test builds, and the documentation. All of them use the same
-/// features of the dependencies, so that nothing is checked twice: devices and Zenoh are on, and the whole workspace is selected.
+/// Checks the format, the terms, the layers, the lints of every combination of features that no test builds, and the documentation. The
+/// lints and the documentation use the same features of the dependencies, so that nothing is checked twice: devices and Zenoh are on,
+/// and the whole workspace is selected.
 fn check_sources(checks: &Checks, tree: Option<&Tree>) -> Result<()> {
     let sources = tree.map(|tree| tree.of(is_source, &[]));
     let live = |name, command: &mut Command| checks.run(name, sources, Output::Live, None, command);
