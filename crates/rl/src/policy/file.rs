@@ -233,14 +233,14 @@ mod tests {
         let head = Head::stochastic(&spec.action).unwrap();
         let mut policy = Policy::new(&spec, head, &NetworkConfig::default(), Some(10.0)).unwrap();
         policy.initialise(Beginning::Orthogonal(0.01), -0.5, &mut Random::new(1));
-        let mut seen = vec![1.0; 36 * 36 + 3];
-        seen[36 * 36] = 0.0;
-        policy.encoder.learn(&seen);
+        let mut observation = vec![1.0; 36 * 36 + 3];
+        observation[36 * 36] = 0.0;
+        policy.encoder.learn(&observation);
         policy
     }
 
     #[test]
-    fn comes_back_whole() {
+    fn is_restored_from_its_bytes() {
         let policy = policy();
         let bytes = policy.to_bytes().unwrap();
         assert!(Policy::from_bytes(&bytes).unwrap() == policy);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn damage_is_told() {
+    fn damage_is_detected() {
         let bytes = policy().to_bytes().unwrap();
         for cut in (0..900).chain([bytes.len() - 1]) {
             assert!(Policy::from_bytes(&bytes[..cut]).is_err(), "{cut}");
