@@ -234,7 +234,7 @@ mod tests {
             error.to_string()
         };
         assert!(message("CartPole-v7").ends_with("the newest is \"CartPole-v1\""));
-        assert!(message("cartpol-v1").ends_with("there is CartPole-v1"));
+        assert!(message("cartpol-v1").ends_with("available: CartPole-v1"));
         assert!(message("Walker").contains("Pendulum-v1"));
         assert!(message(&"x".repeat(1000)).contains("Pendulum-v1"));
     }

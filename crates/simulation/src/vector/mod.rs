@@ -165,7 +165,7 @@ fn check_count(count: usize) -> Result<usize> {
     if (1..=MAX).contains(&count) {
         return Ok(count);
     }
-    Err(Error::invalid_param(format!("the number of environments is {count}; give 1 to {MAX}")))
+    Err(Error::invalid_param(format!("{count} environments; give 1 to {MAX}")))
 }
 
 /// Checks the sizes of the arguments of a reset.
