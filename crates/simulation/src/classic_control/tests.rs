@@ -7,10 +7,10 @@ use crate::{Registered, make};
 /// Gymnasium 1.4: `make(id).reset(seed=42)`.
 #[test]
 fn initial_states_match_gymnasium() {
-    for (id, wanted) in FIRST {
-        let mut observation = vec![0.0; wanted.len()];
+    for (id, expected) in FIRST {
+        let mut observation = vec![0.0; expected.len()];
         make(id).unwrap().reset(Some(42), &ParamMap::new(), &mut observation).unwrap();
-        assert_eq!(observation, *wanted, "{id}");
+        assert_eq!(observation, *expected, "{id}");
     }
 }
 

@@ -194,30 +194,30 @@ fn forms_change_spaces_only() {
     assert!(bytes.0.spec().observation.contains(&bytes.1));
 
     let (mut chosen, mut observation) = empty(CorridorForm { discrete: true, ..Default::default() });
-    let (mut told, _) = empty(CorridorForm::default());
+    let (mut kinematic, _) = empty(CorridorForm::default());
     chosen.step(&[6.0], &mut observation).unwrap();
-    told.step(&[-1.0, -1.0], &mut observation).unwrap();
-    assert_eq!((chosen.position(), chosen.yaw()), (told.position(), told.yaw()));
+    kinematic.step(&[-1.0, -1.0], &mut observation).unwrap();
+    assert_eq!((chosen.position(), chosen.yaw()), (kinematic.position(), kinematic.yaw()));
     assert!(
         chosen.step(&[7.0], &mut observation).is_err()
-            && told.step(&[f32::NAN, 0.0], &mut observation).is_err()
+            && kinematic.step(&[f32::NAN, 0.0], &mut observation).is_err()
     );
 }
 
 /// Without wind, a dynamic drone arrives where a kinematic one does.
 #[test]
 fn dynamic_drones_reach_their_goals() {
-    let (mut flown, mut observation) = empty(CorridorForm { dynamics: true, ..Default::default() });
-    let (mut told, _) = empty(CorridorForm::default());
+    let (mut dynamic, mut observation) = empty(CorridorForm { dynamics: true, ..Default::default() });
+    let (mut kinematic, _) = empty(CorridorForm::default());
     for step in 0..15 {
         let action = [0.5 * ((step % 3) as f32 - 1.0), if step % 4 < 2 { 0.4 } else { -0.4 }];
-        flown.step(&action, &mut observation).unwrap();
-        told.step(&action, &mut observation).unwrap();
+        dynamic.step(&action, &mut observation).unwrap();
+        kinematic.step(&action, &mut observation).unwrap();
     }
     let away: Vec<_> =
-        flown.position().into_iter().zip(told.position()).map(|(a, b)| (a - b).abs()).collect();
+        dynamic.position().into_iter().zip(kinematic.position()).map(|(a, b)| (a - b).abs()).collect();
     assert!(away[0] < 2.0 && away[1] < 1.5 && away[2] < 0.3, "{away:?}");
-    assert!((flown.yaw() - told.yaw()).abs() < 0.25, "{} {}", flown.yaw(), told.yaw());
+    assert!((dynamic.yaw() - kinematic.yaw()).abs() < 0.25, "{} {}", dynamic.yaw(), kinematic.yaw());
 }
 
 #[test]
