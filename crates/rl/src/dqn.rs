@@ -99,7 +99,7 @@ impl DqnConfig {
 }
 
 impl Dqn {
-    /// Creates a learner for environments with this specification, on one thread.
+    /// Creates an algorithm for environments with this specification, on one thread.
     ///
     /// # Errors
     /// `InvalidParam` for settings out of range, `Unsupported` for actions that are not one discrete choice and for recurrent

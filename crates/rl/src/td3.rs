@@ -116,7 +116,7 @@ impl Td3Config {
 }
 
 impl Td3 {
-    /// Creates a learner for environments with this specification, on one thread.
+    /// Creates an algorithm for environments with this specification, on one thread.
     ///
     /// # Errors
     /// `InvalidParam` for settings out of range, `Unsupported` for actions that are not a bounded box and for recurrent networks.

@@ -107,7 +107,7 @@ impl SacConfig {
 }
 
 impl Sac {
-    /// Creates a learner for environments with this specification, on one thread.
+    /// Creates an algorithm for environments with this specification, on one thread.
     ///
     /// # Errors
     /// `InvalidParam` for settings out of range, `Unsupported` for actions that are not a bounded box and for recurrent networks.

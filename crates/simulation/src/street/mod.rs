@@ -1,7 +1,7 @@
 //! Random street scenes for a lidar on a car: cars, pedestrians, trucks, walls, poles, trees and hedges on inclined ground, with
 //! the ground truth of the objects.
 //!
-//! The data is synthetic, and the data sets say so. Its geometry is KITTI's (A. Geiger et al., "Are we ready for autonomous
+//! The data is synthetic. Its geometry is KITTI's (A. Geiger et al., "Are we ready for autonomous
 //! driving?", CVPR 2012): sensor, height above ground, calibration, sizes of cars, levels of occlusion.
 
 mod car_body;

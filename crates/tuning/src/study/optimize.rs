@@ -85,7 +85,7 @@ impl Study {
     /// Runs trials until the budget is used up and no paused trial should be resumed. `after` is called with the study
     /// after every trial, for instance to print a table, and may stop the study.
     ///
-    /// An objective that returns an error or panics fails its trial; the study goes on.
+    /// An objective that returns an error or panics fails its trial; the study continues.
     ///
     /// # Errors
     /// The error of the last trial when too many fail in a row, after all are recorded; `Io` and `Format` of the storage.
