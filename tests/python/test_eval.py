@@ -1,4 +1,4 @@
-"""`opendr eval`, `score` and `data` from outside, beside pycocotools."""
+"""`opendr eval`, `score` and `data`, compared with pycocotools."""
 
 import contextlib
 import io
@@ -31,7 +31,7 @@ def coco128(shared):
 
 @pytest.fixture(scope="module")
 def evaluated(opendr, coco128, tmp_path_factory):
-    """The outcome of CenterNet on all pictures, and the folder that it was written into."""
+    """The outcome of CenterNet on all images, and the folder that it was written into."""
     folder = tmp_path_factory.mktemp("evaluated")
     return json.loads(done(opendr.run("eval", "centernet", coco128, "--out", folder, "--json", "--quiet"))), folder
 
@@ -59,7 +59,7 @@ def test_eval_gives_pycocotools_numbers(coco128, evaluated):
     assert outcome["scalars"]["map50"] > 0.5
     assert json.loads((folder / "report.json").read_text())["scalars"] == outcome["scalars"]
     assert (folder / "precision_recall.svg").read_text().startswith("<svg")
-    # 24 samples, each as it should be and as it was answered, six pictures in a row.
+    # 24 samples, each with ground truth and prediction, six images per row.
     worst, answers = (cv2.imread(str(folder / name)) for name in ["worst.png", "answers.png"])
     assert worst.shape == answers.shape and (worst != answers).any()
 

@@ -1,4 +1,4 @@
-"""Policies by the command: trained, resumed, measured, filmed."""
+"""Policies with the command: training, resuming, evaluation, video."""
 
 import json
 

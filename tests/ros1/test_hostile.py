@@ -1,4 +1,4 @@
-"""Peers that talk nonsense: the node tells of it, keeps its memory and goes on."""
+"""Peers that send invalid data: the node reports it, bounds its memory and continues."""
 
 import socket
 import struct
@@ -12,7 +12,7 @@ from conftest import STRING, until
 
 
 class FakePublisher:
-    """Registers a topic and answers whoever connects with given bytes."""
+    """Registers a topic and sends given bytes to every connection."""
 
     def __init__(self, ros, topic, answer):
         self.answer = answer
@@ -60,7 +60,7 @@ def test_a_publisher_that_talks_nonsense(ros, answer, told):
     fake = FakePublisher(ros, topic, answer)
     assert told in taker.wait_for("problem")[0]["problem"]
     assert taker.peak_kb() < 64 << 10
-    # An honest publisher is heard all the same.
+    # A valid publisher is still received.
     ros.peer("publish", topic, "honest", 20)
     assert taker.end().having("text")[0]["text"].startswith("honest")
     ros.master.unregisterPublisher("/fake", topic, "http://127.0.0.1:%d/" % fake.api.server_address[1])

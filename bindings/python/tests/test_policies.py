@@ -1,4 +1,4 @@
-"""Policies: trained in environments of both worlds, measured, saved; what goes wrong is told."""
+"""Policies: training in environments of the toolkit and of Python, evaluation, saving, errors."""
 
 import gymnasium
 import numpy as np
