@@ -84,7 +84,7 @@ def test_broken_off_evaluation_goes_on(opendr, coco128, evaluated, tmp_path):
     assert "not complete" in output
     before = journal.read_bytes()
     again = opendr.run(*command[1:])
-    assert "going on after" in again.stderr
+    assert "resuming after" in again.stderr
     assert journal.read_bytes().startswith(before)
     scalars = json.loads((tmp_path / "report.json").read_text())["scalars"]
     assert scalars["map50"] == pytest.approx(evaluated[0]["scalars"]["map50"], abs=0.02)
@@ -176,7 +176,7 @@ def test_wrong_use_is_told(opendr, coco128, tmp_path):
         (("eval", "centernet", tmp_path / "none"), 13, "no data set at"),
         (("eval", "centernet", tmp_path), 11, "not a data set of a known format"),
         (("eval", "centernet", coco128, "--format", "nonsense"), 13, "choose one of coco"),
-        (("eval", "centernet", coco128, "--metric", "transcription"), 11, "compares with"),
+        (("eval", "centernet", coco128, "--metric", "transcription"), 11, "needs the annotations"),
         (("eval", "centernet", coco128, "--metric-param", "use_classes"), 12, "NAME=VALUE"),
         (("eval", "centernet", coco128, "--metric-param", "nonsense=1"), 12, "it has max_detections"),
         (("score", tmp_path / "none.json", coco128, "--metric", "coco_detection"), 13, "none.json"),

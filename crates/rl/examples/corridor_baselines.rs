@@ -1,4 +1,4 @@
-//! How often controllers without learning fly through the corridor, in 500 fixed worlds:
+//! Success rates of hand-written controllers in the corridor, in 500 fixed worlds:
 //! `cargo run --release -p opendr-rl --example corridor_baselines [ID [WORLDS]]`.
 
 use opendr_engine::environment::{Environment as _, ResetOptions};
@@ -14,9 +14,10 @@ fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let id = arguments.next().unwrap_or_else(|| "UavDepthCorridor-v1".to_owned());
     let episodes = arguments.next().map_or(Ok(500), |text| text.parse());
-    let episodes = episodes.map_err(|_| Error::invalid_param("the number of worlds is no whole number"))?;
+    let episodes =
+        episodes.map_err(|_| Error::invalid_param("the number of worlds is not a whole number"))?;
     let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-    println!("{id}: {} of {episodes} worlds have a way", passable(&id, &protocol)?);
+    println!("{id}: {} of {episodes} worlds are passable", passable(&id, &protocol)?);
     fly("straight", Straight, &id, &protocol)?;
     fly("by hand", Reactive::default(), &id, &protocol)?;
     fly("potential field", PotentialField::default(), &id, &protocol)

@@ -1,4 +1,4 @@
-//! Policies as ONNX models, for runtimes that know nothing of learning.
+//! Export of policies to ONNX.
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Activation, Gru, Layer, Network};
@@ -6,16 +6,16 @@ use opendr_onnx::{Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, 
 
 use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind, Policy};
 
-/// The bytes of an ONNX model of a policy's most likely actions, with everything before and behind its network: the
-/// normaliser, pictures to [0, 1], the largest score, bounds of actions.
+/// Returns the bytes of an ONNX model of a policy's most likely actions, with pre- and post-processing: normalisation of
+/// observations, scaling of images to [0, 1], argmax, bounds of actions.
 ///
-/// Its input `observation` is `[batch, numbers]`, as the environment gives them. Its output `action` is `[batch, numbers]`, as the
-/// environment takes them (int64 for choices and digits); its output `network` is what the network gave: scores, or means before
-/// they are squashed or clipped. A recurrent policy has the input `state`, `[batch, numbers]`, 0 where an episode begins, and the
-/// output `next_state`.
+/// The input `observation` is `[batch, numbers]`, as the environment returns it. The output `action` is `[batch, numbers]`, as the
+/// environment takes it (int64 for discrete and binary actions). The output `network` holds the raw outputs of the network: logits, or
+/// means before squashing or clipping. A recurrent policy also has the input `state`, `[batch, numbers]`, zero at the start of an
+/// episode, and the output `next_state`.
 ///
 /// # Errors
-/// `Unsupported` for observations with choices, or policies with layer normalisation.
+/// `Unsupported` for discrete observations and for layer normalisation.
 pub fn onnx_from_policy(policy: &Policy) -> Result<Vec<u8>> {
     let mut graph = Graph { builder: Builder::default() };
     graph.builder.reserve("action");
@@ -29,10 +29,10 @@ pub fn onnx_from_policy(policy: &Policy) -> Result<Vec<u8>> {
     let (of_gru, of_network) = parameters.split_at(policy.trunk.recurrent_parameters());
     let features = match policy.trunk.gru() {
         None => features,
-        Some(gru) => graph.remembered(gru, of_gru, &features)?,
+        Some(gru) => graph.recurrent_unit(gru, of_gru, &features)?,
     };
     let outputs = graph.network(policy.trunk.network(), of_network, features)?;
-    graph.builder.output("network", &outputs, "what the network gives", &["batch", ""])?;
+    graph.builder.output("network", &outputs, "the raw output of the network", &["batch", ""])?;
     let action = graph.action(&policy.head, &outputs)?;
     graph.builder.output("action", &action, "the most likely action", &["batch", ""])?;
     Ok(bytes_from_model(&model_from_graph(graph.builder.finish("policy"))))
@@ -47,7 +47,7 @@ impl Graph {
         self.builder.add("", operator, inputs, Kind::Float, vec![None, Some(width)])
     }
 
-    /// What the network behind the parts of an observation takes.
+    /// Adds the encoding of an observation and the networks of its images. Returns the features.
     fn features(&mut self, policy: &Policy, observation: &Wire) -> Result<Wire> {
         let encoder = &policy.encoder;
         let (mut features, mut number) = (Vec::new(), 0);
@@ -62,20 +62,20 @@ impl Graph {
                     number += part.raw.len();
                     self.normalised(raw, normaliser, number - part.raw.len(), part.raw.len())?
                 }
-                (PartKind::Picture { low, scale, .. }, _) => {
+                (PartKind::Image { low, scale, .. }, _) => {
                     let width = part.raw.len();
                     let shifted = self.add(Operator::new("Sub"), &[&raw, &Wire::scalar(*low)], width)?;
                     self.add(Operator::new("Mul"), &[&shifted, &Wire::scalar(*scale)], width)?
                 }
                 (PartKind::Choices(..), _) => {
                     return Err(Error::unsupported(
-                        "observations with choices have no ONNX form here; show them as numbers",
+                        "policies with discrete observations cannot be exported to ONNX; use a box of numbers",
                     ));
                 }
             };
             features.push(match (network, &part.kind) {
-                (Some((network, range)), PartKind::Picture { shape, .. }) => {
-                    self.pictures(network, &policy.parameters[range], *shape, encoded)?
+                (Some((network, range)), PartKind::Image { shape, .. }) => {
+                    self.image_network(network, &policy.parameters[range], *shape, encoded)?
                 }
                 _ => encoded,
             });
@@ -113,8 +113,8 @@ impl Graph {
         self.add(Operator::new("Clip"), &[&scaled, &Wire::scalar(-clip), &Wire::scalar(clip)], width)
     }
 
-    /// What a recurrent unit makes of features and `state`, as [`Gru`] has it.
-    fn remembered(&mut self, gru: &Gru, parameters: &[f32], features: &Wire) -> Result<Wire> {
+    /// Adds a recurrent unit on features and `state`, as [`Gru`] computes it.
+    fn recurrent_unit(&mut self, gru: &Gru, parameters: &[f32], features: &Wire) -> Result<Wire> {
         let (inputs, size) = (gru.inputs(), gru.size());
         let state = self.builder.input("state", Kind::Float, vec![None, Some(size)], &["batch", ""]);
         let (weights, rest) = parameters.split_at(3 * size * inputs);
@@ -142,18 +142,18 @@ impl Graph {
             gates.push(self.activation(activation, sum)?);
         }
         let [_, kept, candidate] = &gates[..] else {
-            return Err(Error::internal("a recurrent unit has three gates"));
+            return Err(Error::internal("a recurrent unit without three gates"));
         };
         // (1 - z) n + z h is n + z (h - n).
         let change = self.add(Operator::new("Sub"), &[&state, candidate], size)?;
         let change = self.add(Operator::new("Mul"), &[kept, &change], size)?;
         let next = self.add(Operator::new("Add"), &[candidate, &change], size)?;
-        self.builder.output("next_state", &next, "what is remembered", &["batch", ""])?;
+        self.builder.output("next_state", &next, "the next recurrent state", &["batch", ""])?;
         Ok(next)
     }
 
-    /// A picture through convolutions, and flat again.
-    fn pictures(
+    /// Adds the convolutions of an image and flattens the result.
+    fn image_network(
         &mut self,
         network: &Network,
         parameters: &[f32],
@@ -163,9 +163,8 @@ impl Graph {
         let sizes = shape.map(|size| size as i64);
         let reshape = Wire::ints([-1, sizes[0], sizes[1], sizes[2]]);
         let dims = vec![None, Some(shape[0]), Some(shape[1]), Some(shape[2])];
-        let picture =
-            self.builder.add("", Operator::new("Reshape"), &[&flat, &reshape], Kind::Float, dims)?;
-        self.network(network, parameters, picture)
+        let image = self.builder.add("", Operator::new("Reshape"), &[&flat, &reshape], Kind::Float, dims)?;
+        self.network(network, parameters, image)
     }
 
     fn network(&mut self, network: &Network, parameters: &[f32], from: Wire) -> Result<Wire> {
@@ -203,7 +202,7 @@ impl Graph {
                 }
                 Layer::Activation(activation, _) => self.activation(*activation, wire)?,
                 Layer::LayerNorm(_) => {
-                    return Err(Error::unsupported("a layer normalisation has no ONNX form here"));
+                    return Err(Error::unsupported("layer normalisation cannot be exported to ONNX"));
                 }
             };
         }
@@ -311,5 +310,7 @@ fn row(numbers: Vec<f32>) -> Result<Wire> {
 
 fn constant(dims: Vec<usize>, numbers: &[f32]) -> Result<Wire> {
     let array = Array::new(dims, Data::Float(numbers.to_vec()));
-    array.map(Wire::constant).ok_or_else(|| Error::internal("a constant of another size"))
+    array
+        .map(Wire::constant)
+        .ok_or_else(|| Error::internal("the size of a constant does not match its shape"))
 }

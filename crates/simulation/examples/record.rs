@@ -1,6 +1,6 @@
-//! Films an episode: `cargo run --release -p opendr-simulation --example record [ID [FILE [SEED]]]`.
+//! Records an episode: `cargo run --release -p opendr-simulation --example record [ID [FILE [SEED]]]`.
 //!
-//! The drone is flown by hand-written rules, everything else by chance. The file ends in `.gif`, `.mp4` or `.png`.
+//! The drone has a hand-written controller, other environments random actions. The file ends in `.gif`, `.mp4` or `.png`.
 
 use opendr_engine::environment::ResetOptions;
 use opendr_engine::{Error, Random, Result};
@@ -12,7 +12,7 @@ fn main() -> Result<()> {
     let id = arguments.next().unwrap_or_else(|| "UavDepthCorridor-v1".to_owned());
     let file = arguments.next().unwrap_or_else(|| "episode.gif".to_owned());
     let seed = arguments.next().map_or(Ok(1_000_000), |text| text.parse());
-    let seed = seed.map_err(|_| Error::invalid_param("the seed is no whole number"))?;
+    let seed = seed.map_err(|_| Error::invalid_param("the seed is not a whole number"))?;
 
     let mut environment = make(&id)?;
     let spec = environment.spec().clone();
@@ -23,8 +23,8 @@ fn main() -> Result<()> {
     environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
     let mut steps = 0;
     loop {
-        let picture = environment.render()?;
-        film.write(&picture.ok_or_else(|| Error::unsupported(format!("{id} has no pictures")))?)?;
+        let image = environment.render()?;
+        film.write(&image.ok_or_else(|| Error::unsupported(format!("{id} cannot be rendered")))?)?;
         match action.len() {
             2 => {
                 sight.read(&spec.observation, &seen)?;
@@ -35,7 +35,7 @@ fn main() -> Result<()> {
         let step = environment.step(&action, &mut seen)?;
         steps += 1;
         if step.is_over() {
-            film.write(&environment.render()?.ok_or_else(|| Error::internal("a picture was lost"))?)?;
+            film.write(&environment.render()?.ok_or_else(|| Error::internal("an image is missing"))?)?;
             println!("{file}: {steps} steps of {id}, {:?}", step.info.iter().collect::<Vec<_>>());
             return film.finish();
         }

@@ -1,4 +1,4 @@
-//! What a small world of a few numbers is, and the environment around it.
+//! The trait for environments whose state is a few numbers, and the environment around it.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -9,52 +9,52 @@ use opendr_engine::{Error, Result};
 
 use crate::{NumpyRandom, Registered};
 
-/// What a step brought beside the next state.
+/// Result of a step, besides the next state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Outcome {
-    /// The reward.
+    /// Reward.
     pub reward: f64,
-    /// Whether the task ended.
+    /// Whether the episode terminated.
     pub terminated: bool,
 }
 
-/// The equations of a world whose state is a few numbers.
+/// Dynamics of an environment whose state is a few numbers.
 pub trait Dynamics: Clone + Send + Sized + 'static {
     /// Name and version.
     const ID: &'static str;
-    /// What a user may set.
+    /// Parameters of the environment.
     type Params: Params;
-    /// The state: `[f64; N]`.
+    /// Type of the state: `[f64; N]`.
     type State: AsRef<[f64]> + AsMut<[f64]> + Copy + Default + Send;
 
-    /// The world with these parameters.
+    /// Creates the dynamics.
     fn new(params: &Self::Params) -> Self;
 
-    /// Spaces and limits.
+    /// Returns spaces and limits.
     fn spec(&self) -> EnvironmentSpec;
 
-    /// The state in which an episode begins.
+    /// Returns an initial state.
     ///
     /// # Errors
-    /// `InvalidParam` for options that do not fit.
+    /// `InvalidParam` for invalid options.
     fn initial(&self, random: &mut NumpyRandom, options: &ResetOptions) -> Result<Self::State>;
 
-    /// Takes one step. `action` is of the action space, but for numbers of a box beyond its bounds, which are clipped.
+    /// Advances the state by one step. `action` is in the action space, except that box actions may exceed the bounds and are clipped.
     fn advance(&self, state: &mut Self::State, action: &[f32], random: &mut NumpyRandom) -> Outcome;
 
-    /// Writes what is seen of a state.
+    /// Writes the observation of a state.
     fn observe(&self, state: &Self::State, observation: &mut [f32]);
 
-    /// A picture of a state, where there is one.
+    /// Renders a state, if the environment can be rendered.
     ///
     /// # Errors
-    /// None that states of the world have.
+    /// None for states of the environment.
     fn picture(&self, _state: &Self::State) -> Result<Option<Image>> {
         Ok(None)
     }
 }
 
-/// The environment around [`Dynamics`], without a time limit.
+/// The environment of a [`Dynamics`], without a time limit.
 #[derive(Debug, Clone)]
 pub struct Classic<D: Dynamics> {
     dynamics: D,
@@ -64,21 +64,21 @@ pub struct Classic<D: Dynamics> {
 }
 
 impl<D: Dynamics> Classic<D> {
-    /// The state, after a reset.
+    /// Returns the state; none before the first reset.
     pub fn state(&self) -> Option<&[f64]> {
         self.state.as_ref().map(AsRef::as_ref)
     }
 
-    /// Goes on from another state.
+    /// Sets the state.
     ///
     /// # Errors
-    /// `InvalidInput` for a wrong count, and for numbers that are not finite.
+    /// `InvalidInput` for a wrong length, and for numbers that are not finite.
     pub fn set_state(&mut self, numbers: &[f64]) -> Result<()> {
         let mut state = D::State::default();
         let own = state.as_mut();
         if numbers.len() != own.len() || numbers.iter().any(|number| !number.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "a state of {} is {} finite numbers, not {numbers:?}",
+                "the state of {} has {} finite numbers, not {numbers:?}",
                 D::ID,
                 own.len()
             )));
@@ -177,21 +177,22 @@ pub(crate) fn check_length(spec: &EnvironmentSpec, observation: &[f32]) -> Resul
     Err(Error::invalid_input(format!("an observation of {} has {wanted} numbers, not {count}", spec.id)))
 }
 
-/// Gymnasium's `maybe_parse_reset_bounds`: `low` and `high` of the initial state.
+/// Returns `low` and `high` of the initial state: Gymnasium's `maybe_parse_reset_bounds`.
 pub(super) fn reset_bounds(options: &ResetOptions, low: f64, high: f64) -> Result<(f64, f64)> {
     let (low, high) = (reset_number(options, "low", low)?, reset_number(options, "high", high)?);
     if low > high {
         return Err(Error::invalid_param(format!(
-            "option low is {low}, above high, which is {high}; exchange them"
+            "option low is {low}, greater than high = {high}; swap them"
         )));
     }
     Ok((low, high))
 }
 
-/// An option that is a finite number.
+/// Returns an option that must be a finite number.
 pub(super) fn reset_number(options: &ResetOptions, name: &str, default: f64) -> Result<f64> {
     let Some(value) = options.get(name) else { return Ok(default) };
-    value.as_float().filter(|number| number.is_finite()).ok_or_else(|| {
-        Error::invalid_param(format!("option {name} is {value}, but has to be a finite number"))
-    })
+    value
+        .as_float()
+        .filter(|number| number.is_finite())
+        .ok_or_else(|| Error::invalid_param(format!("option {name} is {value}; give a finite number")))
 }

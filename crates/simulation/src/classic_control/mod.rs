@@ -1,4 +1,4 @@
-//! Gymnasium's classic control: the same states, rewards and endings as its version 1.4.
+//! Classic control environments with the states, rewards and ends of episodes of Gymnasium 1.4.
 
 mod acrobot;
 pub(crate) mod cart_pole;

@@ -1,4 +1,4 @@
-//! A car in a valley whose motor is too weak for the hill (Moore, Efficient memory-based learning, 1990).
+//! Mountain car: a car in a valley with a motor too weak for the hill (Moore, Efficient memory-based learning, 1990).
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -10,18 +10,18 @@ use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
 
-/// `MountainCar-v0`: accelerate left (0), not at all (1), right (2).
+/// `MountainCar-v0`: accelerate left (0), not at all (1), or right (2).
 pub type MountainCar = Classic<MountainCarDynamics>;
 
-/// What a user may set of the mountain cars.
+/// Parameters of the mountain cars.
 #[derive(Debug, Clone, Params)]
 pub struct MountainCarParams {
-    /// The speed that the car needs at the goal.
+    /// Minimum velocity at the goal.
     #[param(default = 0.0, range = -0.07..=0.07)]
     pub goal_velocity: f64,
 }
 
-/// The equations: position, speed.
+/// Dynamics of [`MountainCar`]. State: position, velocity.
 #[derive(Debug, Clone)]
 pub struct MountainCarDynamics {
     goal_velocity: f64,
@@ -33,8 +33,8 @@ const GOAL: f64 = 0.5;
 const FORCE: f64 = 0.001;
 const GRAVITY: f64 = 0.0025;
 
-/// Position and speed, of both cars.
-pub(super) fn seen() -> Space {
+/// Returns the observation space of both cars: position and velocity.
+pub(super) fn observation_space() -> Space {
     let low = vec![POSITIONS.0 as f32, -MAX_SPEED as f32];
     Space::Box {
         low,
@@ -54,7 +54,7 @@ impl Dynamics for MountainCarDynamics {
     }
 
     fn spec(&self) -> EnvironmentSpec {
-        EnvironmentSpec::new(Self::ID, seen(), Space::discrete(3))
+        EnvironmentSpec::new(Self::ID, observation_space(), Space::discrete(3))
             .with_max_episode_steps(200)
             .with_reward_threshold(-110.0)
             .with_reward_range(-1.0, -1.0)

@@ -1,4 +1,4 @@
-//! The mountain car with a continuous motor.
+//! The mountain car with continuous actions.
 
 use opendr_engine::Result;
 use opendr_engine::data::Image;
@@ -13,10 +13,9 @@ use crate::sine_cosine::sine_cosine;
 /// `MountainCarContinuous-v0`: a force in [-1, 1], which costs a tenth of its square.
 pub type MountainCarContinuous = Classic<MountainCarContinuousDynamics>;
 
-/// The equations: position, speed, and 1 for the first state of an episode.
+/// Dynamics of [`MountainCarContinuous`]. State: position, velocity, and 1 for the initial state.
 ///
-/// Gymnasium keeps that first state in double precision, rounds every later one to single and computes with what it
-/// has; so does this.
+/// As in Gymnasium, the initial state has double precision and every later one is rounded to single precision.
 #[derive(Debug, Clone)]
 pub struct MountainCarContinuousDynamics {
     goal_velocity: f64,
@@ -36,7 +35,7 @@ impl Dynamics for MountainCarContinuousDynamics {
     }
 
     fn spec(&self) -> EnvironmentSpec {
-        EnvironmentSpec::new(Self::ID, seen(), Space::symmetric(&[1.0]))
+        EnvironmentSpec::new(Self::ID, observation_space(), Space::symmetric(&[1.0]))
             .with_max_episode_steps(999)
             .with_reward_threshold(90.0)
             .with_reward_range(-0.1, 100.0)
@@ -79,7 +78,7 @@ impl Dynamics for MountainCarContinuousDynamics {
     }
 }
 
-/// Rounded to single precision: of one operation on singles, that is the single result.
+/// Rounds to single precision; for one operation on singles, this is the single-precision result.
 fn single(number: f64) -> f64 {
     f64::from(number as f32)
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::*;
 use crate::{Asha, Direction, Distribution, Median, RandomSearch, Storage, TrialRecord};
 
-/// The loss falls with the units to what the configuration is worth, and some for the seed.
+/// The loss falls with the units towards the value of the configuration, plus noise of the seed.
 struct Slope<'a> {
     worth: f64,
     done: u64,
@@ -48,15 +48,15 @@ fn tuner<'a>(study: Study, folder: &Path, spent: &'a AtomicU64) -> Tuner<'a> {
     Tuner::new(study, space, Plan::at(vec![1, 3, 9]).unwrap(), folder, begin).unwrap()
 }
 
-/// Units that a study's trials have come to.
+/// Sum of the units of all trials.
 fn units(study: &StudyRecord) -> u64 {
     study.trials.iter().filter_map(|trial| trial.last_report()).map(|(step, _)| step as u64).sum()
 }
 
 /// State, values, and reports by step.
-type Told = (TrialState, Vec<f64>, Vec<(i64, f64)>);
+type TrialSummary = (TrialState, Vec<f64>, Vec<(i64, f64)>);
 
-fn told(study: &StudyRecord) -> Vec<Told> {
+fn summaries(study: &StudyRecord) -> Vec<TrialSummary> {
     let of = |trial: &TrialRecord| {
         (
             trial.state,
@@ -68,12 +68,12 @@ fn told(study: &StudyRecord) -> Vec<Told> {
 }
 
 #[test]
-fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
+fn promoted_trials_resume_and_complete_after_all_seeds() {
     let (folder, spent) = (folder("seeds"), AtomicU64::new(0));
     let tuner = tuner(study(), &folder, &spent);
     assert_eq!(tuner.run(&Budget::total(60), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
     let record = tuner.study().snapshot();
-    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was done twice");
+    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was repeated");
     assert!(units(&record) < 60 * 27 / 5, "{}", units(&record));
     assert!(record.complete().count() > 0);
     for trial in record.complete() {
@@ -81,8 +81,8 @@ fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
     }
     let best = record.best().unwrap();
     let noise = tuner.plan.seeds().iter().map(|seed| (seed % 1000) as f64 * 1e-5).sum::<f64>() / 3.0;
-    let wanted = best.params["x"].number + noise + 1.0 / 9.0;
-    assert!((best.value().unwrap() - wanted).abs() < 1e-12, "the mean of three seeds");
+    let expected = best.params["x"].number + noise + 1.0 / 9.0;
+    assert!((best.value().unwrap() - expected).abs() < 1e-12, "the mean of three seeds");
     let again = tuner.reevaluate().unwrap().unwrap();
     assert_eq!((again.number, again.chosen_by, again.values.len()), (best.number, best.value().unwrap(), 3));
     assert_ne!(again.mean(), again.chosen_by);
@@ -90,7 +90,7 @@ fn what_is_promoted_goes_on_and_counts_after_all_seeds() {
 }
 
 #[test]
-fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
+fn an_interrupted_study_gives_the_result_of_an_uninterrupted_one() {
     let (folder, spent, other) = (folder("interrupted"), AtomicU64::new(0), AtomicU64::new(0));
     let whole = tuner(study(), &folder.join("whole"), &other);
     whole.run(&Budget::total(20), |_, _| Progress::Continue).unwrap();
@@ -108,7 +108,7 @@ fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
         };
         runs += 1;
         if tuner.run(&Budget::total(20), three).unwrap() == Tuning::Finished {
-            assert_eq!(told(&tuner.study().snapshot()), told(&whole.study().snapshot()));
+            assert_eq!(summaries(&tuner.study().snapshot()), summaries(&whole.study().snapshot()));
             break;
         }
         assert_eq!(
@@ -121,7 +121,7 @@ fn an_interrupted_study_goes_on_as_if_it_had_not_been() {
         );
     }
     assert!(runs > 8, "{runs}");
-    assert_eq!(spent.load(Ordering::Relaxed), other.load(Ordering::Relaxed), "a unit was done twice");
+    assert_eq!(spent.load(Ordering::Relaxed), other.load(Ordering::Relaxed), "a unit was repeated");
     fs::remove_dir_all(folder).unwrap();
 }
 
@@ -135,11 +135,11 @@ fn a_study_without_a_complete_trial_finishes_the_best() {
     let (best, other) = if worth(0) < worth(1) { (0, 1) } else { (1, 0) };
     assert_eq!(record.trials[best].state, TrialState::Complete);
     assert_eq!((record.trials[other].is_paused(), record.trials.len()), (true, 2));
-    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was done twice");
+    assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was repeated");
     fs::remove_dir_all(folder).unwrap();
 }
 
-/// Stops, as by Ctrl-C, on its way to 9, until it is let go on.
+/// Stops, as by Ctrl-C, on its way to 9, until it is released.
 struct Stopping<'a>(Slope<'a>, &'a AtomicBool);
 
 impl Training for Stopping<'_> {
@@ -157,7 +157,7 @@ impl Training for Stopping<'_> {
 }
 
 #[test]
-fn a_training_that_is_stopped_goes_on_from_its_last_point() {
+fn a_stopped_training_resumes_from_its_last_point() {
     let (folder, spent, on) = (folder("halted"), AtomicU64::new(0), AtomicBool::new(false));
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
     let space = SearchSpace::new().with("x", Distribution::float(0.0, 1.0).unwrap()).unwrap();
@@ -178,7 +178,7 @@ fn a_training_that_is_stopped_goes_on_from_its_last_point() {
 }
 
 #[test]
-fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
+fn trials_of_dead_workers_resume_from_their_checkpoints() {
     let (folder, spent) = (folder("dead"), AtomicU64::new(0));
     let study = Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap();
     let tuner = tuner(study.with_abandoned_after(Duration::from_millis(50)), &folder, &spent);
@@ -196,7 +196,7 @@ fn what_a_dead_worker_was_at_goes_on_from_its_checkpoint() {
 }
 
 #[test]
-fn what_is_stopped_leaves_no_checkpoints() {
+fn stopped_trials_leave_no_checkpoints() {
     let (folder, spent) = (folder("stopped"), AtomicU64::new(0));
     let study = study().with_pruner(Median { startup_trials: 3, warmup_steps: 0 });
     let tuner = tuner(study, &folder, &spent);
