@@ -48,7 +48,7 @@ def test_annotated_pictures_arrive(topic, kind, roomy, tmp_path):
         peer.advertise("/photo", COMPRESSED)
         # The node does not draw before it has discovered a subscriber.
         sending = peer.publish("/photo", COMPRESSED, [data], count=30, rate=5, background=True)
-        wait_until(lambda: seen.messages, 60, "a picture")
+        wait_until(lambda: seen.messages, 60, "an image")
         sending.result(60)
         seen.clear()
         answers.clear()

@@ -1,4 +1,4 @@
-//! Maps of classes or scores, for segmentation and heat maps.
+//! Maps of classes or scores, for segmentation and heatmaps.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -76,7 +76,7 @@ impl Heatmap {
         if expected != Some(values.len()) || shape.is_empty() || shape.len() > 8 {
             let count = values.len();
             return Err(Error::invalid_input(format!(
-                "a heat map of shape {shape:?} cannot have {count} elements; give one per element, 1 to 8 axes"
+                "a heatmap of shape {shape:?} cannot have {count} elements; give one per element, 1 to 8 axes"
             )));
         }
         let (header, classes) = (Header::default(), Classes::default());
@@ -228,7 +228,7 @@ impl TryFrom<HeatmapJson> for Heatmap {
             (None, Some(scores)) => Self::from_scores(scores, &json.shape)?,
             _ => {
                 return Err(Error::format(
-                    "a heat map has either \"labels\" or \"scores\"; give one of them",
+                    "a heatmap has either \"labels\" or \"scores\"; give one of them",
                 ));
             }
         };

@@ -372,7 +372,7 @@ impl ClassMap {
             .collect()
     }
 
-    /// Returns whether a class number is after those of the data set: for a class that it does not have.
+    /// Returns whether a class index is beyond those of the data set: the index of a class that the data set does not have.
     pub fn is_beyond(&self, class: i64) -> bool {
         !self.dataset.is_empty() && !self.matching.by_number && class >= self.dataset.len() as i64
     }

@@ -16,7 +16,7 @@ use crate::tensorflow::{ImportOptions, finish, wanted};
 /// # Inputs and outputs
 /// * Image inputs (rank 4 with 1, 3 or 4 channels) are `float32` of shape `1x3xHxW`, in the value range of the
 ///   original, also where the original has integer inputs.
-/// * Rank 4 outputs that are an image (a feature map, heat map or mask: more than one pixel high or wide, as computed
+/// * Rank 4 outputs that are an image (a feature map, heatmap or mask: more than one pixel high or wide, as computed
 ///   by a convolution) are `1xCxHxW`. Every other output has the original's shape; integers are `int64`.
 /// * Inputs and outputs have the original's names, without TensorFlow's `:0`.
 /// * An open batch size becomes 1. An open image size stays open unless [`ImportOptions::image_size`] fixes it.

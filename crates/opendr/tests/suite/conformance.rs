@@ -156,7 +156,7 @@ fn cars(shift: f32) -> BoundingBox3DList {
     [-5.0, 5.0].map(car).to_vec().into()
 }
 
-/// A heat map of smooth hills.
+/// A heatmap of smooth hills.
 fn values(step: f32) -> Heatmap {
     let values = (0..30 * 40).map(|at| (at as f32 * step).sin() + (at / 40) as f32 / 30.0).collect();
     Heatmap::from_scores(values, &[30, 40]).unwrap()

@@ -178,7 +178,7 @@ fn persons_are_known_after_references_and_others_are_not() {
     let strangers = group.boxes.iter().filter(|found| found.name == Name::from("unknown"));
     assert!(strangers.count() >= 5, "{group:#}");
 
-    // The stranger joins those that are known.
+    // The unknown person joins the known ones.
     let place = folder.0.join("more/person_new");
     fs::create_dir_all(&place).unwrap();
     fs::copy(&stranger[0], place.join("a.jpg")).unwrap();
@@ -301,7 +301,7 @@ fn mesh_lies_on_the_face_and_follows_it() {
     assert_eq!(ids(many.infer(&group).unwrap()), all);
 }
 
-/// The picture, `by` pixels further right.
+/// The image, `by` pixels further right.
 fn shifted(image: &Image, by: usize) -> Image {
     let (width, height) = (image.width(), image.height());
     let pixels = image.hwc_u8(opendr::data::PixelFormat::Rgb);

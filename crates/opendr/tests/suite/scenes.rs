@@ -57,7 +57,7 @@ fn persons_wake_it() {
         };
         let pixels = (image.width() * image.height()) as f32;
         let is_person = |one: &&BoundingBox| boxes.label(one) == Some("person");
-        // As in the data that it was trained on, persons count from half a percent of the picture on.
+        // As in the data that it was trained on, persons count from half a percent of the image on.
         let wanted = boxes.boxes.iter().filter(is_person).any(|one| one.area() > 0.005 * pixels);
         let answer = learner.infer(&Ports::one(image)).unwrap();
         let Some(Value::Category(category)) = answer.first() else { panic!("{answer:?}") };

@@ -36,7 +36,7 @@ fn boxes(learner: &mut dyn AnyLearner, image: &Image) -> BoundingBoxList {
     }
 }
 
-/// A part of a picture made smaller, each pixel the mean of those that it stands for.
+/// A downscaled part of an image, each pixel the mean of those that it replaces.
 fn shrunk(part: ImageView<'_>, scale: f32) -> (Vec<[u8; 3]>, usize) {
     let side = |long: usize| ((long as f32 * scale).round() as usize).max(1);
     let (width, height) = (side(part.width()), side(part.height()));
@@ -58,7 +58,7 @@ fn shrunk(part: ImageView<'_>, scale: f32) -> (Vec<[u8; 3]>, usize) {
 /// Class and box of an object.
 type Truth = Vec<(&'static str, [f32; 4])>;
 
-/// A picture, what was asked for in it, and where anything at all is.
+/// An image, its objects of the wanted classes, and the places of all objects.
 struct Scene {
     image: Image,
     truth: Truth,
@@ -88,7 +88,7 @@ fn scene(models: &Models) -> Scene {
             let (long, short) = (one.width.max(one.height), one.width.min(one.height));
             (long >= 100.0 && short >= 40.0).then_some((name, one))
         });
-        // Two of a picture at most, so that there are many.
+        // Two per image at most, so that there are many.
         for (name, one) in usable.take(2) {
             if truth.len() == OBJECTS {
                 break;
@@ -177,7 +177,7 @@ fn things_of_24_pixels_are_found_in_4k() {
     }
 }
 
-/// With a budget (here one that nothing exceeds), parts of tiles that have something in them are looked at side by side.
+/// With a budget (here one that nothing exceeds), parts of tiles that have something in them are processed side by side.
 #[test]
 fn parts_side_by_side_show_nearly_as_much() {
     let Some(models) = Models::find() else { return };
@@ -239,7 +239,7 @@ fn a_small_picture_is_no_other_than_without_tiles() {
     }
 }
 
-/// A bus and its passengers are larger than tiles: no piece of them is told as another.
+/// A bus and its passengers are larger than tiles: no piece of them is detected as another object.
 #[test]
 fn what_borders_cut_is_one() {
     let Some(models) = Models::find() else { return };
@@ -265,7 +265,7 @@ fn a_part_of_another_kind_is_refused() {
     assert_eq!(learner.load(&model).unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
-/// Four birds in a picture of twice the size: tiles see each as large as the network wants it.
+/// Four birds in an image of twice the size: each has in a tile the size that the network is trained on.
 #[test]
 fn classes_of_pixels_come_from_the_finest_look() {
     let Some(models) = Models::find() else { return };

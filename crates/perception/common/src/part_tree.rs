@@ -1,6 +1,6 @@
-//! Persons from heat maps and displacements: PersonLab's fast greedy decoder.
+//! Persons from heatmaps and displacements: PersonLab's fast greedy decoder.
 //!
-//! Papandreou et al., PersonLab, ECCV 2018, section 3.2, as in PoseNet: joints are peaks of heat maps, refined by
+//! Papandreou et al., PersonLab, ECCV 2018, section 3.2, as in PoseNet: joints are peaks of heatmaps, refined by
 //! short-range offsets. From the best free peak the other joints follow along a tree by mid-range displacements. The score
 //! of a person counts only joints that no better person has.
 
@@ -48,7 +48,7 @@ pub struct PartMaps<'a> {
     pub backward: &'a [f32],
 }
 
-/// A person in pixels of the network's input. The confidence of a joint is the heat map's score.
+/// A person in pixels of the network's input. The confidence of a joint is the heatmap's score.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Person {
     /// COCO's 17 joints.
@@ -68,7 +68,7 @@ pub struct PartTree {
     pub most: usize,
 }
 
-/// A peak of one heat map.
+/// A peak of one heatmap.
 #[derive(Debug, Clone, Copy)]
 pub struct Peak {
     score: f32,

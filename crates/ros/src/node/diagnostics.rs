@@ -86,7 +86,7 @@ impl Diagnostics {
             (None, 0, _) => (DiagnosticStatus::OK, "running".to_owned()),
         };
         let values = [
-            ("frames a second", format!("{:.1}", self.processing_ms.len() as f64 / seconds)),
+            ("frames per second", format!("{:.1}", self.processing_ms.len() as f64 / seconds)),
             ("processing p50 (ms)", percentile(&mut self.processing_ms, 0.5)),
             ("processing p99 (ms)", percentile(&mut self.processing_ms, 0.99)),
             ("latency p50 (ms)", percentile(&mut self.latency_ms, 0.5)),

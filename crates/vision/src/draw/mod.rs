@@ -1,4 +1,4 @@
-//! Drawing of predictions onto images: boxes with labels, skeletons, masks, heat maps, tracks.
+//! Drawing of predictions onto images: boxes with labels, skeletons, masks, heatmaps, tracks.
 
 mod bounding_boxes;
 mod canvas;

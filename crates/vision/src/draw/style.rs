@@ -14,7 +14,7 @@ pub struct Style {
     pub labels: bool,
     /// Whether labels include the score.
     pub confidences: bool,
-    /// Opacity of masks and heat maps, 0..=1.
+    /// Opacity of masks and heatmaps, 0..=1.
     pub opacity: f32,
     /// Joints below this score are not drawn.
     pub min_joint_confidence: f32,

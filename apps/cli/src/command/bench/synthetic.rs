@@ -19,7 +19,7 @@ const FRAMES: usize = 32;
 const CLIP_FRAMES: usize = 16;
 /// Boxes per frame.
 const BOXES: usize = 25;
-/// Side of a heat map in cells.
+/// Side of a heatmap in cells.
 const MAP_SIDE: usize = 224;
 /// Rings of a point cloud, and points per ring.
 const RINGS: usize = 64;
@@ -117,7 +117,7 @@ fn cloud(channels: usize) -> Result<PointCloud> {
     PointCloud::new(points, [RINGS * RING_POINTS, channels])
 }
 
-/// Returns a heat map with many peaks of different heights.
+/// Returns a heatmap with many peaks of different heights.
 fn map(rows: usize, columns: usize) -> Heatmap {
     let mut map = Heatmap::default();
     for (at, value) in map.scores_mut(&[rows, columns]).iter_mut().enumerate() {

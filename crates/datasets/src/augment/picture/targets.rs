@@ -86,7 +86,7 @@ fn map_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> Resu
     let shape: Vec<usize> = heatmap.shape().to_vec();
     let (&[height, width] | &[_, height, width]) = &shape[..] else {
         return Err(Error::unsupported(format!(
-            "a heat map of shape {shape:?} cannot be transformed together with its image; its shape must be \
+            "a heatmap of shape {shape:?} cannot be transformed together with its image; its shape must be \
             [height, width] or [classes, height, width]"
         )));
     };

@@ -37,7 +37,7 @@ pub fn top_k(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 /// Returns the source of which `x` is the flattening, if that would move elements and `x` is a single list. Searching
-/// the elements in stored order and translating the few positions is cheaper than transposing a heat map.
+/// the elements in stored order and translating the few positions is cheaper than transposing a heatmap.
 fn unflattened(ctx: &Lowering, x: &Value) -> Option<Value> {
     let source = ctx.flattened(&x.wire)?;
     let dims = x.known_dims()?;

@@ -1,4 +1,4 @@
-//! CenterNet on MobileNetV3: objects as peaks of a heat map.
+//! CenterNet on MobileNetV3: objects as peaks of a heatmap.
 //!
 //! Zhou et al., Objects as Points, 2019. The network contains its decoder: 100 boxes, highest score first. A light
 //! suppression is still useful, as a large object may have two peaks.

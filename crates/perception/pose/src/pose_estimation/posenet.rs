@@ -1,4 +1,4 @@
-//! PoseNet: poses of several persons by heat maps and part displacements.
+//! PoseNet: poses of several persons by heatmaps and part displacements.
 //!
 //! Papandreou et al., PersonLab, ECCV 2018; MobileNetV1, Google, Apache-2.0. Its graph has convolutions only, so it runs
 //! with any runtime; MoveNet is more precise for few persons.
@@ -110,7 +110,7 @@ impl Posenet {
         let [1, 17, rows, columns] = *outputs[self.heatmap].shape() else {
             let shape = outputs[self.heatmap].shape();
             return Err(Error::format(format!(
-                "the heat maps need the shape [1, 17, rows, columns], not {shape:?}; load another model"
+                "the heatmaps need the shape [1, 17, rows, columns], not {shape:?}; load another model"
             )));
         };
         let values = |output: usize, channels: usize| match outputs[output].values::<f32>() {

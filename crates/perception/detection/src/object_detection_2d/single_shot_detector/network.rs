@@ -355,7 +355,7 @@ mod tests {
         }
     }
 
-    /// With PoseNet's weights in the backbone, PoseNet's last layer has PoseNet's heat maps as outputs.
+    /// With PoseNet's weights in the backbone, PoseNet's last layer has PoseNet's heatmaps as outputs.
     #[test]
     fn posenets_backbone_fits() {
         let Some(data) = std::env::var_os("OPENDR_TEST_DATA") else {

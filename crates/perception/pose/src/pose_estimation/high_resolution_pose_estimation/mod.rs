@@ -2,7 +2,7 @@
 //!
 //! After OpenDR's learner of this name (Manousis et al., "Enabling High-Resolution Pose Estimation in Real Time Using
 //! Active Perception", ICIP 2023), with the network of Lightweight OpenPose. Persons of 40 pixels in a 4K image do not
-//! appear in the coarse heat maps. Regions are therefore also selected where the image has detail, and where persons were
+//! appear in the coarse heatmaps. Regions are therefore also selected where the image has detail, and where persons were
 //! in the last frame. Regions that exceed the budget of one frame are processed in the next ones, in turn; until then their
 //! persons keep their last poses.
 
@@ -27,7 +27,7 @@ opendr_engine::choices! {
     pub enum RegionMethod {
         /// One region per group of connected cells.
         Adaptive = "adaptive",
-        /// One region around all cells that the coarse heat maps mark.
+        /// One region around all cells that the coarse heatmaps mark.
         Primary = "primary",
     }
 }
@@ -47,7 +47,7 @@ pub struct HighResolutionPoseEstimationParams {
     /// Margin around a region on each side, as a share of its longer side.
     #[param(default = 0.3, range = 0.0..=2.0, live)]
     pub percentage_around_crop: f32,
-    /// Value of the coarse heat maps above which a cell is selected.
+    /// Value of the coarse heatmaps above which a cell is selected.
     #[param(default = 0.1, range = 0.01..=1.0, live)]
     pub heatmap_threshold: f32,
     /// Range of brightness within 4 pixels of the coarse image above which a cell is selected, 0..=255; 256 switches it
@@ -66,7 +66,7 @@ pub struct HighResolutionPoseEstimationParams {
     /// Score below which joints are missing.
     #[param(default = 0.1, range = 0.01..=1.0, live)]
     pub keypoint_threshold: f32,
-    /// Upsampling factor of the heat maps for the search of joints.
+    /// Upsampling factor of the heatmaps for the search of joints.
     #[param(default = 4, range = 1..=8, live)]
     pub upsample_ratio: usize,
     /// Whether persons keep their identity from frame to frame.

@@ -38,8 +38,8 @@ const CELL: usize = 4;
 const MOST_GROUPS: usize = 256;
 
 impl Search {
-    /// Runs the `first` pass, which marks the cells with high values of heat maps, and lists the regions for a second pass:
-    /// those of heat maps before those of detail only.
+    /// Runs the `first` pass, which marks the cells with high values of heatmaps, and lists the regions for a second pass:
+    /// those of heatmaps before those of detail only.
     pub fn begin(
         &self,
         params: &HighResolutionPoseEstimationParams,

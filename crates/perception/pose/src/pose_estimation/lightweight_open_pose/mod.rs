@@ -44,7 +44,7 @@ pub struct LightweightOpenPoseParams {
     /// Height of the network's input; its width follows from the image. Larger values detect smaller persons.
     #[param(default = 256, range = 64..=2048, unit = "px", live)]
     pub base_height: usize,
-    /// Upsampling factor of the heat maps for the search of joints.
+    /// Upsampling factor of the heatmaps for the search of joints.
     #[param(default = 4, range = 1..=8, live)]
     pub upsample_ratio: usize,
     /// Whether persons keep their identity from frame to frame.
@@ -71,7 +71,7 @@ struct Scratch {
     persons: Vec<Person>,
 }
 
-/// Names of the outputs: heat maps `[1, 19, rows, columns]` and fields `[1, 38, rows, columns]`.
+/// Names of the outputs: heatmaps `[1, 19, rows, columns]` and fields `[1, 38, rows, columns]`.
 const OUTPUTS: [&str; 2] = ["heat", "fields"];
 /// Pixels per cell.
 const STRIDE: usize = 8;
@@ -186,7 +186,7 @@ impl LightweightOpenPose {
         let [1, _, rows, columns] = *outputs[self.heat].shape() else {
             let shape = outputs[self.heat].shape();
             return Err(Error::format(format!(
-                "the heat maps need the shape [1, 19, rows, columns], not {shape:?}; load another model"
+                "the heatmaps need the shape [1, 19, rows, columns], not {shape:?}; load another model"
             )));
         };
         let grid = Grid { rows, columns, stride: STRIDE as f32 };

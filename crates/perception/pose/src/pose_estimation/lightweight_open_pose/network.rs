@@ -42,7 +42,7 @@ pub struct NetworkConfig {
     pub refinement_stages: usize,
 }
 
-/// Maps of one stage: heat maps `[batch, 19, height / 8, width / 8]` and fields `[batch, 38, height / 8, width / 8]`.
+/// Maps of one stage: heatmaps `[batch, 19, height / 8, width / 8]` and fields `[batch, 38, height / 8, width / 8]`.
 pub type Maps = [Tensor<4>; 2];
 
 /// Lightweight OpenPose's network (Osokin, 2018, figure 3).
@@ -190,7 +190,7 @@ impl Features {
     }
 }
 
-/// The two heads of a stage: heat maps and fields.
+/// The two heads of a stage: heatmaps and fields.
 #[derive(Module, Debug)]
 struct Heads {
     heat: [Conv2d; 2],

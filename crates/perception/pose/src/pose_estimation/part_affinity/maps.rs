@@ -44,7 +44,7 @@ pub struct PartMaps<'a> {
 }
 
 impl<'a> PartMaps<'a> {
-    /// Creates maps from heat maps `[19, rows, columns]`, of which the background may be missing, and fields
+    /// Creates maps from heatmaps `[19, rows, columns]`, of which the background may be missing, and fields
     /// `[38, rows, columns]`: x and y of each of [`LIMBS`](super::LIMBS).
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl<'a> PartMaps<'a> {
             && Some(fields.len()) == cells.checked_mul(FIELDS);
         if cells == 0 || !fits {
             return Err(Error::format(format!(
-                "{} and {} values are not {HEAT_MAPS} heat maps and {FIELDS} fields of {} x {} cells; load another model",
+                "{} and {} values are not {HEAT_MAPS} heatmaps and {FIELDS} fields of {} x {} cells; load another model",
                 heat.len(),
                 fields.len(),
                 grid.columns,
@@ -70,7 +70,7 @@ impl<'a> PartMaps<'a> {
         self.grid
     }
 
-    /// Returns the maximum of a cell's heat maps without the background.
+    /// Returns the maximum of a cell's heatmaps without the background.
     pub fn highest(&self, column: usize, row: usize) -> f32 {
         let cell = row * self.grid.columns + column;
         let joints = self.heat.chunks_exact(self.grid.cells()).take(JOINTS);

@@ -1,10 +1,10 @@
 //! Part affinity fields: decoding of maps of joints and limbs to persons, and encoding of persons to maps.
 //!
 //! Cao et al., "Realtime Multi-Person 2D Pose Estimation using Part Affinity Fields", CVPR 2017; Osokin, "Real-time 2D
-//! Multi-Person Pose Estimation on CPU: Lightweight OpenPose", 2018. Each joint has a heat map with peaks at that joint of all
+//! Multi-Person Pose Estimation on CPU: Lightweight OpenPose", 2018. Each joint has a heatmap with peaks at that joint of all
 //! persons; each limb has a vector field along that limb of all persons. [`PartAffinity`] decodes these maps in three steps:
 //!
-//! 1. Peaks of each heat map. The map is upsampled (cubic) only around cells that are local maxima, so the result is that of
+//! 1. Peaks of each heatmap. The map is upsampled (cubic) only around cells that are local maxima, so the result is that of
 //!    an upsampled map at the cost of a coarse one.
 //! 2. Candidates: every pair of peaks that a limb could connect has the mean of the field along it as its score.
 //! 3. Persons grow from candidates, highest score first. A candidate that would give a person a second joint of a kind is
@@ -31,7 +31,7 @@ use persons::Growing;
 
 /// Number of joints of a person.
 pub const JOINTS: usize = 18;
-/// Number of heat maps: one per joint, and the background.
+/// Number of heatmaps: one per joint, and the background.
 pub const HEAT_MAPS: usize = JOINTS + 1;
 /// Number of maps of fields: x and y of each limb.
 pub const FIELDS: usize = 2 * LIMBS.len();

@@ -1,9 +1,9 @@
-//! Peaks of heat maps with subcell precision.
+//! Peaks of heatmaps with subcell precision.
 
 use super::maps::{PartMaps, Plane};
 use super::{JOINTS, PartAffinity};
 
-/// A peak of a heat map.
+/// A peak of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Peak {
     /// Position in cells.

@@ -48,7 +48,7 @@ pub struct BodyPix {
     params: BodyPixParams,
     classes: Classes,
     network: PictureNetwork,
-    /// Indices of the outputs: segments, heat maps, short offsets, both displacements, long offsets.
+    /// Indices of the outputs: segments, heatmaps, short offsets, both displacements, long offsets.
     outputs: [usize; 6],
     work: Pool<Work>,
 }
