@@ -1,4 +1,4 @@
-//! Development tasks of this repository: checks, code generation, wheels, installation of the C library.
+//! Development tasks: checks, code generation, wheels, installation of the C library.
 //!
 //! `cargo xtask` without arguments lists the tasks. Each task is a module; `checks` runs and skips the steps of the test task,
 //! `shell` runs programs.

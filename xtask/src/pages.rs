@@ -89,8 +89,10 @@ fn diagram(packages: &[(&str, &Package)]) -> String {
         diagram += "  end\n";
     }
     for (_, package) in packages.iter().rev() {
-        for dependency in direct(package, packages) {
-            diagram += &format!("  {} --> {dependency}\n", package.name);
+        let dependencies = direct(package, packages);
+        if !dependencies.is_empty() {
+            let list: Vec<_> = dependencies.into_iter().collect();
+            diagram += &format!("  {} --> {}\n", package.name, list.join(" & "));
         }
     }
     diagram + "```\n\n"

@@ -1,4 +1,4 @@
-//! CPU kernels for small networks: matrix products, layers with gradients, optimisers, Fourier transform.
+//! CPU kernels for small networks: matrix products, layers with gradients, optimisers, FFT.
 //!
 //! Contents:
 //! * [`Compute`]: an instruction set, chosen at run time, and a thread pool; every kernel runs on one. Begin here.
