@@ -11,8 +11,7 @@ use crate::data::{
 };
 use crate::target::{
     Action, BaseTranscription, BoundingBox3DList, BoundingBoxList, Category, Heatmap, PoseList, RlTarget,
-    SpeechCommand, Target, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription,
-    WhisperTranscription,
+    SpeechCommand, TrackingAnnotation3DList, TrackingAnnotationList, VoskTranscription, WhisperTranscription,
 };
 use crate::{Error, Header, Result};
 
@@ -112,7 +111,7 @@ macro_rules! values {
 
             /// Returns the camera motion that a target proposes for a better view, if any.
             pub fn action(self) -> Option<&'a Action> {
-                match self { $(Self::$data(_) => None,)* $(Self::$target(value) => Target::action(value),)* }
+                match self { $(Self::$data(_) => None,)* $(Self::$target(value) => value.action.as_ref(),)* }
             }
 
             /// Clones the value; large payloads stay shared.

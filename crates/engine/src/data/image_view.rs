@@ -1,6 +1,6 @@
 //! Strided views of images, the input of kernels.
 
-use crate::data::image::PixelFormat;
+use crate::data::pixel_format::PixelFormat;
 
 /// Borrowed samples of one type.
 #[derive(Debug, Clone, Copy)]

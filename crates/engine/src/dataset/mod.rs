@@ -1,6 +1,7 @@
 //! Data sets for training and evaluation.
 
 mod cached;
+mod dataset_ref;
 mod external;
 mod mapped;
 mod subset;
@@ -8,6 +9,7 @@ mod subset;
 use std::path::PathBuf;
 
 pub use cached::CachedDatasetIterator;
+pub use dataset_ref::DatasetRef;
 pub use external::ExternalDataset;
 pub use mapped::MappedDatasetIterator;
 pub use subset::Subset;
@@ -86,27 +88,6 @@ pub trait DatasetIterator: Dataset {
     /// Returns the id of sample `index` in the files of the data set, e.g. COCO's image id.
     fn id(&self, _index: usize) -> Option<i64> {
         None
-    }
-}
-
-/// A data set as an argument of `fit` and `eval`.
-#[derive(Clone, Copy)]
-pub enum DatasetRef<'a> {
-    /// A data set on disk, read by its format.
-    External(&'a ExternalDataset),
-    /// Samples from a program.
-    Iterator(&'a dyn DatasetIterator),
-}
-
-impl<'a> From<&'a ExternalDataset> for DatasetRef<'a> {
-    fn from(dataset: &'a ExternalDataset) -> Self {
-        Self::External(dataset)
-    }
-}
-
-impl<'a> From<&'a dyn DatasetIterator> for DatasetRef<'a> {
-    fn from(dataset: &'a dyn DatasetIterator) -> Self {
-        Self::Iterator(dataset)
     }
 }
 

@@ -2,11 +2,11 @@
 
 use std::collections::HashSet;
 
-use serde::de::{DeserializeOwned, IgnoredAny};
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::{Sha256, member_path, upstream};
+use super::{Sha256, member_path};
 use crate::params::ParamMap;
 use crate::target::Classes;
 use crate::{Error, Result, Task};
@@ -93,13 +93,6 @@ pub struct Lineage {
     pub command: String,
 }
 
-#[derive(Deserialize)]
-struct Probe {
-    format_version: Option<u32>,
-    model_paths: Option<IgnoredAny>,
-    framework: Option<IgnoredAny>,
-}
-
 impl Manifest {
     /// Creates a manifest of `learner`'s model `variant`, otherwise empty.
     pub fn new(learner: impl Into<String>, variant: impl Into<String>) -> Self {
@@ -144,32 +137,6 @@ impl Manifest {
         Ok(())
     }
 
-    /// Parses `model.json`, or OpenDR's own JSON if it points to ONNX files.
-    ///
-    /// # Errors
-    /// Returns `Format` if it is neither, `Unsupported` if it is newer than this crate or points to weights of PyTorch or
-    /// MXNet, `Integrity` if a file name leaves the folder.
-    pub fn from_json(json: &[u8]) -> Result<Self> {
-        let probe: Probe = parse(json)?;
-        match probe.format_version {
-            None if probe.model_paths.is_some() || probe.framework.is_some() => {
-                upstream::manifest_from_json(json)
-            }
-            None => Err(Error::format(
-                "no \"format_version\" and no \"model_paths\": this is not the JSON of a model",
-            )),
-            Some(newer @ FORMAT_VERSION..) if newer > FORMAT_VERSION => Err(Error::unsupported(format!(
-                "format version {newer}, but this OpenDR reads up to {FORMAT_VERSION}: update OpenDR"
-            ))),
-            Some(0) => Err(Error::format("format version 0: the first is 1")),
-            Some(_) => {
-                let manifest: Self = parse(json)?;
-                manifest.check_files()?;
-                Ok(manifest)
-            }
-        }
-    }
-
     /// Returns the text of `model.json`.
     ///
     /// # Errors
@@ -179,7 +146,8 @@ impl Manifest {
             .map_err(|error| Error::internal("the manifest cannot be written as JSON").with_source(error))
     }
 
-    fn check_files(&self) -> Result<()> {
+    /// Checks that every file has a valid and unique name, a size and a checksum.
+    pub(super) fn check_files(&self) -> Result<()> {
         let mut names = HashSet::new();
         for file in &self.files {
             member_path(&file.name)?;

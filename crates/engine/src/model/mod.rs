@@ -7,6 +7,7 @@
 //! A model of several networks that are models of their own (a face recogniser and its face detector) contains them as
 //! parts: whole containers in subfolders, whose files are among its files.
 
+mod from_json;
 mod manifest;
 mod member;
 mod part;

@@ -227,9 +227,7 @@ impl TryFrom<HeatmapJson> for Heatmap {
             (Some(labels), None) => Self::from_labels(labels, &json.shape)?,
             (None, Some(scores)) => Self::from_scores(scores, &json.shape)?,
             _ => {
-                return Err(Error::format(
-                    "a heatmap has either \"labels\" or \"scores\"; give one of them",
-                ));
+                return Err(Error::format("a heatmap has either \"labels\" or \"scores\"; give one of them"));
             }
         };
         Ok(Self { header: json.header, classes: json.classes, action: json.action, ..map })
