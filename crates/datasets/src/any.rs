@@ -5,18 +5,7 @@ use std::path::Path;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Progress, Result, ValueType};
 
-use crate::{Format, OpenOptions, Problems, WriteOptions};
-
-/// Whether a path is a data set of a format.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Recognition {
-    /// The path has files that no other format has.
-    Certain,
-    /// The path has files that other formats may have, too.
-    Possible,
-    /// The path is not of the format, with what is missing.
-    No(String),
-}
+use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 
 type Open = fn(&Path, &OpenOptions, &Problems) -> Result<Box<dyn DatasetIterator>>;
 type Write = fn(&dyn DatasetIterator, &Path, &WriteOptions, &Problems, &dyn Progress) -> Result<()>;

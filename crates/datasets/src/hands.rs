@@ -15,6 +15,8 @@ use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
 
 mod annotation;
 
+use annotation::Gesture;
+
 /// Subjects of the test part, as in OpenDR; the others are for training.
 const TEST_SUBJECTS: [&str; 2] = ["Subject4", "Subject5"];
 const COLOURS: [&str; 2] = ["rgb", "color"];
@@ -27,13 +29,6 @@ const COLOURS: [&str; 2] = ["rgb", "color"];
 pub struct Hands {
     gestures: Vec<Gesture>,
     classes: Classes,
-}
-
-#[derive(Debug, Clone)]
-struct Gesture {
-    colour: PathBuf,
-    depth: PathBuf,
-    class: String,
 }
 
 impl Hands {

@@ -56,6 +56,7 @@ mod picture_box;
 mod picture_files;
 mod pictures;
 mod problems;
+mod recognition;
 #[cfg(feature = "recordings")]
 mod recording;
 mod registry;
@@ -70,7 +71,7 @@ mod wfdb;
 mod wider_face;
 mod yolo;
 
-pub use any::{FormatEntry, Recognition};
+pub use any::FormatEntry;
 pub use camvid::CamVid;
 pub use check::check;
 pub use cityscapes::Cityscapes;
@@ -91,6 +92,7 @@ pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use pictures::Pictures;
 pub use problems::{Place, Problem, Problems};
+pub use recognition::Recognition;
 #[cfg(feature = "recordings")]
 pub use recording::AnnotatedRecording;
 pub use registry::{find, format_of, formats, open, recognise};

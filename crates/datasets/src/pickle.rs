@@ -6,37 +6,13 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Result;
 
-use crate::npy::NpyType;
-
+mod item;
 mod machine;
 
+use item::{Id, Item};
 use machine::Machine;
-
-/// Largest number of axes of an array.
-const MAX_AXES: usize = 32;
-
-/// Index of a value of a [`Pickle`].
-type Id = usize;
-
-/// A value. Contained values are indices, so that shared values and cycles cost nothing.
-#[derive(Debug, Clone)]
-enum Item {
-    None,
-    Whole(i64),
-    Float(f64),
-    Text(String),
-    Bytes(Vec<u8>),
-    List(Vec<Id>),
-    Dictionary(Vec<(Id, Id)>),
-    /// Module and name.
-    Global(String, String),
-    Type(NpyType, String),
-    Array(Vec<usize>, NpyType, bool, Vec<u8>),
-    /// An array that is not filled yet.
-    Unfilled,
-}
 
 /// The values of a pickle.
 #[derive(Debug)]
@@ -127,11 +103,6 @@ impl<'a> Pickled<'a> {
         let numbers = if *fortran_order { crate::npy::c_from_fortran(&numbers, shape) } else { numbers };
         Some((shape.clone(), numbers))
     }
-}
-
-#[cold]
-fn code_error(what: &str) -> Error {
-    Error::unsupported(format!("the pickle refers to {what:.80?}, which is code; save its data as .npy"))
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use opendr_engine::data::SkeletonSequence;
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
@@ -13,6 +12,7 @@ use crate::{Format, NpyFile, OpenOptions, Problems, Recognition, WriteOptions};
 mod arrays;
 mod ntu;
 mod pickled;
+mod sequence;
 mod write;
 
 pub use ntu::{NtuFile, open_ntu, skeleton_from_ntu};
@@ -183,14 +183,6 @@ fn class_names(path: &Path) -> Option<Classes> {
     let name = files_in(folder, &["txt"]).into_iter().find(|name| name.starts_with("label_map"))?;
     let text = crate::folder::read_text(&folder.join(name)).ok()?;
     Some(text.lines().map(str::trim).filter(|line| !line.is_empty()).map(str::to_owned).collect())
-}
-
-/// Creates a sequence; all values must be finite.
-fn sequence(numbers: &[f64], shape: [usize; 5]) -> Result<SkeletonSequence> {
-    if let Some(at) = numbers.iter().position(|number| !number.is_finite()) {
-        return Err(Error::format(format!("value {at} is NaN or infinite; fix or remove the recording")));
-    }
-    SkeletonSequence::new(numbers.iter().map(|number| *number as f32).collect::<Vec<_>>(), shape)
 }
 
 #[cfg(test)]

@@ -12,6 +12,12 @@ const SPLITS: [&str; 6] = ["val", "valid", "validation", "test", "minival", "tra
 /// Bytes read to recognise a file.
 const HEAD: u64 = 1 << 16;
 
+/// Returns whether the name of a file has one of these beginnings.
+pub(super) fn name_begins(file: &Path, beginnings: &[&str]) -> bool {
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    beginnings.iter().any(|beginning| name.starts_with(beginning))
+}
+
 /// Returns the sorted annotation files at `path`: itself, those of its folder `annotations`, its own, or (as
 /// exported by Roboflow) those of its parts.
 pub(super) fn annotation_files(path: &Path) -> Vec<PathBuf> {

@@ -110,7 +110,9 @@ impl Coco {
     pub fn annotation_file(path: &Path, options: &OpenOptions) -> Result<PathBuf> {
         let mut files = locate::annotation_files(path);
         if !path.is_file() {
-            files.retain(|file| !name_begins(file, &["captions_", "panoptic_", "stuff_", "image_info_"]));
+            files.retain(|file| {
+                !locate::name_begins(file, &["captions_", "panoptic_", "stuff_", "image_info_"])
+            });
             // Files of results may be beside annotations. Broken files are kept, to be reported.
             files.retain(|file| !locate::begins_as_list(file));
         }
@@ -125,11 +127,6 @@ impl Coco {
         let file = locate::choose(&files, options.split.as_deref(), &kinds);
         file.cloned().context(|| path.display().to_string())
     }
-}
-
-fn name_begins(file: &Path, beginnings: &[&str]) -> bool {
-    let name = file.file_name().unwrap_or_default().to_string_lossy();
-    beginnings.iter().any(|beginning| name.starts_with(beginning))
 }
 
 impl Dataset for Coco {}
@@ -189,8 +186,9 @@ impl Format for Coco {
 
     fn recognise(path: &Path) -> Recognition {
         let files = locate::annotation_files(path);
-        let by_name =
-            |file: &PathBuf| name_begins(file, &["instances_", "person_keypoints_", "_annotations.coco"]);
+        let by_name = |file: &PathBuf| {
+            locate::name_begins(file, &["instances_", "person_keypoints_", "_annotations.coco"])
+        };
         let own = |file: &&PathBuf| {
             locate::begins_with_key(file, &KEYS) && !locate::begins_with_key(file, &["segments_info"])
         };
@@ -208,7 +206,7 @@ impl Format for Coco {
     fn open(path: &Path, options: &OpenOptions, problems: &Problems) -> Result<Self> {
         let file = &Self::annotation_file(path, options)?;
         let target = match options.target {
-            None if name_begins(file, &["person_keypoints_"]) => ValueType::PoseList,
+            None if locate::name_begins(file, &["person_keypoints_"]) => ValueType::PoseList,
             None | Some(ValueType::BoundingBoxList) => ValueType::BoundingBoxList,
             Some(ValueType::PoseList) => ValueType::PoseList,
             Some(other) => {

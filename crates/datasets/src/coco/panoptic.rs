@@ -202,7 +202,7 @@ impl DatasetIterator for CocoPanoptic {
 }
 
 fn is_panoptic(file: &Path) -> bool {
-    super::name_begins(file, &["panoptic_"]) || locate::begins_with_key(file, &["segments_info"])
+    locate::name_begins(file, &["panoptic_"]) || locate::begins_with_key(file, &["segments_info"])
 }
 
 impl Format for CocoPanoptic {
@@ -217,7 +217,7 @@ impl Format for CocoPanoptic {
     fn recognise(path: &Path) -> Recognition {
         let files = locate::annotation_files(path);
         // Beside instances, the format must be named by the user.
-        let other = files.iter().any(|file| super::name_begins(file, &["instances_", "person_keypoints_"]));
+        let other = files.iter().any(|file| locate::name_begins(file, &["instances_", "person_keypoints_"]));
         match files.iter().take(64).any(|file| is_panoptic(file)) {
             true if other => Recognition::Possible,
             true => Recognition::Certain,

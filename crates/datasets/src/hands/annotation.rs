@@ -1,16 +1,23 @@
 //! Label file of a subject of HANDS.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use opendr_engine::Result;
 
 use crate::fields::lines;
 use crate::folder::{path_inside, read_text};
-use crate::hands::Gesture;
 use crate::{Problem, Problems};
 
 /// Text of a gesture that is not in the image.
 const ABSENT: &str = "[0 0 0 0]";
+
+/// Files of a sample, and its class.
+#[derive(Debug, Clone)]
+pub(super) struct Gesture {
+    pub(super) colour: PathBuf,
+    pub(super) depth: PathBuf,
+    pub(super) class: String,
+}
 
 /// Reads the rows of `SubjectN.txt`: colour, depth, and for every gesture of the first line its box, or `[0 0 0
 /// 0]`. Only the file name of a path is used, since HANDS has the folders of its authors. Missing files are

@@ -5,10 +5,10 @@ use std::panic::resume_unwind;
 use std::sync::Arc;
 use std::thread::{self, Builder, JoinHandle};
 
-use opendr_engine::{Error, Result};
+use opendr_engine::Result;
 
 use crate::loader::queue::{Job, WorkQueue};
-use crate::loader::{Collate, Samples};
+use crate::loader::{Collate, Samples, Skipped};
 
 /// A batch of an epoch.
 #[derive(Debug, Clone)]
@@ -22,17 +22,6 @@ pub struct Batch<B> {
     /// Number of samples of the epoch up to and including this batch; the position to
     /// [resume](crate::loader::Loader::resume).
     pub next_position: usize,
-}
-
-/// A sample that was skipped because it is broken.
-#[derive(Debug)]
-pub struct Skipped {
-    /// Sample index in the data set.
-    pub index: usize,
-    /// Name of the sample in the data set.
-    pub name: String,
-    /// Why it cannot be read or augmented.
-    pub error: Error,
 }
 
 /// Reading position of an epoch, and the skipped samples so far.

@@ -6,8 +6,10 @@ use std::collections::HashMap;
 use opendr_engine::{Error, Result};
 
 use crate::npy::NpyType;
-use crate::pickle::{Id, Item, MAX_AXES, code_error};
+use crate::pickle::item::{Id, Item};
 
+/// Largest number of axes of an array.
+const MAX_AXES: usize = 32;
 /// Largest number of values.
 const MAX_ITEMS: usize = 16 << 20;
 /// Limit of copied bytes as a multiple of the file size, since a pickle may copy a value many times.
@@ -327,4 +329,9 @@ impl<'a> Machine<'a> {
         }
         Ok(())
     }
+}
+
+#[cold]
+fn code_error(what: &str) -> Error {
+    Error::unsupported(format!("the pickle refers to {what:.80?}, which is code; save its data as .npy"))
 }

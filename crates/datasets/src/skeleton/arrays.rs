@@ -5,6 +5,7 @@ use std::path::Path;
 use opendr_engine::data::SkeletonSequence;
 use opendr_engine::{Error, Result, ResultExt};
 
+use super::sequence::finite_sequence;
 use crate::folder::{files_in, read_bytes};
 use crate::pickle::Pickle;
 use crate::{NpyFile, Problem, Problems, array_from_npy};
@@ -82,6 +83,6 @@ pub(super) fn part(file: &NpyFile, index: usize) -> Result<SkeletonSequence> {
     let [_, channels, frames, joints, persons] = *file.shape() else {
         return Err(Problem::new(file.path(), "does not have five axes").into());
     };
-    super::sequence(&numbers, [1, channels, frames, joints, persons])
+    finite_sequence(&numbers, [1, channels, frames, joints, persons])
         .context(|| format!("{}: sample {index}", file.path().display()))
 }

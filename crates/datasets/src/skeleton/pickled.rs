@@ -6,6 +6,7 @@ use opendr_engine::data::SkeletonSequence;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt};
 
+use super::sequence::finite_sequence;
 use crate::folder::{files_in, has_extension, name_of, read_bytes};
 use crate::pickle::{Pickle, Pickled};
 
@@ -105,7 +106,7 @@ impl PickledPoses {
                 moved.extend((0..persons).filter_map(|person| numbers.get(at(person)).copied()));
             }
         }
-        super::sequence(&moved, [1, channels, frames, joints, persons])
+        finite_sequence(&moved, [1, channels, frames, joints, persons])
     }
 }
 

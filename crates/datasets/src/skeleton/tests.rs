@@ -1,4 +1,5 @@
 use opendr_engine::Silent;
+use opendr_engine::data::SkeletonSequence;
 use proptest::prelude::*;
 
 use super::*;

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use opendr_engine::{Error, Result};
 
 use super::annotation::Annotation;
-use super::read_annotation;
 use crate::fields::lines;
 use crate::folder::{PICTURES, files_in, folders_in, path_inside, read_text};
 use crate::{Problem, Problems, Recognition};
@@ -140,4 +139,10 @@ impl Layout {
         let folder = self.pictures.display();
         Err(Problem::new(annotation, format!("its image {name:?} is missing in {folder}")))
     }
+}
+
+/// Reads an annotation file.
+fn read_annotation(file: &Path) -> Result<Annotation, Problem> {
+    let text = read_text(file).map_err(|error| Problem::new(file, error.to_string()))?;
+    Annotation::new(file, &text)
 }

@@ -15,10 +15,10 @@ use opendr_engine::target::{
 };
 use opendr_engine::{Error, Progress, Result, ResultExt, Value, ValueType};
 
-use crate::folder::{past_end, read_text};
+use crate::folder::past_end;
 use crate::label_png::{IGNORED, LabelMap, open_labels};
 use crate::picture_files::open_picture;
-use crate::{Format, OpenOptions, Problem, Problems, Recognition, WriteOptions};
+use crate::{Format, OpenOptions, Problems, Recognition, WriteOptions};
 use annotation::Annotation;
 use layout::Layout;
 
@@ -211,10 +211,4 @@ impl Format for Voc {
     ) -> Result<()> {
         write::write(dataset, path, options, problems, progress)
     }
-}
-
-/// Reads an annotation file.
-fn read_annotation(file: &Path) -> Result<Annotation, Problem> {
-    let text = read_text(file).map_err(|error| Problem::new(file, error.to_string()))?;
-    Annotation::new(file, &text)
 }
