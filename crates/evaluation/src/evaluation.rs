@@ -11,14 +11,13 @@ use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Progress, Result, ResultExt, Silent, Unit, Value};
 use opendr_metrics::MetricEntry;
-use serde::{Deserialize, Serialize};
 
 use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
 use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
 use crate::shown::{AnsweredSample, ContactSheetSamples};
-use crate::{Answers, ClassMap, ClassMatching, Outcome, Predictor};
+use crate::{Answers, ClassMap, ClassMatching, Outcome, Predictor, Subject};
 
 /// Number of samples with the lowest scores that are listed, and of those spaced evenly over the data set.
 const LISTED: usize = 24;
@@ -31,18 +30,6 @@ pub(crate) const RESAMPLES: usize = 200;
 const REMEDY: &str = "Map them with classes (--classes LEARNER=DATASET,...), or compare their numbers with by_number (--by-number)";
 /// File of the predictions.
 const JOURNAL: &str = "predictions.jsonl";
-
-/// The evaluated learner, as named in journals and outcomes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Subject {
-    /// Name of the learner, with its variant.
-    pub learner: String,
-    /// Path of the model container, if it is the user's own.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub model: Option<String>,
-    /// Parameters of the learner.
-    pub params: ParamMap,
-}
 
 /// Settings of an evaluation.
 pub struct Evaluation<'a> {

@@ -2,13 +2,16 @@
 //! (EPE), equal to MMPose.
 
 mod matching;
+mod params;
+mod places;
 mod size;
 
-use opendr_engine::params::Params;
 use opendr_engine::target::{Pose, PoseList};
 use opendr_engine::{Error, Result};
 
-pub use size::PoseSize;
+pub use params::{KeypointsParams, PoseSize};
+
+use places::{place_of, places_like};
 
 use crate::average::{mean, ratio};
 use crate::{Curves, Figure, Line, Metric, Report, Table};
@@ -18,19 +21,6 @@ const MAX_JOINTS: usize = 4096;
 
 /// Number of thresholds of the area under the curve: 0, 0.05 to 0.95, as in MMPose.
 const STEPS: usize = 20;
-
-/// Parameters of [`Keypoints`].
-#[derive(Debug, Clone, Params)]
-pub struct KeypointsParams {
-    /// Normalisation of the distances.
-    pub normalize: PoseSize,
-    /// For `joints`: an even number of joint indices. Distances are divided by the distance between the mean of the first half
-    /// and that of the second, e.g. the outer corners of the eyes (300-W: 36, 45) or the points around each eye.
-    pub joints: Vec<usize>,
-    /// Threshold of the normalised distance of correct joints.
-    #[param(default = 0.2, range = 0.0..=10.0)]
-    pub threshold: f64,
-}
 
 /// Counts of one joint.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -173,22 +163,6 @@ impl Keypoints {
             rows: self.joints.iter().enumerate().map(row).collect(),
         }
     }
-}
-
-/// Returns the position of a joint; `None` if it is not annotated or not predicted.
-fn place_of(keypoint: &opendr_engine::target::Keypoint) -> Option<[f64; 2]> {
-    // NaN is not missing: it is passed on and rejected.
-    let missing = keypoint.x < 0.0 || keypoint.y < 0.0;
-    (!missing).then(|| [f64::from(keypoint.x), f64::from(keypoint.y)])
-}
-
-/// Returns the positions of the joints of `pose`, in the order of the skeleton of `reference`.
-fn places_like(reference: &Pose, pose: &Pose) -> Vec<Option<[f64; 2]>> {
-    if reference.skeleton == pose.skeleton {
-        return pose.keypoints.iter().map(place_of).collect();
-    }
-    let joints = reference.skeleton.joints().iter().take(reference.keypoints.len());
-    joints.map(|joint| pose.keypoint(joint).and_then(place_of)).collect()
 }
 
 /// Each ground-truth pose is matched with the nearest unmatched prediction; other predictions are ignored. Poses of

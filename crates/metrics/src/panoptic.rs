@@ -3,6 +3,7 @@
 //! A. Kirillov, K. He, R. Girshick, C. Rother, P. Dollár, "Panoptic segmentation", CVPR 2019. Void and crowd are treated
 //! as in COCO's `panopticapi`.
 
+mod label;
 mod masks;
 mod segments;
 
@@ -15,19 +16,14 @@ use opendr_engine::{Error, Result, ValueRef};
 
 use crate::{Metric, Report, Table};
 
+pub use label::LABEL_DIVISOR;
 pub use segments::{PanopticMap, PanopticSegment};
 
+use label::VOID_LABEL;
 use segments::Overlaps;
 
 /// The number 1 in fixed point. An intersection over union above one half is an integer in this unit.
 const IOU_UNITS: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
-
-/// Factor of the class in a label: a label is this factor times the class index plus the index of the object in its class,
-/// as in Cityscapes.
-pub const LABEL_DIVISOR: u32 = 1000;
-
-/// Label of pixels without class, for any [`PanopticParams::ignore`].
-const VOID_LABEL: u32 = Heatmap::NO_CLASS;
 
 /// Parameters of [`Panoptic`].
 #[derive(Debug, Clone, Params)]

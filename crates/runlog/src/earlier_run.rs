@@ -8,7 +8,7 @@ use opendr_engine::Result;
 
 use crate::atomic_file::write_error;
 use crate::event_file::is_event_file;
-use crate::run_log::{CURVES, TABLE};
+use crate::file_names::{CURVES, TABLE};
 
 /// Moves the log of an earlier run in `folder` into a subfolder `earlier-1`, `earlier-2`, ..., which
 /// TensorBoard shows as another run.

@@ -32,6 +32,7 @@ mod earlier_run;
 mod event;
 mod event_file;
 mod figure;
+mod file_names;
 mod run_log;
 mod scalar_table;
 

@@ -12,10 +12,8 @@ use crate::curves::svg_from_table;
 use crate::earlier_run;
 use crate::event::{Content, Picture, SummaryValue};
 use crate::event_file::EventFile;
+use crate::file_names::{CURVES, TABLE};
 use crate::scalar_table::ScalarTable;
-
-pub(crate) const TABLE: &str = "log.csv";
-pub(crate) const CURVES: &str = "curves.svg";
 
 /// Maximum time before logged values are written to the disk, checked when more are logged.
 const WRITE_INTERVAL: Duration = Duration::from_secs(5);

@@ -3,7 +3,9 @@
 //! The structs are ROS 2's. The format therefore adds the field that only ROS 1 has (the `seq` of a header, always 0) and omits the
 //! one that only ROS 2 has (the dummy field of messages without fields).
 
+mod fields;
 mod reader;
+mod reason;
 mod writer;
 
 use opendr_engine::{Error, Result};
@@ -11,13 +13,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use reader::Reader;
+use reason::Reason;
 use writer::Writer;
-
-/// Name of the struct with a `seq` before its fields in ROS 1.
-const HEADER: &str = "Header";
-
-/// Dummy field of messages without fields, which ROS 1 does not write.
-const EMPTY_FIELD: &str = "structure_needs_at_least_one_member";
 
 /// Writes a message in ROS 1's format, without the length prefix of TCPROS.
 ///
@@ -45,35 +42,6 @@ pub fn message_from_ros1<M: DeserializeOwned>(bytes: &[u8]) -> Result<M> {
     let message = M::deserialize(&mut reader).map_err(unreadable)?;
     reader.end().map_err(unreadable)?;
     Ok(message)
-}
-
-/// Reason for which bytes cannot be read, or a message cannot be written.
-#[derive(Debug, thiserror::Error)]
-enum Reason {
-    #[error("they end within a field")]
-    Short,
-    #[error("{0} bytes are left over")]
-    Left(usize),
-    #[error("a text is not UTF-8")]
-    Utf8,
-    #[error("a field has more than 2^32 - 1 elements")]
-    Long,
-    #[error("ROS 1 has no {0}")]
-    Unknown(&'static str),
-    #[error("{0}")]
-    Custom(String),
-}
-
-impl serde::ser::Error for Reason {
-    fn custom<T: std::fmt::Display>(message: T) -> Self {
-        Self::Custom(message.to_string())
-    }
-}
-
-impl serde::de::Error for Reason {
-    fn custom<T: std::fmt::Display>(message: T) -> Self {
-        Self::Custom(message.to_string())
-    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,8 @@
 use serde::de::value::U8Deserializer;
 use serde::de::{DeserializeSeed, Deserializer, IntoDeserializer, SeqAccess, Visitor};
 
-use super::{EMPTY_FIELD, HEADER, Reason};
+use super::fields::{EMPTY_FIELD, HEADER};
+use super::reason::Reason;
 
 pub(super) struct Reader<'de> {
     left: &'de [u8],

@@ -5,7 +5,8 @@ use serde::ser::{
     Impossible, SerializeSeq, SerializeStruct, SerializeTuple, SerializeTupleStruct, Serializer,
 };
 
-use super::{EMPTY_FIELD, HEADER, Reason};
+use super::fields::{EMPTY_FIELD, HEADER};
+use super::reason::Reason;
 
 #[derive(Default)]
 pub(super) struct Writer {

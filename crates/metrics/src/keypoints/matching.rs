@@ -3,7 +3,7 @@
 use opendr_engine::target::Pose;
 use opendr_engine::{Error, Result};
 
-use super::{place_of, places_like};
+use super::places::{place_of, places_like};
 
 /// Maximum number of pairs of poses per image.
 const MAX_PAIRS: usize = 1 << 20;

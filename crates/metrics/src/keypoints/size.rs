@@ -2,23 +2,8 @@
 
 use opendr_engine::target::{BoundingBox, Pose};
 
-use super::{KeypointsParams, place_of};
-
-opendr_engine::choices! {
-    /// Size by which the distances of joints are divided.
-    pub enum PoseSize {
-        /// The longer side of the pose's box (PCK of MMPose).
-        Box = "box",
-        /// The square root of the area of the pose's box (NME of faces).
-        Area = "area",
-        /// 0.6 times the diagonal of the pose's box, which is the box of the head (PCKh of MPII).
-        Head = "head",
-        /// The distance from the left shoulder to the right hip.
-        Torso = "torso",
-        /// The distance between two joints, or between the means of two halves of a list of joints.
-        Joints = "joints",
-    }
-}
+use super::params::{KeypointsParams, PoseSize};
+use super::places::place_of;
 
 impl KeypointsParams {
     /// Returns the size in pixels; `None` if the pose has no positive size. A pose without a region uses the box around its

@@ -3,7 +3,7 @@
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Name};
 use opendr_engine::{Error, Result};
 
-use super::rules::ObjectKind;
+use super::rules::{ObjectKind, Traits};
 use crate::StandingBox;
 
 /// A ground-truth or predicted object.
@@ -54,6 +54,13 @@ impl KittiObject {
             "a {} has numbers that are not finite: {self:?}; give finite numbers",
             self.class
         )))
+    }
+}
+
+impl From<&KittiObject> for Traits {
+    fn from(object: &KittiObject) -> Self {
+        let KittiObject { truncated, occluded, .. } = *object;
+        Self { kind: object.kind(), height: object.height_in_image(), truncated, occluded }
     }
 }
 

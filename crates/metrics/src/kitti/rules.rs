@@ -1,7 +1,5 @@
 //! KITTI's rules: classes, overlaps, difficulties, and which objects count.
 
-use super::object::KittiObject;
-
 /// An evaluated class.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KittiClass {
@@ -133,13 +131,6 @@ pub(super) struct Traits {
     pub height: f64,
     pub truncated: f64,
     pub occluded: i32,
-}
-
-impl From<&KittiObject> for Traits {
-    fn from(object: &KittiObject) -> Self {
-        let KittiObject { truncated, occluded, .. } = *object;
-        Self { kind: object.kind(), height: object.height_in_image(), truncated, occluded }
-    }
 }
 
 /// Role of an object in the matching.

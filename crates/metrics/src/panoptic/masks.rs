@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Heatmap, Name, Rle, Segmentation};
 
-use super::{LABEL_DIVISOR, VOID_LABEL};
+use super::label::{LABEL_DIVISOR, VOID_LABEL};
 
 /// Maximum number of pixels, the same as for single masks.
 const MOST_PIXELS: u64 = 1 << 28;

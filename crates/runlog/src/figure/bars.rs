@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use opendr_metrics::Bars;
 
-use super::{escaped, opening};
+use super::markup::{escaped, opening};
 
 const WIDTH: f64 = 640.0;
 const LABELS: f64 = 170.0;

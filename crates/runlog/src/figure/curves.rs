@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use opendr_metrics::Curves;
 
 use super::axis::Axis;
-use super::{escaped, opening};
+use super::markup::{escaped, opening};
 
 /// Colours that are distinguishable with colour vision deficiency (Okabe and Ito 2008).
 const COLOURS: [&str; 8] =

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use opendr_metrics::Matrix;
 
-use super::{escaped, opening};
+use super::markup::{escaped, opening};
 
 /// Maximum number of classes for which cells show numbers.
 const MAX_NUMBERED_CLASSES: usize = 24;

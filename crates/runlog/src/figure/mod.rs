@@ -3,9 +3,12 @@
 mod axis;
 mod bars;
 mod curves;
+mod markup;
 mod matrix;
 
 use opendr_metrics::{Curves, Figure};
+
+use markup::opening;
 
 /// Returns a figure's name and its SVG text.
 pub fn svg_from_figure(figure: &Figure) -> (&str, String) {
@@ -26,23 +29,6 @@ pub fn svg_from_panels(panels: &[Curves]) -> String {
         svg.push_str(&inner);
     }
     svg + "</svg>\n"
-}
-
-/// Escapes text for XML.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// Returns the opening tags of an image of `width` x `height` with a title.
-fn opening(width: f64, height: f64, title: &str) -> String {
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" \
-         height=\"{height}\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#333\">\n\
-         <rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
-         <text x=\"{}\" y=\"22\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
-        width / 2.0,
-        escaped(title)
-    )
 }
 
 #[cfg(test)]

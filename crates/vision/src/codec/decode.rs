@@ -11,15 +11,13 @@ use opendr_engine::data::{Image, Layout, PixelFormat};
 use opendr_engine::{Error, Result, ResultExt};
 
 use crate::codec::orientation::upright;
+use crate::codec::size_limit::{LIMIT_VARIABLE, check_size};
 use crate::codec::{finding, jpeg};
 
 /// Bytes from which the format is detected.
 const HEAD: u64 = 64;
 /// Default limit of samples per image: 89 megapixels of RGB.
 const MAX_SAMPLES: u64 = 1 << 28;
-/// Environment variable that sets the limit.
-pub(crate) const LIMIT_VARIABLE: &str = "OPENDR_MAX_SAMPLES";
-
 /// Decodes image files within a size limit.
 ///
 /// The result is turned upright as its EXIF orientation states: `u8`, `HWC`, grey, RGB or RGBA. Palettes are
@@ -123,18 +121,6 @@ impl Decoder {
         let picture = DynamicImage::from_decoder(decoder).map_err(damaged)?;
         Ok((image_from_dynamic(picture)?, orientation))
     }
-}
-
-/// Rejects a header that claims more than `max_samples`.
-pub(super) fn check_size(width: u32, height: u32, channels: u8, max_samples: u64) -> Result<()> {
-    let samples = u64::from(width) * u64::from(height) * u64::from(channels);
-    if samples <= max_samples {
-        return Ok(());
-    }
-    Err(Error::invalid_input(format!(
-        "the header claims {width}x{height} pixels of {channels} channels, {samples} samples, over the limit of \
-         {max_samples}; resize the image or, if the file can be trusted, set {LIMIT_VARIABLE} to {samples} or more"
-    )))
 }
 
 fn image_from_dynamic(picture: DynamicImage) -> Result<Image> {

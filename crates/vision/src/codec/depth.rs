@@ -8,9 +8,10 @@ use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, L
 use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result, ResultExt};
 
-use crate::codec::decode::{Decoder, check_size};
+use crate::codec::decode::Decoder;
 use crate::codec::encode::write_atomically;
 use crate::codec::finding;
+use crate::codec::size_limit::check_size;
 
 impl Decoder {
     /// Reads the depth image at `path`; samples keep all 16 bits.

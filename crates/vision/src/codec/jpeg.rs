@@ -9,7 +9,7 @@ use zune_core::options::DecoderOptions;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::errors::DecodeErrors;
 
-use crate::codec::decode::check_size;
+use crate::codec::size_limit::check_size;
 
 /// Decodes a JPEG of at most `max_samples` samples to grey or RGB, without applying its orientation.
 pub(super) fn decode(bytes: &[u8], max_samples: u64) -> Result<(Image, Orientation)> {

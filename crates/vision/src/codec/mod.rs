@@ -10,8 +10,9 @@ mod finding;
 mod jpeg;
 mod orientation;
 mod size;
+mod size_limit;
 
-pub(crate) use decode::LIMIT_VARIABLE;
 pub use decode::{Decoder, decode, open};
 pub use depth::{encode_depth_png, save_depth};
 pub use encode::{Encoder, encode_png, save};
+pub(crate) use size_limit::LIMIT_VARIABLE;

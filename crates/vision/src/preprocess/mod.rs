@@ -6,6 +6,8 @@
 //! run time). All other images, and all images on other CPUs, run through plain Rust, as do rotated crops.
 
 mod band;
+mod border;
+mod dispatch;
 mod geometry;
 #[cfg(target_arch = "x86_64")]
 mod kernels_x86;
@@ -24,6 +26,7 @@ use opendr_engine::{Error, Result};
 use crate::similarity::Similarity;
 use crate::workers;
 use band::{Band, MAX_BANDS, Row};
+pub use border::Border;
 use geometry::Placement;
 pub use geometry::{Anchor, InputGeometry};
 use plan::{Plan, Plans, Sizes};
@@ -55,15 +58,6 @@ impl ChannelOrder {
             Self::Grey => 1,
         }
     }
-}
-
-/// Fill of a rotated crop outside the image.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Border {
-    /// A level, 0..=255, normalised like the image (OpenCV's `BORDER_CONSTANT`).
-    Level(f32),
-    /// The image's outermost pixels (OpenCV's `BORDER_REPLICATE`).
-    Repeat,
 }
 
 /// Conversion of images to the input of a network; built once per learner.

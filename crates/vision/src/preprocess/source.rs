@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use opendr_engine::data::{ImageView, Samples};
 
-use crate::preprocess::Border;
 use crate::preprocess::band::Row;
+use crate::preprocess::border::Border;
 use crate::preprocess::packed::{Packed, PackedRow};
 use crate::preprocess::plan::{Plan, TAP_BYTES};
 use crate::preprocess::sample::Written;

@@ -2,8 +2,8 @@
 
 use opendr_engine::data::ImageView;
 
-use crate::preprocess::Border;
 use crate::preprocess::band::Row;
+use crate::preprocess::border::Border;
 use crate::preprocess::sample::Written;
 use crate::preprocess::strided::{Finish, LUMINANCE, Level};
 
