@@ -34,7 +34,7 @@ pub enum Datum {
 }
 
 /// The next item, or an error with its file, if there is one.
-pub type Next = std::result::Result<Item, (Option<PathBuf>, Error)>;
+pub type Next = Result<Item, (Option<PathBuf>, Error)>;
 
 impl Item {
     /// Returns the file or device of the item.

@@ -142,7 +142,7 @@ impl Gif {
     }
 
     fn finish(mut self, path: &Path) -> Result<()> {
-        let encoder = self.encoder.take().ok_or_else(no_picture)?;
+        let encoder = self.encoder.take().ok_or_else(no_image)?;
         encoder.into_inner().map_err(failed)?.flush()?;
         Ok(fs::rename(&self.partial, path)?)
     }

@@ -5,7 +5,7 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 
 use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
-use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, seen};
+use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, observation_space};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;

@@ -186,7 +186,7 @@ fn trials_of_dead_workers_resume_from_their_checkpoints() {
     let mut training = (tuner.begin)(&trial.param_map().unwrap(), tuner.plan.seeds()[0]).unwrap();
     trial.report(3, training.advance(3).unwrap().unwrap()).unwrap();
     training.save(&tuner.folder_of(0).join("seed_0")).unwrap();
-    trial.checkpoint(json!(Stand { values: Vec::new(), done: 3 })).unwrap();
+    trial.checkpoint(json!(TrialProgress { values: Vec::new(), done: 3 })).unwrap();
     std::thread::sleep(Duration::from_millis(60));
     tuner.run(&Budget::total(1), |_, _| Progress::Continue).unwrap();
     let record = tuner.study().snapshot();
