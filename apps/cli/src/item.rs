@@ -61,7 +61,7 @@ impl Item {
     /// Returns the index of the item among all inputs, from 0.
     pub fn index(&self) -> u64 {
         match &self.datum {
-            Datum::Frame(frame) => frame.index,
+            Datum::Frame(frame) => frame.item_index,
             Datum::Value { index, .. } => *index,
         }
     }
@@ -69,7 +69,7 @@ impl Item {
     /// Returns the index of the item within its file, from 0.
     pub fn number(&self) -> u64 {
         match &self.datum {
-            Datum::Frame(frame) => frame.number,
+            Datum::Frame(frame) => frame.frame_index,
             Datum::Value { number, .. } => *number,
         }
     }

@@ -33,7 +33,7 @@
 pub mod boxes_from_candidates;
 pub mod category_scores;
 pub mod clip_frames;
-pub mod described_input;
+pub mod manifest_preprocess;
 pub mod frame_features;
 #[cfg(feature = "training")]
 pub mod frozen_layers;
@@ -41,9 +41,9 @@ pub mod joints;
 #[cfg(feature = "training")]
 pub mod labelled;
 #[cfg(feature = "training")]
-pub mod open_sides;
+pub mod dynamic_sides;
 pub mod part_tree;
-pub mod picture_network;
+pub mod image_network;
 pub mod regions;
 #[cfg(feature = "training")]
 pub mod small_backbone;
@@ -52,4 +52,4 @@ pub mod small_classifier;
 pub mod suppression;
 #[cfg(feature = "training")]
 pub mod trainable_weights;
-pub mod turned_square;
+pub mod rotated_square;

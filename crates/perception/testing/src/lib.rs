@@ -6,5 +6,5 @@
 #![allow(clippy::unwrap_used)]
 
 pub mod overfit;
-pub mod promises;
+pub mod learner_checks;
 pub mod test_models;

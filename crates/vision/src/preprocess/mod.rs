@@ -25,7 +25,7 @@ use crate::similarity::Similarity;
 use crate::workers;
 use band::{Band, MAX_BANDS, Row};
 use geometry::Placement;
-pub use geometry::{Anchor, InputGeometry};
+pub use geometry::{LetterboxAlign, InputGeometry};
 use plan::{Plan, Plans, Sizes};
 pub use sample::InputSample;
 use source::Source;
@@ -61,9 +61,9 @@ impl ChannelOrder {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Border {
     /// A level, 0..=255, normalised like the image (OpenCV's `BORDER_CONSTANT`).
-    Level(f32),
+    Constant(f32),
     /// The image's outermost pixels (OpenCV's `BORDER_REPLICATE`).
-    Repeat,
+    Replicate,
 }
 
 /// Conversion of images to the input of a network; built once per learner.
@@ -90,7 +90,7 @@ pub enum Border {
 pub struct Preprocess {
     size: [usize; 2],
     /// Anchor and level of the padding; `None` stretches.
-    letterbox: Option<(Anchor, f32)>,
+    letterbox: Option<(LetterboxAlign, f32)>,
     border: Border,
     order: ChannelOrder,
     scale: [f32; 3],
@@ -106,7 +106,7 @@ impl Preprocess {
         Self {
             size: [width, height],
             letterbox: None,
-            border: Border::Level(0.0),
+            border: Border::Constant(0.0),
             order: ChannelOrder::Rgb,
             scale: [1.0; 3],
             bias: [0.0; 3],
@@ -118,7 +118,7 @@ impl Preprocess {
 
     /// Keeps the image's aspect ratio; the padding has the level `pad` (0..=255, then normalised).
     #[must_use]
-    pub fn letterbox(self, anchor: Anchor, pad: f32) -> Self {
+    pub fn letterbox(self, anchor: LetterboxAlign, pad: f32) -> Self {
         Self { letterbox: Some((anchor, pad)), ..self }
     }
 

@@ -110,7 +110,7 @@ impl Decoding<'_> {
             (false, None) => vec![self.sample(prefilled, 0.0, seed)?],
             (true, _) => {
                 let seeds = (0..self.options.best_of.max(1))
-                    .map(|number| Random::at([seed, u64::from(temperature.to_bits()), number as u64]).bits());
+                    .map(|number| Random::from_key([seed, u64::from(temperature.to_bits()), number as u64]).bits());
                 seeds.map(|seed| self.sample(prefilled, temperature, seed)).collect::<Result<_>>()?
             }
         };
