@@ -56,7 +56,7 @@ pub fn source(matches: &ArgMatches, learner: Option<&dyn AnyLearner>) -> Result<
             "a policy acts in an environment, not on a data set; give --env ID",
         ));
     }
-    let trained_in = learner.and_then(opendr::trained_in).map(str::to_owned);
+    let trained_in = learner.and_then(opendr::training_environment).map(str::to_owned);
     let id = matches.get_one::<String>(ENV).cloned().or(trained_in).ok_or_else(|| {
         Error::invalid_param(
             "no environment; name one by --env, such as --env CartPole-v1 (see \"opendr sim list\")",

@@ -71,7 +71,7 @@ impl Inputs {
     /// Returns whether the items are independent, unlike frames of a video.
     pub fn are_independent(&self) -> bool {
         match self {
-            Self::Frames(source) => source.is_pictures(),
+            Self::Frames(source) => source.is_images(),
             Self::Files { .. } => true,
             Self::Recordings(_) => false,
         }
@@ -87,7 +87,7 @@ impl Iterator for Inputs {
             Self::Frames(source) => {
                 let frame = source.next()?;
                 let frame = frame.map(|frame| item(Datum::Frame(frame)));
-                Some(frame.map_err(|error| (source.last_path().map(Path::to_owned), error)))
+                Some(frame.map_err(|error| (source.current_path().map(Path::to_owned), error)))
             }
             Self::Files { kind, paths, given } => {
                 let path = paths.get(*given)?;

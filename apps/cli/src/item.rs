@@ -34,7 +34,7 @@ pub enum Datum {
 }
 
 /// The next item, or an error with its file, if there is one.
-pub type Next = std::result::Result<Item, (Option<PathBuf>, Error)>;
+pub type Next = Result<Item, (Option<PathBuf>, Error)>;
 
 impl Item {
     /// Returns the file or device of the item.
@@ -61,7 +61,7 @@ impl Item {
     /// Returns the index of the item among all inputs, from 0.
     pub fn index(&self) -> u64 {
         match &self.datum {
-            Datum::Frame(frame) => frame.index,
+            Datum::Frame(frame) => frame.item_index,
             Datum::Value { index, .. } => *index,
         }
     }
@@ -69,7 +69,7 @@ impl Item {
     /// Returns the index of the item within its file, from 0.
     pub fn number(&self) -> u64 {
         match &self.datum {
-            Datum::Frame(frame) => frame.number,
+            Datum::Frame(frame) => frame.frame_index,
             Datum::Value { number, .. } => *number,
         }
     }

@@ -37,7 +37,7 @@ mod writer;
 
 use std::ffi::OsString;
 
-pub use progress_bar::Bar;
+pub use progress_bar::ProgressBar;
 
 /// Runs the command line `arguments`, of which the first is the program's name, and returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {

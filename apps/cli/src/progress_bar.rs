@@ -35,7 +35,7 @@ fn watch_interrupt() {
 }
 
 /// Progress on standard error: a bar on a terminal, else a line every few seconds.
-pub struct Bar {
+pub struct ProgressBar {
     state: Mutex<State>,
     quiet: bool,
 }
@@ -46,7 +46,7 @@ enum State {
     Lines(ProgressLines),
 }
 
-impl Bar {
+impl ProgressBar {
     /// Creates a progress display, which prints nothing when `quiet`, and installs the handler of Ctrl-C.
     pub fn new(quiet: bool) -> Self {
         watch_interrupt();
@@ -76,7 +76,7 @@ impl Bar {
     }
 }
 
-impl Progress for Bar {
+impl Progress for ProgressBar {
     fn begin(&self, what: &str, total: Option<u64>, unit: Unit) {
         if !self.quiet {
             *self.state() = match stderr().is_terminal() {

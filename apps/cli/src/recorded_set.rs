@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use opendr::Value;
 #[cfg(feature = "ros")]
-use opendr::bags::{Recorded, Recording};
+use opendr::bags::{RecordedMessage, Recording};
 
 /// Values and messages of a recording beside the value of the first port; a build without the feature `ros` has none.
 pub struct RecordedSet {
@@ -20,7 +20,7 @@ pub struct RecordedSet {
     pub is_last: bool,
     /// Messages from which the values were read.
     #[cfg(feature = "ros")]
-    pub messages: Vec<Recorded>,
+    pub messages: Vec<RecordedMessage>,
     /// Recording of the messages.
     #[cfg(feature = "ros")]
     pub recording: Arc<Recording>,

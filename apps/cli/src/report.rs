@@ -11,7 +11,7 @@ use opendr::{Error, Result, ResultExt, Value};
 use serde::Serialize;
 
 use crate::item::Item;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::stdout;
 use crate::timings::Timings;
 
@@ -65,7 +65,7 @@ impl Json {
 
 /// Report of frames in the order of processing.
 pub struct Report<'a> {
-    bar: &'a Bar,
+    bar: &'a ProgressBar,
     json: Json,
     timings: bool,
     failures: u64,
@@ -73,7 +73,7 @@ pub struct Report<'a> {
 
 impl<'a> Report<'a> {
     /// Creates a report that prints around `bar`; `timings` adds the duration of the stages.
-    pub fn new(bar: &'a Bar, json: Json, timings: bool) -> Self {
+    pub fn new(bar: &'a ProgressBar, json: Json, timings: bool) -> Self {
         Self { bar, json, timings, failures: 0 }
     }
 

@@ -158,7 +158,7 @@ impl Video {
     fn try_write(&mut self, frame: &Frame, path: &Path) -> Result<()> {
         if let Self::Unopened = self {
             check_is_other(&frame.path, path)?;
-            let rate = frame.video.as_ref().map_or(IMAGE_RATE, |video| video.rate);
+            let rate = frame.video.as_ref().map_or(IMAGE_RATE, |video| video.frame_rate);
             *self = Self::Open(frame.path.clone(), VideoWriter::create(path, rate)?);
         }
         match self {

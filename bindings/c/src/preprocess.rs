@@ -3,7 +3,7 @@
 use std::mem::MaybeUninit;
 
 use opendr::data::{Image, PixelFormat};
-use opendr::vision::{Anchor, ChannelOrder, Preprocess};
+use opendr::vision::{ChannelOrder, LetterboxAlign, Preprocess};
 use opendr::{Error, Result};
 
 use crate::data::{FORMATS, LAYOUTS, from_number};
@@ -88,7 +88,7 @@ impl opendr_preprocess {
             .normalise(self.mean, self.std);
         match self.pad {
             stretched if stretched.is_nan() => Ok(preprocess),
-            pad if pad.is_finite() => Ok(preprocess.letterbox(Anchor::Centre, pad)),
+            pad if pad.is_finite() => Ok(preprocess.letterbox(LetterboxAlign::Centre, pad)),
             pad => Err(Error::invalid_input(format!("pad is {pad}; give a value of 0 to 255, or NaN"))),
         }
     }

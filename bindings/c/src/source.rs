@@ -48,7 +48,7 @@ pub unsafe extern "C" fn opendr_source_next(
             unsafe { (Out::new(image, "image")?, handle::held::<Images, _>(source, "source")?) };
         let (source, path) = &mut *source.0.lock().unwrap_or_else(PoisonError::into_inner);
         let next = source.next();
-        let bytes = source.last_path().map_or(&[][..], |path| path.as_os_str().as_encoded_bytes());
+        let bytes = source.current_path().map_or(&[][..], |path| path.as_os_str().as_encoded_bytes());
         *path = CString::new(bytes).unwrap_or_default();
         if let Some(frame) = next.transpose()? {
             out.set(AnyValue::from(frame.image));

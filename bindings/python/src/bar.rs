@@ -3,21 +3,21 @@
 use std::sync::{Mutex, PoisonError};
 
 use opendr::{Progress, Result, Unit};
-use opendr_cli::Bar;
+use opendr_cli::ProgressBar;
 use pyo3::prelude::*;
 
 use crate::error::ToPython;
 
 /// The progress bar of the command; work stops when a signal handler of Python raises.
 pub struct PythonBar {
-    bar: Bar,
+    bar: ProgressBar,
     raised: Mutex<Option<PyErr>>,
 }
 
 impl PythonBar {
     /// Creates a bar, which prints nothing when `quiet`.
     pub fn new(quiet: bool) -> Self {
-        Self { bar: Bar::without_interrupt(quiet), raised: Mutex::default() }
+        Self { bar: ProgressBar::without_interrupt(quiet), raised: Mutex::default() }
     }
 
     /// Runs `work` with the GIL released. Raises the exception of a signal handler that stopped it.

@@ -10,7 +10,7 @@ use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
 use opendr::{
-    ActingStream, Device, Error, FitData, FitEnvironments, FitOptions, Pool, Statistics, Value, ValueType,
+    Device, Error, FitData, FitEnvironments, FitOptions, PolicyController, Pool, Statistics, Value, ValueType,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -171,7 +171,7 @@ impl Handle {
             let val_env = val_env.as_ref().map(|val_env| val_env as &dyn EnvironmentSource);
             let environments = FitEnvironments { env: &env, val_env };
             let fitted =
-                opendr::fit_in(lock(&self.learner).as_mut(), self.entry, environments, &options, bar)?;
+                opendr::fit_policy(lock(&self.learner).as_mut(), self.entry, environments, &options, bar)?;
             Ok((json_of(&fitted)?, fitted.to_string()))
         })
     }
@@ -189,9 +189,9 @@ impl Handle {
         PythonBar::new(!verbose).run(py, |bar| {
             let stream = lock(&self.learner).stream()?;
             let mut environment = env.make()?;
-            let mut acting = ActingStream::new(stream, self.entry, environment.spec())?;
+            let mut acting = PolicyController::new(stream, self.entry, environment.spec())?;
             let protocol = EvaluationProtocol { episodes, first_seed, ..EvaluationProtocol::default() };
-            let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
+            let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
             json_of(&Statistics::from(&report).scalars)
         })
     }
@@ -199,7 +199,7 @@ impl Handle {
     /// Id of the environment that the loaded policy was trained in.
     #[getter]
     fn trained_in(&self, py: Python<'_>) -> Option<String> {
-        py.detach(|| opendr::trained_in(lock(&self.learner).as_ref()).map(str::to_owned))
+        py.detach(|| opendr::training_environment(lock(&self.learner).as_ref()).map(str::to_owned))
     }
 
     /// Writes the optimised model to `output` and loads it. Returns the report as JSON and as text.

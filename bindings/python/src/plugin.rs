@@ -47,7 +47,7 @@ pub fn register(py: Python<'_>, class: Py<PyAny>, tables: &Bound<'_, PyDict>) ->
         let learner = PythonLearner { spec, params, ports, outputs, object, values, device, loaded: false };
         Ok(Box::new(learner) as Box<dyn AnyLearner>)
     };
-    opendr::registry().add(Entry::added(spec, params, ports, outputs, make)).to_python(py)
+    opendr::registry().add(Entry::dynamic(spec, params, ports, outputs, make)).to_python(py)
 }
 
 /// Runs the test that every learner passes. `calls` are the inputs of one stream by port: at least two, which differ.
@@ -128,7 +128,7 @@ fn field(row: &Tables<'_, '_>) -> PyResult<Field> {
         log_scale: false,
         live: row.get("live")?.extract()?,
         aliases: &[],
-        default: FieldDefault::Given(Box::leak(Box::new(param_from_python(&row.get("default")?)?))),
+        default: FieldDefault::Value(Box::leak(Box::new(param_from_python(&row.get("default")?)?))),
     })
 }
 

@@ -1,7 +1,7 @@
 //! Conversion between serialised messages of rclpy and rospy and data and targets.
 
 use opendr::ros::bridge::{RosBridge, message_types};
-use opendr::ros::messages::{Message, MessageType, Wire};
+use opendr::ros::messages::{Message, MessageType, WireFormat};
 use opendr::{Error, Result, ValueType};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -62,8 +62,8 @@ pub fn ros_from_value<'py>(
     Ok(PyBytes::new(py, &py.detach(write).to_python(py)?))
 }
 
-const fn wire(is_ros1: bool) -> Wire {
-    if is_ros1 { Wire::Ros1 } else { Wire::Cdr }
+const fn wire(is_ros1: bool) -> WireFormat {
+    if is_ros1 { WireFormat::Ros1 } else { WireFormat::Cdr }
 }
 
 fn default_type(message: MessageType) -> Result<ValueType> {

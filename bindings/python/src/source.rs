@@ -85,7 +85,7 @@ impl Source {
                 Some(Some(frame)) => {
                     let frame = frame.to_python(py)?;
                     let image = python_from_image(py, frame.image)?;
-                    return Ok(Some((image, frame.path.to_path_buf(), frame.number)));
+                    return Ok(Some((image, frame.path.to_path_buf(), frame.frame_index)));
                 }
                 None => {}
             }

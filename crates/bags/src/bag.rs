@@ -11,7 +11,7 @@ use crate::bag2::{Folder, SQLITE_MAGIC, Sqlite};
 use crate::channel::Channel;
 use crate::format::BagFormat;
 use crate::mcap;
-use crate::recorded::{Recorded, Stream};
+use crate::recorded::{RecordedMessage, Stream};
 use crate::selection::{Filter, Selection};
 use crate::source::Source;
 use crate::storage::Storage;
@@ -150,7 +150,7 @@ pub struct Messages {
 }
 
 impl Iterator for Messages {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let item = self.stream.as_mut()?.next();

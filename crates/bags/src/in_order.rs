@@ -7,7 +7,7 @@ use std::sync::Arc;
 use bytes::Bytes;
 use opendr_engine::{Error, Result};
 
-use crate::recorded::Recorded;
+use crate::recorded::RecordedMessage;
 use crate::selection::Filter;
 
 /// Location of a message in the bytes of its chunk.
@@ -98,7 +98,7 @@ impl<C: Chunks> InOrder<C> {
 }
 
 impl<C: Chunks> Iterator for InOrder<C> {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if let Err(error) = self.load() {
@@ -115,7 +115,7 @@ impl<C: Chunks> Iterator for InOrder<C> {
             let Reverse(done) = PeekMut::pop(top);
             self.open_bytes -= done.loaded.bytes.len();
         }
-        Some(Ok(Recorded {
+        Some(Ok(RecordedMessage {
             channel: entry.channel as usize,
             log_time_ns: entry.log_time_ns,
             publish_time_ns: entry.publish_time_ns,

@@ -45,6 +45,6 @@ pub use bag::{Bag, Messages};
 pub use channel::{Channel, Definition, Encoding, Language};
 pub use compression::Compression;
 pub use format::BagFormat;
-pub use recorded::Recorded;
+pub use recorded::RecordedMessage;
 pub use selection::Selection;
 pub use writer::{BagWriter, WriteOptions};

@@ -4,7 +4,7 @@ use bytes::Bytes;
 
 /// A message as it was recorded.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Recorded {
+pub struct RecordedMessage {
     /// Index into [`Bag::channels`](crate::Bag::channels).
     pub channel: usize,
     /// Time of recording, in nanoseconds since 1970 (or of the simulation's clock).
@@ -17,4 +17,4 @@ pub struct Recorded {
 }
 
 /// Iterator over the messages of any storage.
-pub(crate) type Stream = Box<dyn Iterator<Item = opendr_engine::Result<Recorded>> + Send>;
+pub(crate) type Stream = Box<dyn Iterator<Item = opendr_engine::Result<RecordedMessage>> + Send>;

@@ -12,7 +12,7 @@ use crate::channel::{Channel, Encoding};
 use crate::compression::{Compression, MAX_BYTES};
 use crate::format::BagFormat;
 use crate::mcap::McapWriter;
-use crate::recorded::Recorded;
+use crate::recorded::RecordedMessage;
 use crate::storage::StorageWriter;
 
 /// Options of a recording that is written.
@@ -108,7 +108,7 @@ impl BagWriter {
     /// # Errors
     ///
     /// As [`BagWriter::write`].
-    pub fn copy(&mut self, channel: usize, message: &Recorded) -> Result<()> {
+    pub fn copy(&mut self, channel: usize, message: &RecordedMessage) -> Result<()> {
         let log_time_ns = message.log_time_ns;
         self.write_published(
             channel,

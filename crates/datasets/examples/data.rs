@@ -7,7 +7,7 @@
 
 use std::path::Path;
 
-use opendr_datasets::{OpenOptions, Problems, WriteOptions, find, open};
+use opendr_datasets::{OpenOptions, Problems, WriteOptions, find_format, open};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::{Error, Result, Silent, ValueType};
 
@@ -37,7 +37,7 @@ fn main() -> Result<()> {
         ["convert", format, path, to, out] => {
             let written =
                 WriteOptions { split: after("--to-split").or_else(|| options.split.clone()), link: false };
-            (find(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)?;
+            (find_format(to)?.write)(&*dataset(format, path)?, Path::new(out), &written, &problems, &Silent)?;
         }
         _ => return Err(Error::invalid_param(USAGE)),
     }

@@ -111,7 +111,7 @@ fn wrong_class(class: i64, classes: usize) -> Option<String> {
 
 fn wrong_poses(list: &PoseList, size: Option<[f32; 2]>, report: &mut impl FnMut(String, Option<String>)) {
     for (at, pose) in list.poses.iter().enumerate() {
-        for (joint, point) in pose.keypoints.iter().enumerate().filter(|(_, point)| point.is_found()) {
+        for (joint, point) in pose.keypoints.iter().enumerate().filter(|(_, point)| point.is_detected()) {
             let outside = size.filter(|[across, down]| point.x > across + MARGIN || point.y > down + MARGIN);
             report(
                 format!("person {at} joint {joint}"),

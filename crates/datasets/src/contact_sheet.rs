@@ -22,9 +22,7 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
     let mut pictures = Vec::new();
     for at in 0..dataset.len() {
         match dataset.get(at) {
-            Ok(sample) => {
-                pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(at))))
-            }
+            Ok(sample) => pictures.extend(draw_sample(&sample).map(|picture| (picture, dataset.name(at)))),
             Err(error) => {
                 problems.report(Problem::of(&error, dataset, at))?;
             }
@@ -41,10 +39,10 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
 
 /// Draws the first datum of a sample that can be drawn, with the target: an image as it is, the middle frame of a
 /// clip, audio and time series as curves, a point cloud in bird's eye view; `None` without such a datum.
-pub fn picture_with_target(sample: &Sample) -> Option<Image> {
+pub fn draw_sample(sample: &Sample) -> Option<Image> {
     let mut picture = sample.data.iter().find_map(|datum| picture_of(datum, sample.target.as_ref()))?;
     // Lines are twice as thick, since the image is scaled down afterwards.
-    let style = Style { confidences: false, scale: 2.0, ..Style::default() };
+    let style = Style { show_confidences: false, scale: 2.0, ..Style::default() };
     for datum in &sample.data {
         if let Value::ImageWithDetections(both) = datum {
             draw(&mut picture, &both.boxes, &style);
@@ -100,12 +98,12 @@ mod tests {
     #[test]
     fn all_types_that_can_be_drawn_are_on_the_sheet() {
         let sample = Mixed.get(0).unwrap();
-        let drawn = picture_with_target(&sample).unwrap();
+        let drawn = draw_sample(&sample).unwrap();
         assert!(drawn.chw_u8().iter().any(|level| *level > 100));
         let problems = Problems::skipping();
         let sheet = contact_sheet(&Mixed, &problems).unwrap();
         assert!(sheet.width() > 3 * SIDE && sheet.width() < 4 * SIDE && problems.count() == 1);
         assert!(contact_sheet(&Mixed, &Problems::strict()).is_err());
-        assert!(picture_with_target(&Sample { data: vec![], target: None }).is_none());
+        assert!(draw_sample(&Sample { data: vec![], target: None }).is_none());
     }
 }

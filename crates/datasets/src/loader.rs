@@ -22,7 +22,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Random, Result};
 
 use crate::augment::Pipeline;
-pub use collate::{Collate, Samples};
+pub use collate::{Collate, SampleBatches};
 use epoch::each_batch;
 pub use epoch::{Batch, Epoch};
 pub use image_batch::{ImageBatch, ImageBatches};
@@ -50,7 +50,7 @@ pub use skipped::Skipped;
 /// }
 /// # Ok::<(), opendr_engine::Error>(())
 /// ```
-pub struct Loader<'d, C = Samples> {
+pub struct Loader<'d, C = SampleBatches> {
     dataset: Arc<dyn DatasetIterator + 'd>,
     pipeline: Arc<Pipeline>,
     collate: Arc<C>,
@@ -68,7 +68,7 @@ impl<'d> Loader<'d> {
     pub fn new(dataset: impl DatasetIterator + 'd, options: LoaderOptions) -> Result<Self> {
         options.check()?;
         let pipeline = Arc::default();
-        Ok(Self { dataset: Arc::new(dataset), pipeline, collate: Arc::new(Samples), options })
+        Ok(Self { dataset: Arc::new(dataset), pipeline, collate: Arc::new(SampleBatches), options })
     }
 }
 
@@ -121,7 +121,7 @@ impl<'d, C: Collate> Loader<'d, C> {
     fn order(&self, epoch: u64) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.dataset.len()).collect();
         if self.options.shuffle {
-            Random::at([self.options.seed, epoch, ORDER]).shuffle(&mut order);
+            Random::from_key([self.options.seed, epoch, ORDER]).shuffle(&mut order);
         }
         order.truncate(self.samples());
         order

@@ -108,7 +108,7 @@ impl DatasetIterator for Mnist {
         Ok(Some(Value::Category(Category { description, ..Category::new(i64::from(*class), Some(1.0)) })))
     }
 
-    fn picture_size(&self, _: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, _: usize) -> Option<[u32; 2]> {
         let [_, height, width] = self.pictures.shape;
         Some([u32::try_from(width).ok()?, u32::try_from(height).ok()?])
     }
@@ -215,7 +215,7 @@ mod tests {
         write(&folder, &[9, 0]);
         assert!(matches!(Mnist::recognise(&folder), Recognition::Certain));
         let dataset = Mnist::open(&folder, &OpenOptions::default(), &Problems::strict()).unwrap();
-        assert_eq!((dataset.len(), dataset.picture_size(0)), (2, Some([3, 2])));
+        assert_eq!((dataset.len(), dataset.image_size(0)), (2, Some([3, 2])));
         let Some(Value::Category(category)) = dataset.target(0).unwrap() else { panic!() };
         assert_eq!(category.description.as_deref(), Some("ankle boot"));
         let Value::Image(image) = &dataset.get(1).unwrap().data[0] else { panic!() };

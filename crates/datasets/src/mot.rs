@@ -45,14 +45,14 @@ impl Mot {
     }
 
     /// Returns the indices of the sequence and of the frame in it for sample `index`, both from 0.
-    pub fn place(&self, index: usize) -> Option<(usize, usize)> {
+    pub fn sequence_and_frame(&self, index: usize) -> Option<(usize, usize)> {
         let sequence = self.starts.partition_point(|start| *start <= index).checked_sub(1)?;
         (index < self.len).then(|| (sequence, index - self.starts[sequence]))
     }
 
     /// Returns the detections of `det.txt` for sample `index`, the input of trackers.
     pub fn detections(&self, index: usize) -> Option<BoundingBoxList> {
-        let (at, picture) = self.place(index)?;
+        let (at, picture) = self.sequence_and_frame(index)?;
         let sequence = self.sequences.get(at)?;
         let (frame, _) = sequence.frame(picture)?;
         let boxes = sequence.detections(frame).iter().map(|row| row.annotation().bounding_box);
@@ -62,7 +62,7 @@ impl Mot {
 
     /// Returns the sequence, frame number and image of sample `index`.
     fn frame(&self, index: usize) -> Result<(&MotSequence, i64, Option<&Path>)> {
-        let frame = self.place(index).and_then(|(at, picture)| {
+        let frame = self.sequence_and_frame(index).and_then(|(at, picture)| {
             let sequence = self.sequences.get(at)?;
             sequence.frame(picture).map(|(frame, path)| (sequence, frame, path))
         });
@@ -99,7 +99,7 @@ impl DatasetIterator for Mot {
     fn target(&self, index: usize) -> Result<Option<Value>> {
         let (sequence, frame, _) = self.frame(index)?;
         let (header, classes) = (header(sequence, frame), self.classes.clone());
-        let annotations = sequence.truth(frame).iter().map(MotRow::annotation).collect();
+        let annotations = sequence.ground_truth(frame).iter().map(MotRow::annotation).collect();
         let tracks = TrackingAnnotationList { header, annotations, classes, action: None };
         Ok(Some(match self.target {
             ValueType::BoundingBoxList => {
@@ -122,12 +122,12 @@ impl DatasetIterator for Mot {
         self.frame(index).ok()?.2.map(Path::to_owned)
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
-        self.sequences.get(self.place(index)?.0)?.image_size()
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.sequences.get(self.sequence_and_frame(index)?.0)?.image_size()
     }
 
     fn sequence(&self, index: usize) -> Option<usize> {
-        self.place(index).map(|(sequence, _)| sequence)
+        self.sequence_and_frame(index).map(|(sequence, _)| sequence)
     }
 
     fn classes(&self) -> Classes {

@@ -91,7 +91,7 @@ impl<'a> PictureWriter<'a> {
     pub fn place(&self, index: usize) -> Result<Placed> {
         match self.dataset.path(index).filter(|path| is_picture(path)) {
             Some(source) => {
-                let size = match self.dataset.picture_size(index) {
+                let size = match self.dataset.image_size(index) {
                     Some(size) => size,
                     None => Decoder::default().size(&source)?,
                 };

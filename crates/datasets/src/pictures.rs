@@ -12,13 +12,13 @@ const MAX_DEPTH: usize = 8;
 
 /// The images in a folder and in the folders inside it, sorted by name, without targets.
 #[derive(Debug, Clone)]
-pub struct Pictures {
+pub struct UnlabelledImages {
     root: PathBuf,
     /// File names relative to the root.
     names: Vec<String>,
 }
 
-impl Pictures {
+impl UnlabelledImages {
     /// Returns whether `path` contains images.
     pub fn are_in(path: &Path) -> bool {
         path.is_dir() && Self::open(path).is_ok()
@@ -49,9 +49,9 @@ fn collect(folder: &Path, prefix: &str, depth: usize, names: &mut Vec<String>) {
     }
 }
 
-impl Dataset for Pictures {}
+impl Dataset for UnlabelledImages {}
 
-impl DatasetIterator for Pictures {
+impl DatasetIterator for UnlabelledImages {
     fn len(&self) -> usize {
         self.names.len()
     }
@@ -82,12 +82,12 @@ mod tests {
     #[test]
     fn images_of_all_folders_are_in_order() {
         let folder = TemporaryFolder::new();
-        assert!(!Pictures::are_in(folder.path()));
+        assert!(!UnlabelledImages::are_in(folder.path()));
         for name in ["b.png", "a/2.png", "a/1.bmp"] {
             folder.picture(name, 3, 2);
         }
         std::fs::write(folder.path().join("notes.txt"), "").unwrap();
-        let pictures = Pictures::open(folder.path()).unwrap();
+        let pictures = UnlabelledImages::open(folder.path()).unwrap();
         assert_eq!((0..3).map(|at| pictures.name(at)).collect::<Vec<_>>(), ["b.png", "a/1.bmp", "a/2.png"]);
         assert!(matches!(&pictures.get(2).unwrap().data[..], [Value::Image(image)] if image.width() == 3));
         assert!(pictures.get(3).is_err());

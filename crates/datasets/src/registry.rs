@@ -42,7 +42,7 @@ const FORMATS: &[FormatEntry] = &[
 ///
 /// # Errors
 /// `NotFound`, with the list of names.
-pub fn find(name: &str) -> Result<&'static FormatEntry> {
+pub fn find_format(name: &str) -> Result<&'static FormatEntry> {
     let name = name.to_lowercase();
     formats().iter().find(|entry| entry.name == name || entry.aliases.contains(&&*name)).ok_or_else(|| {
         let names: Vec<_> = formats().iter().map(|entry| entry.name).collect();
@@ -81,7 +81,7 @@ pub fn recognise(path: &Path) -> Result<&'static FormatEntry> {
 pub fn format_of(dataset: &ExternalDataset) -> Result<&'static FormatEntry> {
     match dataset.dataset_type() {
         "" | "auto" => recognise(dataset.path()),
-        name => find(name),
+        name => find_format(name),
     }
 }
 

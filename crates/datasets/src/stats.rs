@@ -96,7 +96,7 @@ impl DatasetStats {
                 sequence = dataset.sequence(at);
                 stats.sequences += 1;
             }
-            if let Some([width, height]) = dataset.picture_size(at) {
+            if let Some([width, height]) = dataset.image_size(at) {
                 stats.picture_width.add(width.into());
                 stats.picture_height.add(height.into());
             }

@@ -31,7 +31,7 @@ const AHEAD: usize = 2;
 /// .unwrap();
 /// assert_eq!(lines, ["1ab", "2ab", "3ab"]);
 /// ```
-pub fn assembly_line<S: Send, T: Send, E>(
+pub fn map_in_stages<S: Send, T: Send, E>(
     stages: &mut [S],
     items: impl IntoIterator<Item = T>,
     work: impl Fn(&mut S, &mut T) + Sync,
@@ -106,7 +106,7 @@ mod tests {
             *count += 1;
             *sum += *weight;
         };
-        assembly_line(&mut stages, (0..50).map(|n| (n, 0)), work, |(n, sum)| {
+        map_in_stages(&mut stages, (0..50).map(|n| (n, 0)), work, |(n, sum)| {
             assert_eq!((n, sum), (next, 111));
             next += 1;
             Ok::<_, ()>(())
@@ -125,7 +125,7 @@ mod tests {
                 meeting.wait();
             }
         };
-        assembly_line(&mut stages, 0..2, work, |_| Ok::<_, ()>(())).unwrap();
+        map_in_stages(&mut stages, 0..2, work, |_| Ok::<_, ()>(())).unwrap();
     }
 
     #[test]
@@ -139,7 +139,7 @@ mod tests {
                 assert!(taken.load(Ordering::Relaxed) <= n + AHEAD * count);
                 if n == 5 { Err("enough") } else { Ok(()) }
             };
-            assert_eq!(assembly_line(&mut vec![(); count], items, |(), _| (), each), Err("enough"));
+            assert_eq!(map_in_stages(&mut vec![(); count], items, |(), _| (), each), Err("enough"));
         }
     }
 
@@ -147,6 +147,6 @@ mod tests {
     #[should_panic(expected = "seven")]
     fn panic_of_a_stage_is_propagated() {
         let work = |(): &mut (), n: &mut i32| assert!(*n != 7, "seven");
-        assembly_line(&mut [(); 2], 0.., work, |_| Ok::<_, ()>(())).ok();
+        map_in_stages(&mut [(); 2], 0.., work, |_| Ok::<_, ()>(())).ok();
     }
 }

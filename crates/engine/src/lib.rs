@@ -59,7 +59,7 @@ pub mod overlap;
 pub mod params;
 pub mod target;
 
-pub use assembly_line::assembly_line;
+pub use assembly_line::map_in_stages;
 pub use cache::cache_dir;
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};

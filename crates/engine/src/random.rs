@@ -23,12 +23,12 @@ pub struct Random {
 impl Random {
     /// Creates the generator of `seed`.
     pub fn new(seed: u64) -> Self {
-        Self::at([seed])
+        Self::from_key([seed])
     }
 
     /// Creates the generator of a key such as `[seed, epoch, sample]`. Generators of different keys are independent, so
     /// the numbers for a sample do not depend on which thread processes it, and when.
-    pub fn at<const N: usize>(place: [u64; N]) -> Self {
+    pub fn from_key<const N: usize>(place: [u64; N]) -> Self {
         let mut hash = N as u64;
         for part in place {
             hash = mixed(hash.wrapping_add(STEP) ^ mixed(part.wrapping_add(STEP)));
@@ -170,10 +170,12 @@ mod tests {
 
     #[test]
     fn keys_have_independent_generators() {
-        let mut first: Vec<u64> =
-            (0..1000).flat_map(|i| [Random::at([0, i]), Random::at([i, 1])]).map(|mut r| r.bits()).collect();
-        first.push(Random::at([0]).bits());
-        first.push(Random::at([0, 0, 0]).bits());
+        let mut first: Vec<u64> = (0..1000)
+            .flat_map(|i| [Random::from_key([0, i]), Random::from_key([i, 1])])
+            .map(|mut r| r.bits())
+            .collect();
+        first.push(Random::from_key([0]).bits());
+        first.push(Random::from_key([0, 0, 0]).bits());
         first.sort_unstable();
         // [0, 1] is in both sequences.
         assert_eq!(first.windows(2).filter(|pair| pair[0] == pair[1]).count(), 1);

@@ -19,14 +19,14 @@ use crate::sample_names::SampleNames;
 const MAX_LINE: u64 = 1 << 30;
 
 /// Predictions by the index of the sample in a data set.
-pub enum Answers {
+pub enum FilePredictions {
     /// Lines of JSON as written by `opendr infer --json` and `opendr eval --out`, with the position of each sample's line.
     Lines(Lines),
     /// Annotations of a data set of any format, with the index of the annotation of each sample.
     Dataset(Box<dyn DatasetIterator>, Vec<Option<usize>>),
 }
 
-impl Answers {
+impl FilePredictions {
     /// Uses the annotations of `answers` as predictions for the samples of `dataset` of the same names.
     pub fn from_dataset(answers: Box<dyn DatasetIterator>, dataset: &dyn DatasetIterator) -> Self {
         let names = SampleNames::of(dataset);

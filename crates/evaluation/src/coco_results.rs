@@ -52,7 +52,7 @@ pub fn score_coco_results(
         files.max_detections = u32::try_from(most).unwrap_or(u32::MAX);
     }
     let found = files.compare(&annotations, results)?;
-    let pictures = usize::try_from(found.pictures).unwrap_or(usize::MAX);
+    let pictures = usize::try_from(found.images).unwrap_or(usize::MAX);
     Ok(Outcome {
         learner: results.display().to_string(),
         dataset: annotations.display().to_string(),

@@ -16,8 +16,8 @@ use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
 use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::shown::{AnsweredSample, ContactSheetSamples};
-use crate::{Answers, ClassMap, ClassMatching, Outcome, Predictor, Subject};
+use crate::shown::{ContactSheetSamples, ScoredSample};
+use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor, Subject};
 
 /// Number of samples with the lowest scores that are listed, and of those spaced evenly over the data set.
 const LISTED: usize = 24;
@@ -133,7 +133,7 @@ impl<'a> Evaluation<'a> {
     /// Lowers the threshold for metrics that rank predictions of all scores, if it has its default value. Returns the
     /// original value.
     fn lower_threshold(&self, learners: &mut [Box<dyn AnyLearner>]) -> Result<Option<ParamValue>> {
-        let Some(first) = learners.first().filter(|_| self.metric.ranks) else { return Ok(None) };
+        let Some(first) = learners.first().filter(|_| self.metric.is_ranking) else { return Ok(None) };
         let Some(was) = first.params().remove(THRESHOLD) else { return Ok(None) };
         if first.default_of(THRESHOLD).as_ref() != Some(&was)
             || was.as_float().is_none_or(|was| was <= LOW_THRESHOLD)
@@ -153,7 +153,7 @@ impl<'a> Evaluation<'a> {
     ///
     /// # Errors
     /// As [`Evaluation::run`].
-    pub fn score(&self, answers: &Answers, dataset: &dyn DatasetIterator) -> Result<Outcome> {
+    pub fn score(&self, answers: &FilePredictions, dataset: &dyn DatasetIterator) -> Result<Outcome> {
         let begun = Instant::now();
         let mut tally = self.begin(dataset, answers.classes())?;
         let done = (0..dataset.len()).take_while(|_| !self.progress.stopped()).try_for_each(|at| {
@@ -301,7 +301,7 @@ impl Tally<'_> {
         match self.score(line) {
             Ok((score, prediction)) => {
                 self.counted += 1;
-                self.listed.add(&AnsweredSample { index: at, name: dataset.name(at), score, prediction });
+                self.listed.add(&ScoredSample { index: at, name: dataset.name(at), score, prediction });
             }
             Err(problem) => self.problems.report(problem)?,
         }

@@ -9,7 +9,7 @@ use opendr_metrics::MetricEntry;
 ///
 /// # Errors
 /// `InvalidInput` when the format has no such annotations; else as [`open`](fn@opendr_datasets::open).
-pub fn open_for(
+pub fn open_for_metric(
     metric: &MetricEntry,
     dataset: &ExternalDataset,
     split: Option<String>,

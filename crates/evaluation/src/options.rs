@@ -13,7 +13,7 @@ use opendr_metrics::{MetricEntry, find};
 use serde::Deserialize;
 
 use crate::evaluation::RESAMPLES;
-use crate::{ClassMatching, Evaluation, Outcome, Predictor, Subject, metric_of, open_for};
+use crate::{ClassMatching, Evaluation, Outcome, Predictor, Subject, metric_of, open_for_metric};
 
 /// All options; each may be omitted.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
@@ -91,7 +91,7 @@ impl EvalOptions {
         let (name, dataset): (_, Box<dyn DatasetIterator + 'a>) = match dataset {
             DatasetRef::External(external) => {
                 let name = external.path().display().to_string();
-                (name, open_for(metric, external, self.split.clone(), &problems)?)
+                (name, open_for_metric(metric, external, self.split.clone(), &problems)?)
             }
             DatasetRef::Iterator(samples) => (String::new(), Box::new(samples)),
         };

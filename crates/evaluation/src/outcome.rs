@@ -12,7 +12,7 @@ use opendr_metrics::{Report, Table};
 use opendr_runlog::svg_from_figure;
 use serde::Serialize;
 
-use crate::shown::{AnsweredSample, contact_sheet};
+use crate::shown::{ScoredSample, contact_sheet};
 use crate::{ClassReport, Interval};
 
 /// Maximum rows of a printed table; the JSON has all.
@@ -52,10 +52,10 @@ pub struct Outcome {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interval: Option<Interval>,
     /// Samples with the lowest scores, lowest first.
-    pub worst: Vec<AnsweredSample>,
+    pub worst: Vec<ScoredSample>,
     /// Samples spaced evenly over the data set.
     #[serde(skip)]
-    pub evenly: Vec<AnsweredSample>,
+    pub evenly: Vec<ScoredSample>,
     /// Skipped samples and annotations.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub problems: Vec<Problem>,

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use opendr_datasets::picture_with_target;
+use opendr_datasets::draw_sample;
 use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, Sample};
 use opendr_engine::{Result, Value};
@@ -16,7 +16,7 @@ const SIDE: usize = 300;
 
 /// A sample with its prediction and score.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AnsweredSample {
+pub struct ScoredSample {
     /// Index in the data set.
     pub index: usize,
     /// Name in the data set.
@@ -32,8 +32,8 @@ pub struct AnsweredSample {
 pub struct ContactSheetSamples {
     limit: usize,
     samples: usize,
-    worst: Vec<AnsweredSample>,
-    evenly: Vec<AnsweredSample>,
+    worst: Vec<ScoredSample>,
+    evenly: Vec<ScoredSample>,
 }
 
 impl ContactSheetSamples {
@@ -43,10 +43,9 @@ impl ContactSheetSamples {
     }
 
     /// Adds a sample; keeps a copy if it is among the lowest scores or evenly spaced.
-    pub fn add(&mut self, sample: &AnsweredSample) {
-        let order = |other: &AnsweredSample| {
-            other.score.total_cmp(&sample.score).then(other.index.cmp(&sample.index))
-        };
+    pub fn add(&mut self, sample: &ScoredSample) {
+        let order =
+            |other: &ScoredSample| other.score.total_cmp(&sample.score).then(other.index.cmp(&sample.index));
         let at = self.worst.partition_point(|other| order(other) == Ordering::Less);
         if at < self.limit {
             self.worst.insert(at, sample.clone());
@@ -59,7 +58,7 @@ impl ContactSheetSamples {
     }
 
     /// Returns the samples with the lowest scores, lowest first, and the evenly spaced ones.
-    pub fn into_samples(self) -> (Vec<AnsweredSample>, Vec<AnsweredSample>) {
+    pub fn into_samples(self) -> (Vec<ScoredSample>, Vec<ScoredSample>) {
         (self.worst, self.evenly)
     }
 }
@@ -67,17 +66,15 @@ impl ContactSheetSamples {
 /// Draws a contact sheet of samples, each with its ground truth and its prediction; `None` when they have no images. Predictions
 /// with a confidence below `least` are not drawn.
 pub fn contact_sheet(
-    samples: &[AnsweredSample],
+    samples: &[ScoredSample],
     dataset: &dyn DatasetIterator,
     least: f32,
 ) -> Result<Option<Image>> {
     let mut images = Vec::new();
-    for AnsweredSample { index, name, score, prediction } in samples {
+    for ScoredSample { index, name, score, prediction } in samples {
         let sample = dataset.get(*index)?;
         let predicted = Sample { target: Some(confident(prediction, least)), ..sample.clone() };
-        if let (Some(truth), Some(predicted)) =
-            (picture_with_target(&sample), picture_with_target(&predicted))
-        {
+        if let (Some(truth), Some(predicted)) = (draw_sample(&sample), draw_sample(&predicted)) {
             images.push((truth, name.clone()));
             images.push((predicted, format!("predicted, {score:.2}")));
         }
@@ -110,9 +107,9 @@ mod tests {
         let mut selected = ContactSheetSamples::new(limit, scores.len());
         for (index, &score) in scores.iter().enumerate() {
             let prediction = Category::default().into();
-            selected.add(&AnsweredSample { index, name: index.to_string(), score, prediction });
+            selected.add(&ScoredSample { index, name: index.to_string(), score, prediction });
         }
-        let indices = |samples: Vec<AnsweredSample>| samples.iter().map(|sample| sample.index).collect();
+        let indices = |samples: Vec<ScoredSample>| samples.iter().map(|sample| sample.index).collect();
         let (worst, evenly) = selected.into_samples();
         (indices(worst), indices(evenly))
     }

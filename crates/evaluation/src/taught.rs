@@ -7,7 +7,7 @@ use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
 
 /// The samples in which a teacher detected something, with its predictions as targets.
-pub struct Taught<'a> {
+pub struct LabelledDataset<'a> {
     samples: Box<dyn DatasetIterator + 'a>,
     /// Index and target of each sample.
     labels: Vec<(usize, Value)>,
@@ -15,7 +15,7 @@ pub struct Taught<'a> {
     processed: usize,
 }
 
-impl<'a> Taught<'a> {
+impl<'a> LabelledDataset<'a> {
     pub(crate) fn new(
         samples: Box<dyn DatasetIterator + 'a>,
         labels: Vec<(usize, Value)>,
@@ -42,9 +42,9 @@ impl<'a> Taught<'a> {
     }
 }
 
-impl Dataset for Taught<'_> {}
+impl Dataset for LabelledDataset<'_> {}
 
-impl DatasetIterator for Taught<'_> {
+impl DatasetIterator for LabelledDataset<'_> {
     fn len(&self) -> usize {
         self.labels.len()
     }
@@ -66,8 +66,8 @@ impl DatasetIterator for Taught<'_> {
         self.samples.path(self.at(index))
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
-        self.samples.picture_size(self.at(index))
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.samples.image_size(self.at(index))
     }
 
     fn sequence(&self, index: usize) -> Option<usize> {

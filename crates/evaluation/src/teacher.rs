@@ -11,7 +11,7 @@ use opendr_engine::{Error, Progress, Result, ResultExt, Unit, Value, ValueType};
 
 use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::{ClassMap, ClassMatching, Subject, Taught};
+use crate::{ClassMap, ClassMatching, LabelledDataset, Subject};
 
 /// Advice for classes that do not match.
 const REMEDY: &str = "Map them with teacher_map (--teacher-map TEACHER=CLASS,...), or take their numbers as they are with \
@@ -70,11 +70,11 @@ impl Teacher {
 }
 
 /// Settings of a distillation: how a teacher's predictions become annotations.
-pub struct Lesson<'a> {
+pub struct Distillation<'a> {
     /// Name of the data set in the journal.
     pub dataset: String,
     /// Type of the annotations.
-    pub wanted: ValueType,
+    pub annotation_type: ValueType,
     /// Predictions below this score are dropped.
     pub threshold: f32,
     /// Classes of the annotations; if empty, those of the data set, or else the teacher's.
@@ -91,18 +91,18 @@ pub struct Lesson<'a> {
     pub progress: &'a dyn Progress,
 }
 
-impl Lesson<'_> {
+impl Distillation<'_> {
     /// Annotates samples with a teacher. If the user stops it, the remaining samples are left out.
     ///
     /// # Errors
     /// `InvalidInput` when the teacher predicts another type, and for a sample without a prediction unless problems are
     /// skipped; `Io` when the journal cannot be written.
-    pub fn teach<'d>(
+    pub fn label<'d>(
         &self,
         mut teacher: Teacher,
         samples: Box<dyn DatasetIterator + 'd>,
-    ) -> Result<Taught<'d>> {
-        teacher.check(self.wanted)?;
+    ) -> Result<LabelledDataset<'d>> {
+        teacher.check(self.annotation_type)?;
         fs::create_dir_all(self.folder).context(|| format!("creating {}", self.folder.display()))?;
         let known = [self.classes.clone(), samples.classes(), teacher.classes.clone()];
         let classes = known.into_iter().find(|classes| !classes.is_empty()).unwrap_or_default();
@@ -120,7 +120,7 @@ impl Lesson<'_> {
         if !matched.is_empty() {
             self.progress.note(matched.to_string().trim_end());
         }
-        Ok(Taught::new(samples, kept, classes, next))
+        Ok(LabelledDataset::new(samples, kept, classes, next))
     }
 
     fn predict(
@@ -135,7 +135,7 @@ impl Lesson<'_> {
             labels.add(line)
         })?;
         let (streams, ports, first) = (&mut teacher.streams, teacher.entry.ports, labels.next);
-        predict_samples(streams, ports, samples, first, self.wanted, self.progress, |line| {
+        predict_samples(streams, ports, samples, first, self.annotation_type, self.progress, |line| {
             journal.write(&line)?;
             labels.add(line)
         })
@@ -144,7 +144,7 @@ impl Lesson<'_> {
 
 /// The annotations so far.
 struct Labels<'a> {
-    lesson: &'a Lesson<'a>,
+    lesson: &'a Distillation<'a>,
     map: ClassMap,
     next: usize,
     kept: Vec<(usize, Value)>,

@@ -18,7 +18,7 @@ pub struct Recording {
     /// Declared outputs of the session.
     pub outputs: Vec<TensorInfo>,
     /// Input tensors of the run, in the order of the inputs.
-    pub given: Vec<RecordedTensor>,
+    pub tensors: Vec<RecordedTensor>,
 }
 
 /// A copy of a tensor.
@@ -57,7 +57,7 @@ pub(crate) fn add(inputs: &[TensorInfo], outputs: &[TensorInfo], given: &[Tensor
     RECORD.with_borrow_mut(|record| {
         if let Some(runs) = record {
             let given = given.iter().map(RecordedTensor::from).collect();
-            runs.push(Recording { inputs: inputs.to_vec(), outputs: outputs.to_vec(), given });
+            runs.push(Recording { inputs: inputs.to_vec(), outputs: outputs.to_vec(), tensors: given });
         }
     });
 }
@@ -71,7 +71,7 @@ impl Recording {
             _ => 1,
         };
         let elements = |tensor: &RecordedTensor| tensor.shape.iter().product::<usize>();
-        self.inputs.iter().zip(&self.given).map(|(info, tensor)| width(info) * elements(tensor)).sum()
+        self.inputs.iter().zip(&self.tensors).map(|(info, tensor)| width(info) * elements(tensor)).sum()
     }
 }
 
@@ -120,10 +120,10 @@ mod tests {
         add(&[], &[], &given);
         add(&[], &[], &given[..1]);
         let runs = take();
-        assert_eq!(runs.iter().map(|run| run.given.len()).collect::<Vec<_>>(), [2, 1]);
-        let view = runs[0].given[0].view().unwrap();
+        assert_eq!(runs.iter().map(|run| run.tensors.len()).collect::<Vec<_>>(), [2, 1]);
+        let view = runs[0].tensors[0].view().unwrap();
         assert_eq!((view.shape(), view.values::<f32>().unwrap()), (&[1, 2][..], &data[..]));
-        assert_eq!(runs[0].given[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
+        assert_eq!(runs[0].tensors[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
         add(&[], &[], &given);
         assert!(take().is_empty());
     }

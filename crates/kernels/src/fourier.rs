@@ -49,7 +49,7 @@ pub struct RealFourier {
 
 /// Work memory of [`RealFourier::run`]; reusing it avoids allocations.
 #[derive(Debug, Default)]
-pub struct FourierWork {
+pub struct FourierScratch {
     from: Vec<Frames>,
     to: Vec<Frames>,
 }
@@ -114,11 +114,11 @@ impl RealFourier {
         isa: Isa,
         kind: Spectrum,
         samples: &[[f32; FOURIER_FRAMES]],
-        work: &mut FourierWork,
+        work: &mut FourierScratch,
         values: &mut Vec<[f32; FOURIER_FRAMES]>,
     ) {
         assert_eq!(samples.len(), self.size, "`samples` must have the size of the transform");
-        let FourierWork { from, to } = work;
+        let FourierScratch { from, to } = work;
         from.resize(self.size, Frames::default());
         to.resize(self.size, Frames::default());
         values.resize(self.size / 2 + 1, Frames::default());
@@ -299,7 +299,8 @@ mod tests {
                 };
                 part(f64::cos).powi(2) + part(f64::sin).powi(2)
             };
-            let (fourier, mut work, mut power) = (RealFourier::new(size), FourierWork::default(), Vec::new());
+            let (fourier, mut work, mut power) =
+                (RealFourier::new(size), FourierScratch::default(), Vec::new());
             for isa in Isa::available() {
                 fourier.run(isa, Spectrum::Power, &samples, &mut work, &mut power);
                 let mut magnitude = Vec::new();

@@ -31,7 +31,7 @@ impl Network {
         );
         let last = self.layers().iter().rposition(|layer| layer.neurons().is_some());
         for (index, layer) in self.layers().iter().enumerate() {
-            let own = &mut parameters[self.parameters_of(index)];
+            let own = &mut parameters[self.parameter_range(index)];
             match (layer.neurons(), how) {
                 (None, _) => {
                     let (scale, shift) = own.split_at_mut(own.len() / 2);
@@ -147,7 +147,7 @@ mod tests {
         let mut parameters = vec![9.0; network.parameters()];
         let how = Initialisation::Orthogonal { hidden: 1.5, output: 0.01 };
         network.initialise(how, &mut random, &mut parameters);
-        let own = |index: usize| &parameters[network.parameters_of(index)];
+        let own = |index: usize| &parameters[network.parameter_range(index)];
         let (kernels, scales, dense, last) = (own(0), own(1), own(2), own(4));
         assert_orthogonal(5, 18, 1.5, |kernel, axis| kernels[kernel * 18 + axis]);
         assert_eq!(&kernels[5 * 18..], [0.0; 5]);
@@ -164,7 +164,7 @@ mod tests {
         let largest = |range: std::ops::Range<usize>| {
             parameters[range].iter().fold(0.0f32, |most, parameter| most.max(parameter.abs()))
         };
-        let (first, second) = (largest(network.parameters_of(0)), largest(network.parameters_of(1)));
+        let (first, second) = (largest(network.parameter_range(0)), largest(network.parameter_range(1)));
         assert!((0.099..0.1).contains(&first) && (0.13..0.1415).contains(&second), "{first} {second}");
     }
 }

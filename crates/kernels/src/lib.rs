@@ -47,7 +47,7 @@ pub use activation::Activation;
 pub use column_sums::add_column_sums;
 pub use compute::Compute;
 pub use elementary::{exp_in_place, sigmoid_in_place, tanh_in_place};
-pub use fourier::{FOURIER_FRAMES, FourierWork, RealFourier, Spectrum};
+pub use fourier::{FOURIER_FRAMES, FourierScratch, RealFourier, Spectrum};
 pub use gaussian::{gaussian_backward, gaussian_entropy, gaussian_log_density};
 pub use initialise::Initialisation;
 pub use isa::Isa;
@@ -55,7 +55,7 @@ pub use layer::{Conv2d, Dense, Gru, GruTape, LayerNorm};
 pub use matrix::{Matrix, MatrixMut};
 pub use network::{Layer, Network, Tape};
 pub use optimizer::{
-    Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, move_towards,
+    Adam, AdamOptions, Momentum, WeightDecay, clip_gradient_norm, gradient_norm, polyak_update,
 };
 pub use pool::WorkerPool;
 pub use product::{Bias, Product};

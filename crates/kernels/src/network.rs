@@ -206,7 +206,7 @@ impl Network {
     ///
     /// # Panics
     /// When there is no such layer.
-    pub fn parameters_of(&self, layer: usize) -> std::ops::Range<usize> {
+    pub fn parameter_range(&self, layer: usize) -> std::ops::Range<usize> {
         self.offsets[layer]..self.offsets[layer + 1]
     }
 
@@ -235,7 +235,7 @@ impl Network {
         for (index, layer) in self.layers.iter().enumerate() {
             let (before, after) = tape.values.split_at_mut(index + 1);
             after[0].resize(batch * layer.outputs(), 0.0);
-            layer.forward(compute, &parameters[self.parameters_of(index)], &before[index], &mut after[0]);
+            layer.forward(compute, &parameters[self.parameter_range(index)], &before[index], &mut after[0]);
         }
         &tape.values[self.layers.len()]
     }
@@ -268,7 +268,7 @@ impl Network {
                 before[index].resize(values[index].len(), 0.0);
                 &mut *before[index]
             });
-            let range = self.parameters_of(index);
+            let range = self.parameter_range(index);
             let own = gradients.as_deref_mut().map(|all| &mut all[range.clone()]);
             let ends = [&*values[index], &*values[index + 1]];
             layer.backward(compute, &parameters[range], ends, &mut after[0], own, dx, scratch);

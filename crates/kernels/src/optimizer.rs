@@ -8,4 +8,4 @@ mod polyak;
 pub use adam::{Adam, AdamOptions, WeightDecay};
 pub use gradient_norm::{clip_gradient_norm, gradient_norm};
 pub use momentum::Momentum;
-pub use polyak::move_towards;
+pub use polyak::polyak_update;

@@ -13,8 +13,8 @@ use std::io::{BufRead, Write, stdin, stdout};
 
 use opendr_engine::{Error, Result};
 use opendr_messages::{
-    Message, MessageType, RosService, StdSrvsEmpty, StdSrvsSetBool, StdSrvsTrigger, Wire, cdr_from_message,
-    message_from_cdr, message_from_ros1, ros1_from_message,
+    Message, MessageType, RosService, StdSrvsEmpty, StdSrvsSetBool, StdSrvsTrigger, WireFormat,
+    cdr_from_message, message_from_cdr, message_from_ros1, ros1_from_message,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -54,21 +54,21 @@ fn echo(line: &str) -> Result<Vec<u8>> {
     }
 }
 
-fn again<M: Serialize + DeserializeOwned>(from: Wire, to: Wire, bytes: &[u8]) -> Result<Vec<u8>> {
+fn again<M: Serialize + DeserializeOwned>(from: WireFormat, to: WireFormat, bytes: &[u8]) -> Result<Vec<u8>> {
     let message: M = match from {
-        Wire::Cdr => message_from_cdr(bytes)?,
-        Wire::Ros1 => message_from_ros1(bytes)?,
+        WireFormat::Cdr => message_from_cdr(bytes)?,
+        WireFormat::Ros1 => message_from_ros1(bytes)?,
     };
     match to {
-        Wire::Cdr => cdr_from_message(&message),
-        Wire::Ros1 => ros1_from_message(&message),
+        WireFormat::Cdr => cdr_from_message(&message),
+        WireFormat::Ros1 => ros1_from_message(&message),
     }
 }
 
-fn wire(name: &str) -> Result<Wire> {
+fn wire(name: &str) -> Result<WireFormat> {
     match name {
-        "cdr" => Ok(Wire::Cdr),
-        "ros1" => Ok(Wire::Ros1),
+        "cdr" => Ok(WireFormat::Cdr),
+        "ros1" => Ok(WireFormat::Ros1),
         _ => Err(Error::invalid_input(format!("no wire {name:?}; there are cdr and ros1"))),
     }
 }

@@ -29,6 +29,6 @@ mod service_type;
 
 pub use cdr::{cdr_from_message, message_from_cdr};
 pub use generated::*;
-pub use message_type::{Ros1Type, RosMessage, Wire};
+pub use message_type::{Ros1Type, RosMessage, WireFormat};
 pub use ros1_format::{message_from_ros1, ros1_from_message};
 pub use service_type::{RosService, ServiceType};

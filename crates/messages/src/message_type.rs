@@ -12,7 +12,7 @@ use crate::{Message, MessageType, cdr};
 
 /// Wire format of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Wire {
+pub enum WireFormat {
     /// ROS 1's format: little-endian, without padding.
     Ros1,
     /// ROS 2's format: CDR with its header of 4 bytes, as in DDS and recordings.
@@ -55,10 +55,10 @@ impl MessageType {
     ///
     /// # Errors
     /// `Unsupported` when ROS 1 does not have the message.
-    pub fn definition(self, wire: Wire) -> Result<String> {
+    pub fn definition(self, wire: WireFormat) -> Result<String> {
         let (text, uses) = match wire {
-            Wire::Cdr => self.ros2_text(),
-            Wire::Ros1 => {
+            WireFormat::Cdr => self.ros2_text(),
+            WireFormat::Ros1 => {
                 let known = self.ros1().ok_or_else(|| not_in_ros1(self))?;
                 (known.text, known.uses)
             }
@@ -66,11 +66,11 @@ impl MessageType {
         let mut whole = text.to_owned();
         for name in uses {
             let used = Self::ALL.iter().find_map(|used| match wire {
-                Wire::Cdr => {
+                WireFormat::Cdr => {
                     let (package, short) = used.package_and_name();
                     (name.split_once('/') == Some((package, short))).then(|| used.ros2_text().0)
                 }
-                Wire::Ros1 => used.ros1().filter(|known| known.name == *name).map(|known| known.text),
+                WireFormat::Ros1 => used.ros1().filter(|known| known.name == *name).map(|known| known.text),
             });
             let _ = write!(whole, "{}\nMSG: {name}\n{}", "=".repeat(80), used.unwrap_or_default());
         }
@@ -83,10 +83,10 @@ impl Message {
     ///
     /// # Errors
     /// `Unsupported` when ROS 1 does not have the message.
-    pub fn to_bytes(&self, wire: Wire) -> Result<Vec<u8>> {
+    pub fn to_bytes(&self, wire: WireFormat) -> Result<Vec<u8>> {
         match wire {
-            Wire::Cdr => cdr::cdr_from_message(self),
-            Wire::Ros1 => self.to_ros1(),
+            WireFormat::Cdr => cdr::cdr_from_message(self),
+            WireFormat::Ros1 => self.to_ros1(),
         }
     }
 
@@ -94,10 +94,10 @@ impl Message {
     ///
     /// # Errors
     /// `Format` for bytes of another form; `Unsupported` when ROS 1 does not have the message.
-    pub fn from_bytes(message_type: MessageType, wire: Wire, bytes: &[u8]) -> Result<Self> {
+    pub fn from_bytes(message_type: MessageType, wire: WireFormat, bytes: &[u8]) -> Result<Self> {
         match wire {
-            Wire::Cdr => cdr::seeded_message_from_cdr(message_type, bytes),
-            Wire::Ros1 => Self::from_ros1(message_type, bytes),
+            WireFormat::Cdr => cdr::seeded_message_from_cdr(message_type, bytes),
+            WireFormat::Ros1 => Self::from_ros1(message_type, bytes),
         }
     }
 }

@@ -91,11 +91,11 @@ pub struct MetricEntry {
     /// As [`Metric::NUMBERS`].
     pub numbers: &'static [(&'static str, &'static str)],
     /// As [`Metric::ERRORS`].
-    pub errors: &'static [&'static str],
+    pub lower_is_better: &'static [&'static str],
     /// Parameters.
     pub params: &'static [Field],
     /// As [`Metric::RANKS`].
-    pub ranks: bool,
+    pub is_ranking: bool,
     /// As [`Metric::SEGMENTS`].
     pub segments: bool,
     /// Type of the predictions.
@@ -112,9 +112,9 @@ impl MetricEntry {
             name: M::NAME,
             about: M::ABOUT,
             numbers: M::NUMBERS,
-            errors: M::ERRORS,
+            lower_is_better: M::LOWER_IS_BETTER,
             params: M::Params::FIELDS,
-            ranks: M::RANKS,
+            is_ranking: M::IS_RANKING,
             segments: M::SEGMENTS,
             prediction: M::Prediction::TYPE,
             truth: M::Truth::TYPE,
@@ -123,8 +123,8 @@ impl MetricEntry {
     }
 
     /// Returns whether lower values of the number `name` are better.
-    pub fn is_error(&self, name: &str) -> bool {
-        self.errors.contains(&name)
+    pub fn is_lower_better(&self, name: &str) -> bool {
+        self.lower_is_better.contains(&name)
     }
 
     /// Creates an empty accumulator; `params` override the defaults.

@@ -138,7 +138,7 @@ impl Sequence {
     /// Matches the boxes of a frame, previous matches first, and counts them. Returns pairs of indices (ground truth,
     /// prediction).
     fn count(&mut self, frame: &TrackingFrame, params: &TrackMatchingParams) -> Vec<(usize, usize)> {
-        let (truth, found) = (frame.truth(), frame.found());
+        let (truth, found) = (frame.truth(), frame.predictions());
         let distances = |(row, at)| params.distance(frame.overlap(row, at));
         let mut matched = vec![false; truth.len()];
         let mut taken = vec![false; found.len()];
@@ -238,7 +238,7 @@ impl ClearMot {
     /// Counts the next frame of the sequence and returns the fraction of its boxes that match, 0 to 1.
     pub fn count(&mut self, frame: &TrackingFrame) -> f64 {
         let matches = self.sequences.open.count(frame, &self.params).len();
-        match frame.truth().len() + frame.found().len() - matches {
+        match frame.truth().len() + frame.predictions().len() - matches {
             0 => 1.0,
             boxes => matches as f64 / boxes as f64,
         }
@@ -274,7 +274,7 @@ impl Metric for ClearMot {
         ("partially_tracked", "Objects matched in 20 to 80 %."),
         ("mostly_lost", "Objects matched in less than 20 %."),
     ];
-    const ERRORS: &'static [&'static str] = &[
+    const LOWER_IS_BETTER: &'static [&'static str] = &[
         "motp",
         "switches",
         "transfers",

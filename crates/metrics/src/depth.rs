@@ -194,7 +194,7 @@ impl Metric for Depth {
         ("d1", "Fraction of pixels with an error of more than 3 pixels and 5 % (KITTI)."),
         ("pictures", "Number of images."),
     ];
-    const ERRORS: &'static [&'static str] = &[
+    const LOWER_IS_BETTER: &'static [&'static str] = &[
         "abs_rel",
         "sq_rel",
         "rmse",

@@ -168,7 +168,7 @@ struct Sequence {
 
 impl Sequence {
     fn add_frame(&mut self, frame: &TrackingFrame) {
-        let (objects, tracks) = (self.objects.count(frame.truth()), self.tracks.count(frame.found()));
+        let (objects, tracks) = (self.objects.count(frame.truth()), self.tracks.count(frame.predictions()));
         let mut overlaps = Vec::new();
         let mut sums = (vec![0.0; objects.len()], vec![0.0; tracks.len()]);
         for (row, overlaps_of_row) in frame.overlaps().chunks_exact(tracks.len().max(1)).enumerate() {

@@ -179,7 +179,7 @@ impl Metric for Keypoints {
         ("poses", "Number of poses."),
         ("poses_without_size", "Number of poses without a size to normalise by."),
     ];
-    const ERRORS: &'static [&'static str] = &["nme", "epe"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["nme", "epe"];
     type Params = KeypointsParams;
     type Prediction = PoseList;
     type Truth = PoseList;

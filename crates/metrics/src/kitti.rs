@@ -67,7 +67,7 @@ impl Metric for Kitti {
         ),
         ("<class>_<kind>_<difficulty>_<points>", "AP of one class: `car`, `pedestrian` or `cyclist`."),
     ];
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = NoParams;
     type Prediction = BoundingBox3DList;
     type Truth = BoundingBox3DList;
@@ -141,7 +141,7 @@ fn table(scores: &[KittiScore]) -> Table {
     for score in scores {
         let column = score.difficulty as usize;
         for (kind, r11, r40) in score.numbers() {
-            let label = format!("{} {kind} @{:.2}", score.class.name(), score.least_overlap);
+            let label = format!("{} {kind} @{:.2}", score.class.name(), score.overlap_threshold);
             let row = match table.rows.iter().position(|(other, _)| *other == label) {
                 Some(row) => row,
                 None => {

@@ -72,7 +72,7 @@ pub use kitti::{Kitti, KittiClass, KittiDifficulty, KittiObject, KittiOverlap, K
 pub use metric::Metric;
 pub use mot_challenge::MotRules;
 pub use numbers::undocumented;
-pub use opendr_engine::overlap::{RotatedRectangle, StandingBox, image_cover, image_overlap};
+pub use opendr_engine::overlap::{RotatedRectangle, UprightBox3D, box_ioa, box_iou};
 pub use panoptic::{LABEL_DIVISOR, Panoptic, PanopticCounts, PanopticMap, PanopticParams, PanopticSegment};
 pub use precision_recall::{ClassCounts, ClassScore, ClassScores, PrecisionRecall, ZeroDivision};
 pub use registry::{find, metrics};
@@ -86,6 +86,6 @@ pub use success::{
 };
 pub use tracking_3d::{Tracking3d, Tracking3dParams};
 pub use tracking_frame::TrackingFrame;
-pub use transcription::{Transcription, TranscriptionParams, words_of_text};
+pub use transcription::{Transcription, TranscriptionParams, split_words};
 pub use verification::{FoldAccuracy, Verification, VerificationParams};
 pub use voc::{Voc, VocParams};

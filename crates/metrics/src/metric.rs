@@ -27,10 +27,10 @@ pub trait Metric: Clone + Send + Sized + 'static {
     type Truth: Datum;
 
     /// Keys of the numbers for which lower is better.
-    const ERRORS: &'static [&'static str] = &[];
+    const LOWER_IS_BETTER: &'static [&'static str] = &[];
 
     /// Whether predictions are ranked by score, so that the threshold of a learner would truncate the ranking.
-    const RANKS: bool = false;
+    const IS_RANKING: bool = false;
 
     /// Whether labels of maps are those of segments: [`LABEL_DIVISOR`](crate::LABEL_DIVISOR) times the class index plus the
     /// index of the object.

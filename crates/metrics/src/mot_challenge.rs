@@ -67,7 +67,7 @@ impl MotRules {
         let is_marked = |at: usize| truth.annotations[at].bounding_box.confidence.abs() >= 1.0;
         if self == Self::Mot15 {
             let kept: Vec<_> = (0..frame.truth().len()).map(is_marked).collect();
-            return Ok(frame.keep(&kept, &vec![true; frame.found().len()]));
+            return Ok(frame.keep(&kept, &vec![true; frame.predictions().len()]));
         }
         let classes = truth
             .annotations
@@ -86,7 +86,7 @@ impl MotRules {
             .iter()
             .map(|overlap| if *overlap < 0.5 - f64::EPSILON { 0.0 } else { -overlap })
             .collect();
-        let mut kept = vec![true; frame.found().len()];
+        let mut kept = vec![true; frame.predictions().len()];
         for (truth, found) in cheapest_pairs(&costs, kept.len()) {
             let class = classes[truth];
             let is_distractor =
@@ -148,7 +148,7 @@ mod tests {
         ]);
         let ids = |rules: MotRules| {
             let frame = rules.frame(&found, &truth).unwrap();
-            (frame.truth().to_vec(), frame.found().to_vec())
+            (frame.truth().to_vec(), frame.predictions().to_vec())
         };
         assert_eq!(ids(MotRules::All), (vec![1, 2, 3, 4], vec![1, 2, 3, 4]));
         assert_eq!(ids(MotRules::Mot15), (vec![1, 2, 4], vec![1, 2, 3, 4]));

@@ -130,7 +130,7 @@ impl Metric for Regression {
         ("rmse", "Root mean square error."),
         ("samples", "Number of samples."),
     ];
-    const ERRORS: &'static [&'static str] = &["mae", "rmse"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["mae", "rmse"];
     type Params = NoParams;
     type Prediction = Vector;
     type Truth = Vector;

@@ -4,7 +4,7 @@
 //! in space, not in the image, and match from an intersection over union of one quarter. The counts are those of
 //! [`Hota`] and [`ClearMot`].
 
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox3D, Name, TrackingAnnotation3DList};
 use opendr_engine::{Error, Result};
@@ -49,7 +49,7 @@ impl Metric for Tracking3d {
         ("mostly_tracked", "Objects matched in 80 % of their frames or more."),
         ("mostly_lost", "Objects matched in less than 20 %."),
     ];
-    const ERRORS: &'static [&'static str] =
+    const LOWER_IS_BETTER: &'static [&'static str] =
         &["motp", "switches", "fragmentations", "false_positives", "misses", "mostly_lost"];
     type Params = Tracking3dParams;
     type Prediction = TrackingAnnotation3DList;
@@ -111,15 +111,15 @@ fn frame_from_lists(
     let overlaps = truth.iter().flat_map(|(_, name, place)| {
         found.iter().map(move |(_, other, found)| {
             let same = name.eq_ignore_ascii_case(other);
-            if same { place.overlap(found).clamp(0.0, 1.0) } else { 0.0 }
+            if same { place.iou(found).clamp(0.0, 1.0) } else { 0.0 }
         })
     });
     let overlaps = overlaps.collect();
-    let ids = |boxes: &[(i64, String, StandingBox)]| boxes.iter().map(|(id, ..)| *id).collect();
+    let ids = |boxes: &[(i64, String, UprightBox3D)]| boxes.iter().map(|(id, ..)| *id).collect();
     TrackingFrame::new(ids(&truth), ids(&found), overlaps)
 }
 
-fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, StandingBox)>> {
+fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, UprightBox3D)>> {
     let name = |found: &BoundingBox3D| match (list.classes.label(&found.name), &found.name) {
         (Some(label), _) => label.to_owned(),
         (None, Name::Label(label)) => label.to_string(),
@@ -136,7 +136,7 @@ fn boxes_from_list(list: &TrackingAnnotation3DList) -> Result<Vec<(i64, String, 
                 track.id
             )));
         }
-        Ok((track.id, name, StandingBox::in_camera(size, place, f64::from(found.rotation_y))))
+        Ok((track.id, name, UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))))
     });
     boxes.collect()
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Error, Result};
 
@@ -51,7 +51,7 @@ impl TrackingFrame {
         check_pairs(truth.len(), found.len())?;
         let overlaps = truth
             .iter()
-            .flat_map(|(_, truth)| found.iter().map(|(_, found)| image_overlap(*truth, *found)))
+            .flat_map(|(_, truth)| found.iter().map(|(_, found)| box_iou(*truth, *found)))
             .collect();
         let identities = |boxes: &[(i64, [f64; 4])]| boxes.iter().map(|(id, _)| *id).collect();
         Self::new(identities(truth), identities(found), overlaps)
@@ -71,7 +71,7 @@ impl TrackingFrame {
     }
 
     /// Returns the identities of the prediction.
-    pub fn found(&self) -> &[i64] {
+    pub fn predictions(&self) -> &[i64] {
         &self.found
     }
 

@@ -54,7 +54,7 @@ fn is_punctuation(character: char) -> bool {
 
 /// Returns the words of `text`, separated by spaces or two and more white-space characters; a single tab or line break does
 /// not separate words.
-pub fn words_of_text(text: &str) -> Vec<&str> {
+pub fn split_words(text: &str) -> Vec<&str> {
     let mut words = Vec::new();
     let (mut start, mut white) = (0, None::<(usize, usize)>);
     for (at, character) in text.char_indices().chain([(text.len(), 'x')]) {
@@ -100,7 +100,7 @@ impl Transcription {
             }
         }
         let (reference, hypothesis) = (self.params.normalized(reference), self.params.normalized(hypothesis));
-        let words = EditCounts::of(&words_of_text(&reference), &words_of_text(&hypothesis));
+        let words = EditCounts::of(&split_words(&reference), &split_words(&hypothesis));
         let [expected, given] = [&reference, &hypothesis].map(|text| text.chars().collect::<Vec<_>>());
         self.words.add(&words);
         self.characters.add(&EditCounts::of(&expected, &given));
@@ -165,7 +165,7 @@ impl Metric for Transcription {
         ("word_<count>", "Numbers of hits, substitutions, deletions and insertions of words."),
         ("character_<count>", "Numbers of hits, substitutions, deletions and insertions of characters."),
     ];
-    const ERRORS: &'static [&'static str] = &["wer", "cer", "mer", "wil", "utterance_error_rate"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["wer", "cer", "mer", "wil", "utterance_error_rate"];
     type Params = TranscriptionParams;
     type Prediction = BaseTranscription;
     type Truth = BaseTranscription;

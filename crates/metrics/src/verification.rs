@@ -152,7 +152,7 @@ impl Metric for Verification {
         ("same", "Number of pairs of the same."),
         ("different", "Number of pairs of different ones."),
     ];
-    const ERRORS: &'static [&'static str] = &["accuracy_standard_error", "equal_error_rate"];
+    const LOWER_IS_BETTER: &'static [&'static str] = &["accuracy_standard_error", "equal_error_rate"];
     type Params = VerificationParams;
     type Prediction = Category;
     type Truth = Category;

@@ -11,7 +11,7 @@ use opendr_engine::{Error, Result};
 
 use crate::average::mean;
 use crate::class_key::ClassKey;
-use crate::coco::box_overlap;
+use crate::coco::box_iou;
 use crate::{Curves, Figure, Line, Metric, Report, Table};
 
 /// Maximum number of classes whose curves are drawn.
@@ -60,7 +60,7 @@ impl Metric for Voc {
     const ABOUT: &'static str = "Pascal VOC's average precision of boxes; for faces that of WIDER FACE";
     const NUMBERS: &'static [(&'static str, &'static str)] =
         &[("map", "Average precision, mean over the classes that have objects.")];
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = VocParams;
     type Prediction = BoundingBoxList;
     type Truth = BoundingBoxList;
@@ -166,7 +166,7 @@ fn ranked(
     for (rank, detection) in (0..).zip(detected) {
         let mut best: Option<(usize, f64)> = None;
         for (index, object) in annotated.iter().enumerate() {
-            let shared = box_overlap(bounds(detection), bounds(object), false);
+            let shared = box_iou(bounds(detection), bounds(object), false);
             if best.is_none_or(|(_, most)| shared > most) {
                 best = Some((index, shared));
             }

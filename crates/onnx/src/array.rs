@@ -12,7 +12,7 @@ pub fn element_count(dims: &[usize]) -> Option<usize> {
 /// Element types of a graph under construction. All integer types become `Int`: ONNX requires int64 for shapes and
 /// indices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Kind {
+pub enum ElementType {
     /// `f32`.
     Float,
     /// `i64`.
@@ -21,7 +21,7 @@ pub enum Kind {
     Bool,
 }
 
-impl Kind {
+impl ElementType {
     /// Returns ONNX's value of this element type.
     pub fn data_type(self) -> DataType {
         match self {
@@ -87,11 +87,13 @@ impl Data {
     }
 
     /// Returns the element type; the narrow integers count as integers.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ElementType {
         match self {
-            Self::Float(_) => Kind::Float,
-            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => Kind::Int,
-            Self::Bool(_) => Kind::Bool,
+            Self::Float(_) => ElementType::Float,
+            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => {
+                ElementType::Int
+            }
+            Self::Bool(_) => ElementType::Bool,
         }
     }
 
@@ -155,7 +157,7 @@ impl Array {
     }
 
     /// Returns the element type.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ElementType {
         self.data.kind()
     }
 

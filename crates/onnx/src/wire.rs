@@ -2,22 +2,22 @@
 
 use std::rc::Rc;
 
-use super::array::{Array, Data, Kind};
+use super::array::{Array, Data, ElementType};
 
 /// Size of a dimension; `None` when it is only known at run time.
 pub type Dim = Option<usize>;
 
 /// A tensor of a graph under construction: name, element type, dimensions, and elements as far as they are known.
 #[derive(Debug, Clone)]
-pub struct Wire {
+pub struct Value {
     pub(super) name: Rc<str>,
-    kind: Kind,
+    kind: ElementType,
     dims: Vec<Dim>,
     known: Option<Rc<Array>>,
 }
 
-impl Wire {
-    pub(super) fn new(name: &str, kind: Kind, dims: Vec<Dim>, known: Option<Array>) -> Self {
+impl Value {
+    pub(super) fn new(name: &str, kind: ElementType, dims: Vec<Dim>, known: Option<Array>) -> Self {
         Self { name: name.into(), kind, dims, known: known.map(Rc::new) }
     }
 
@@ -44,7 +44,7 @@ impl Wire {
 
     /// Creates a placeholder for an omitted optional input.
     pub fn absent() -> Self {
-        Self::new("", Kind::Float, Vec::new(), None)
+        Self::new("", ElementType::Float, Vec::new(), None)
     }
 
     /// Returns the name, from which names of following tensors are derived; empty for an unnamed constant.
@@ -53,7 +53,7 @@ impl Wire {
     }
 
     /// Returns the element type.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ElementType {
         self.kind
     }
 

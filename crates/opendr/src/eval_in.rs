@@ -9,13 +9,13 @@ use opendr_engine::{Error, Progress, Result, Unit, Value, ValueType};
 use opendr_rl::{EvaluationProtocol, EvaluationReport, evaluate_controller, observation_from_numbers};
 
 /// A controller for an environment made from a learner's stream, whose state is reset at each episode.
-pub struct ActingStream {
+pub struct PolicyController {
     stream: Box<dyn AnyStream>,
     port: &'static str,
     spec: EnvironmentSpec,
 }
 
-impl ActingStream {
+impl PolicyController {
     /// Creates the controller from a stream of a learner of `entry`, for environments of `spec`.
     ///
     /// # Errors
@@ -33,7 +33,7 @@ impl ActingStream {
     }
 }
 
-impl Controller for ActingStream {
+impl Controller for PolicyController {
     fn reset(&mut self) {
         self.stream.reset();
     }
@@ -61,7 +61,7 @@ impl Controller for ActingStream {
 }
 
 /// Returns the id of the environment in which a loaded policy was trained, if its container names one.
-pub fn trained_in(learner: &dyn AnyLearner) -> Option<&str> {
+pub fn training_environment(learner: &dyn AnyLearner) -> Option<&str> {
     learner.model()?.manifest().inputs.get("environment")?.as_str()
 }
 
@@ -69,7 +69,7 @@ pub fn trained_in(learner: &dyn AnyLearner) -> Option<&str> {
 ///
 /// # Errors
 /// Those of the environment and of the controller, with the seed; `InvalidInput` when stopped before the first episode ended.
-pub fn eval_in(
+pub fn evaluate_policy(
     acting: &mut dyn Controller,
     environment: &mut dyn Environment,
     protocol: &EvaluationProtocol,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use opendr_engine::model::{Model, ModelWriter};
 use opendr_engine::{Result, ResultExt};
-use opendr_rl::{POLICY, Policy, onnx_from_policy};
+use opendr_rl::{POLICY_FILE, Policy, onnx_from_policy};
 
 /// Writes a model to `output`: the network alone if the path ends in `.onnx`, else the container, as a zip if it ends in
 /// `.zip`, or as a folder.
@@ -30,8 +30,8 @@ pub fn export(model: &Model, output: &Path) -> Result<()> {
 pub fn network(model: &Model) -> Result<Vec<u8>> {
     let files = &model.manifest().files;
     let has = |wanted: &dyn Fn(&str) -> bool| files.iter().any(|file| wanted(&file.name));
-    if has(&|name| name == POLICY) && !has(&|name| name.ends_with(".onnx")) {
-        return onnx_from_policy(&Policy::from_bytes(&model.file(POLICY)?)?);
+    if has(&|name| name == POLICY_FILE) && !has(&|name| name.ends_with(".onnx")) {
+        return onnx_from_policy(&Policy::from_bytes(&model.file(POLICY_FILE)?)?);
     }
     model.onnx()
 }

@@ -55,10 +55,11 @@ pub mod tiling;
 mod tune;
 
 pub use by_name::{download, learner, learner_with};
-pub use eval_in::{ActingStream, eval_in, trained_in};
+pub use eval_in::{PolicyController, evaluate_policy, training_environment};
 pub use export::{export, network};
 pub use fit::{
-    FitData, FitEnvironments, FitOptions, Fitted, Opening, check_fit, fit, fit_in, teacher, teacher_with,
+    DatasetOpener, FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_policy, teacher,
+    teacher_with,
 };
 #[cfg(feature = "actions")]
 pub use opendr_actions::{activity_recognition, skeleton_based_action_recognition};

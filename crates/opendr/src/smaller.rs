@@ -10,7 +10,7 @@ use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::{Progress, Result, ResultExt};
 use opendr_optimize::{OptimizeJob, OptimizeOptions, Report};
 
-use crate::Opening;
+use crate::DatasetOpener;
 
 /// Name of the temporary copy of the original model.
 const ORIGINAL: &str = "original";
@@ -30,9 +30,9 @@ pub fn optimize_loaded(
 ) -> Result<Report> {
     let options = OptimizeOptions::from_map(options)?;
     let problems = Problems::strict();
-    let opening = |annotated| Opening { entry, annotated, problems: &problems, progress };
-    let calibration = calibration.map(|dataset| opening(false).to_train(dataset, None)).transpose()?;
-    let validation = validation.map(|dataset| opening(true).to_measure(dataset, None)).transpose()?;
+    let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress };
+    let calibration = calibration.map(|dataset| opening(false).open_training(dataset, None)).transpose()?;
+    let validation = validation.map(|dataset| opening(true).open_validation(dataset, None)).transpose()?;
     let mut original = output.as_os_str().to_owned();
     original.push(format!(".{}.{ORIGINAL}", std::process::id()));
     learner.save(original.as_ref())?;

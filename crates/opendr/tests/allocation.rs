@@ -17,10 +17,10 @@ use opendr::speech_recognition::DsCnn;
 use opendr::stereo_matching::{SemiGlobalMatching, SemiGlobalMatchingInputs, SemiGlobalMatchingTargets};
 use opendr::target::{BoundingBox, BoundingBoxList, Category, TrackingAnnotationList};
 use opendr::{Device, Model};
-use opendr_test_allocator::{Counting, allocations};
+use opendr_test_allocator::{CountingAllocator, allocations};
 
 #[global_allocator]
-static ALLOCATOR: Counting = Counting;
+static ALLOCATOR: CountingAllocator = CountingAllocator;
 
 /// Returns the minimum number of allocations of ten calls, since other threads of the test runner may allocate meanwhile.
 fn fewest(mut call: impl FnMut()) -> usize {

@@ -11,7 +11,7 @@ use opendr_engine::{Device, Error, Progress, Result, ResultExt, Unit};
 use opendr_evaluation::{Evaluation, Subject, metric_of};
 use opendr_inference::recording::{self, Recording};
 
-use crate::optimize::{Measured, optimize};
+use crate::optimize::{MetricValue, optimize};
 use crate::options::{OptimizeOptions, Precision};
 use crate::report::Report;
 
@@ -93,7 +93,7 @@ impl OptimizeJob<'_> {
     }
 
     /// Measures the selected value of the task's metric.
-    fn measure(&self, model: &Model) -> Result<Measured> {
+    fn measure(&self, model: &Model) -> Result<MetricValue> {
         let dataset = self.validation.ok_or_else(|| Error::internal("no validation data"))?;
         let metric = opendr_metrics::find(metric_of(self.entry.spec.task)?)?;
         let problems = Problems::strict();
@@ -115,6 +115,6 @@ impl OptimizeJob<'_> {
                 names.join(", ")
             ))
         })?;
-        Ok(Measured { is_error: metric.is_error(&name), name, value })
+        Ok(MetricValue { is_error: metric.is_lower_better(&name), name, value })
     }
 }

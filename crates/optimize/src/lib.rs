@@ -30,6 +30,6 @@ mod watched;
 mod weights;
 
 pub use learner::OptimizeJob;
-pub use optimize::{Judge, Measured, optimize};
+pub use optimize::{MeasureFn, MetricValue, optimize};
 pub use options::{Calibration, OptimizeOptions, Precision};
 pub use report::{Accuracy, LayerReport, Report};

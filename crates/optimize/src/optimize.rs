@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Progress, Result, ResultExt};
 use opendr_inference::Session;
 use opendr_inference::recording::Recording;
-use opendr_onnx::passes::{constants_to_initializers, halve_weights};
+use opendr_onnx::passes::{constants_to_initializers, weights_to_fp16};
 use opendr_onnx::proto::ModelProto;
 use opendr_onnx::{bytes_from_model, model_from_bytes};
 
@@ -17,7 +17,7 @@ use crate::report::{Accuracy, Report};
 
 /// A value of a metric.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Measured {
+pub struct MetricValue {
     /// Key of the value, e.g. `"map50"`.
     pub name: String,
     /// The value.
@@ -27,7 +27,7 @@ pub struct Measured {
 }
 
 /// A function that measures a model.
-pub type Judge<'a> = dyn FnMut(&Model) -> Result<Measured> + 'a;
+pub type MeasureFn<'a> = dyn FnMut(&Model) -> Result<MetricValue> + 'a;
 
 /// One in this many layers returns to floats at a time.
 const FLOAT_LAYERS_DIVISOR: usize = 8;
@@ -45,7 +45,7 @@ pub fn optimize(
     model: &Model,
     options: &OptimizeOptions,
     recordings: &[Recording],
-    mut judge: Option<&mut Judge<'_>>,
+    mut judge: Option<&mut MeasureFn<'_>>,
     device: Device,
     output: &Path,
     progress: &dyn Progress,
@@ -128,7 +128,7 @@ fn networks<'a>(
             Precision::Fp16 => {
                 if let Some(graph) = &mut network.graph {
                     constants_to_initializers(graph);
-                    halve_weights(graph);
+                    weights_to_fp16(graph);
                 }
                 Kind::Half(Box::new(network))
             }

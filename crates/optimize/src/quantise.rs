@@ -104,7 +104,7 @@ impl<'a> Quantiser<'a> {
         for name in given {
             let mut histogram = Histogram::default();
             for recording in &self.recordings {
-                let tensors = recording.inputs.iter().zip(&recording.given);
+                let tensors = recording.inputs.iter().zip(&recording.tensors);
                 for (_, tensor) in tensors.filter(|(info, _)| info.name == name) {
                     histogram.add(tensor.view()?.values()?);
                 }
@@ -155,7 +155,7 @@ impl<'a> Quantiser<'a> {
     pub fn keep_worst(&mut self, count: usize) -> bool {
         let mut ratios: Vec<(usize, f64)> = (self.own_reports().iter().enumerate())
             .filter(|(_, layer)| !layer.is_float)
-            .map(|(at, layer)| (at, layer.own_ratio()))
+            .map(|(at, layer)| (at, layer.layer_snr_db()))
             .collect();
         ratios.sort_by(|(_, a), (_, b)| a.total_cmp(b));
         for (at, _) in ratios.iter().take(count) {

@@ -53,7 +53,7 @@ pub struct LayerReport {
 
 impl LayerReport {
     /// Returns the ratio for the quantisation of this layer alone, from both its losses.
-    pub fn own_ratio(&self) -> f64 {
+    pub fn layer_snr_db(&self) -> f64 {
         let loss = |ratio: f64| 10f64.powf(-ratio / 10.0);
         -10.0 * (loss(self.weight_ratio) + loss(self.input_ratio)).log10()
     }

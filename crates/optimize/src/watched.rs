@@ -45,7 +45,7 @@ impl Watched {
     /// Those of [`Session::run`].
     pub fn run(&self, recording: &Recording, mut see: impl FnMut(usize, &[f32])) -> Result<()> {
         let inputs =
-            recording.given.iter().map(|tensor| tensor.view()).collect::<Result<Vec<TensorView<'_>>>>()?;
+            recording.tensors.iter().map(|tensor| tensor.view()).collect::<Result<Vec<TensorView<'_>>>>()?;
         self.session.run(&inputs, |outputs| {
             for (at, place) in self.places.iter().enumerate() {
                 if let Some(output) = outputs.get(*place) {

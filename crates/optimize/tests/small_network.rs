@@ -10,9 +10,9 @@ use opendr_engine::{Device, ErrorKind, Random, Silent};
 use opendr_inference::recording::{self, Recording};
 use opendr_inference::{Session, TensorView, runtimes};
 use opendr_onnx::{
-    Array, Builder, Data, Kind, Operator, Wire, bytes_from_model, model_from_bytes, model_from_graph,
+    Array, Builder, Data, ElementType, Operator, Value, bytes_from_model, model_from_bytes, model_from_graph,
 };
-use opendr_optimize::{Calibration, Measured, OptimizeOptions, Precision, optimize};
+use opendr_optimize::{Calibration, MetricValue, OptimizeOptions, Precision, optimize};
 
 const INPUT: [usize; 4] = [1, 3, 16, 16];
 
@@ -32,12 +32,12 @@ impl Drop for Folder {
     }
 }
 
-fn weights(random: &mut Random, dims: &[usize]) -> Wire {
+fn weights(random: &mut Random, dims: &[usize]) -> Value {
     let count = dims.iter().product();
     let fan_in: usize = dims[1..].iter().product();
     let scale = (2.0 / fan_in as f32).sqrt();
     let floats = (0..count).map(|_| random.normal() as f32 * scale).collect();
-    Wire::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
+    Value::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
 }
 
 /// A network of convolutions (one depthwise), a rectifier, a leaky one, pooling, a sum, a concatenation, a resize and
@@ -48,8 +48,8 @@ fn network() -> Vec<u8> {
     let dims = |dims: &[usize]| dims.iter().copied().map(Some).collect::<Vec<_>>();
     graph.reserve("scores");
     graph.reserve("map");
-    let image = graph.input("image", Kind::Float, dims(&INPUT), &[]);
-    let mut conv = |graph: &mut Builder, input: &Wire, filters: usize, side: usize, groups: usize| {
+    let image = graph.input("image", ElementType::Float, dims(&INPUT), &[]);
+    let mut conv = |graph: &mut Builder, input: &Value, filters: usize, side: usize, groups: usize| {
         let channels = input.dims()[1].unwrap();
         let kernel = weights(&mut random, &[filters, channels / groups, side, side]);
         let bias =
@@ -62,10 +62,12 @@ fn network() -> Vec<u8> {
             .int("group", groups as i64);
         let mut shape = input.dims().to_vec();
         shape[1] = Some(filters);
-        graph.add("conv", operator, &[input, &kernel, &Wire::constant(bias)], Kind::Float, shape).unwrap()
+        graph
+            .add("conv", operator, &[input, &kernel, &Value::constant(bias)], ElementType::Float, shape)
+            .unwrap()
     };
-    let plain = |graph: &mut Builder, operator: Operator, inputs: &[&Wire], shape: &[usize]| {
-        graph.add("node", operator, inputs, Kind::Float, dims(shape)).unwrap()
+    let plain = |graph: &mut Builder, operator: Operator, inputs: &[&Value], shape: &[usize]| {
+        graph.add("node", operator, inputs, ElementType::Float, dims(shape)).unwrap()
     };
     let first = conv(&mut graph, &image, 16, 3, 1);
     let first = plain(&mut graph, Operator::new("Relu"), &[&first], &[1, 16, 16, 16]);
@@ -76,18 +78,18 @@ fn network() -> Vec<u8> {
         plain(&mut graph, Operator::new("LeakyRelu").float("alpha", 0.1), &[&second], &[1, 16, 8, 8]);
     let sum = plain(&mut graph, Operator::new("Add"), &[&second, &pooled], &[1, 16, 8, 8]);
     let joined = plain(&mut graph, Operator::new("Concat").int("axis", 1), &[&sum, &second], &[1, 32, 8, 8]);
-    let scales = Wire::constant(Array::new(vec![4], Data::Float(vec![1.0, 1.0, 2.0, 2.0])).unwrap());
+    let scales = Value::constant(Array::new(vec![4], Data::Float(vec![1.0, 1.0, 2.0, 2.0])).unwrap());
     let resize = Operator::new("Resize")
         .text("mode", "nearest")
         .text("coordinate_transformation_mode", "asymmetric")
         .text("nearest_mode", "floor");
-    let larger = plain(&mut graph, resize, &[&joined, &Wire::absent(), &scales], &[1, 32, 16, 16]);
+    let larger = plain(&mut graph, resize, &[&joined, &Value::absent(), &scales], &[1, 32, 16, 16]);
     let map = conv(&mut graph, &larger, 8, 1, 1);
     graph.output("map", &map, "", &[]).unwrap();
     let mean = plain(&mut graph, Operator::new("GlobalAveragePool"), &[&joined], &[1, 32, 1, 1]);
     let flat = plain(&mut graph, Operator::new("Flatten"), &[&mean], &[1, 32]);
     let kernel = weights(&mut Random::new(9), &[10, 32]);
-    let bias = Wire::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
+    let bias = Value::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
     let gemm = Operator::new("Gemm").int("transB", 1);
     let scores = plain(&mut graph, gemm, &[&flat, &kernel, &bias], &[1, 10]);
     graph.output("scores", &scores, "", &[]).unwrap();
@@ -218,15 +220,15 @@ fn layers_go_back_to_floats_until_the_drop_is_small_enough() {
         let rounded = network.node.iter().filter(|node| node.name.ends_with("weights/rounded")).count();
         sizes.push(rounded);
         let value = 1.0 - rounded as f64 / 4.0;
-        Ok(Measured { name: "points".to_owned(), value, is_error: false })
+        Ok(MetricValue { name: "points".to_owned(), value, is_error: false })
     };
     let output = folder.0.join("out");
     let report = optimize(&model, &options, &seen, Some(&mut judge), Device::Cpu, &output, &Silent).unwrap();
     assert_eq!(sizes, [0, 4, 3, 2]);
     let accuracy = report.accuracy.unwrap();
     assert_eq!((accuracy.metric.as_str(), accuracy.before, accuracy.after), ("points", 1.0, 0.5));
-    let worst_first = report.layers.iter().filter(|layer| layer.is_float).map(|layer| layer.own_ratio());
-    let others = report.layers.iter().filter(|layer| !layer.is_float).map(|layer| layer.own_ratio());
+    let worst_first = report.layers.iter().filter(|layer| layer.is_float).map(|layer| layer.layer_snr_db());
+    let others = report.layers.iter().filter(|layer| !layer.is_float).map(|layer| layer.layer_snr_db());
     assert!(worst_first.fold(0.0, f64::max) <= others.fold(f64::INFINITY, f64::min));
     let unmeasured = optimize(&model, &options, &seen, None, Device::Cpu, &output, &Silent);
     assert_eq!(unmeasured.unwrap_err().kind(), ErrorKind::InvalidParam);

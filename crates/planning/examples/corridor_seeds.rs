@@ -17,7 +17,7 @@ use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl}
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
 };
-use opendr_simulation::uav_corridor::Remembered;
+use opendr_simulation::uav_corridor::FlightMemoryWrapper;
 use opendr_simulation::{RegisteredSource, make};
 
 const EVALUATED: [&str; 4] = [
@@ -35,7 +35,7 @@ fn main() -> Result<()> {
     };
     println!("without training");
     for id in EVALUATED {
-        print_rate(id, success_rate(&mut NoCorrection, &mut Remembered::new(make(id)?)?, episodes)?);
+        print_rate(id, success_rate(&mut NoCorrection, &mut FlightMemoryWrapper::new(make(id)?)?, episodes)?);
     }
     let mut rates: [Vec<SuccessRate>; EVALUATED.len()] = Default::default();
     for seed in 0..seeds {

@@ -8,7 +8,9 @@ use opendr_engine::learner::{FitJob, Handle, Learner as _};
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Device, ErrorKind, Result};
 use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
-use opendr_rl::{EvaluationProtocol, POLICY, PolicyParams, evaluate_controller, observation_from_numbers};
+use opendr_rl::{
+    EvaluationProtocol, POLICY_FILE, PolicyParams, evaluate_controller, observation_from_numbers,
+};
 use opendr_simulation::make;
 
 struct Folder(PathBuf);
@@ -36,7 +38,7 @@ fn pretrained(folder: &Path) -> Handle<EndToEndPlanningRl> {
     let weights = "../../models/weights/end_to_end_planning/uav_depth_corridor.safetensors";
     let weights = PathBuf::from(std::env::var_os("CARGO_MANIFEST_DIR").unwrap()).join(weights);
     let mut writer = ModelWriter::new(folder, Manifest::new(EndToEndPlanningRl::SPEC.name, "")).unwrap();
-    writer.add(POLICY, &std::fs::read(weights).unwrap()).unwrap();
+    writer.add(POLICY_FILE, &std::fs::read(weights).unwrap()).unwrap();
     writer.finish().unwrap();
     let mut learner = handle();
     learner.load(folder).unwrap();
@@ -119,7 +121,7 @@ fn training_does_not_depend_on_the_number_of_threads() {
         let statistics = learner.fit_in(&params, &corridor, None, &FitJob::new(&output)).unwrap();
         assert_eq!(statistics.get("steps"), Some(256.0));
         assert_eq!(flight(&mut learner).first().unwrap().len(), 2);
-        Model::open(output.join("model")).unwrap().file(POLICY).unwrap()
+        Model::open(output.join("model")).unwrap().file(POLICY_FILE).unwrap()
     });
     assert!(policies[0] == policies[1]);
     let cart = || make("CartPole-v1");

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use opendr_bags::{BagFormat, BagWriter, Channel, Recorded, WriteOptions};
+use opendr_bags::{BagFormat, BagWriter, Channel, RecordedMessage, WriteOptions};
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Header, Result, ResultExt, ValueRef};
-use opendr_messages::{Message, MessageType, Wire};
+use opendr_messages::{Message, MessageType, WireFormat};
 use opendr_ros_bridge::{ClassIds, RosBridge, label_info, message_types, view_action};
 
 use crate::Recording;
@@ -17,16 +17,16 @@ use crate::channels::{Known, channel_of, unreadable, wire_of};
 /// Classes are written by name, in ROS 1 by number, since its messages have no field for names. A dropped writer
 /// finishes the recording, but ignores errors: use [`Answers::finish`].
 #[derive(Debug)]
-pub struct Answers {
+pub struct RecordingWriter {
     writer: BagWriter,
-    wire: Wire,
+    wire: WireFormat,
     bridge: RosBridge,
     channels: HashMap<(String, MessageType), usize>,
     /// Channels of messages that are copied without decoding.
     copied: HashMap<(String, String), usize>,
 }
 
-impl Answers {
+impl RecordingWriter {
     /// Creates a recording at `path`. Takes a [`BagFormat`] or [`WriteOptions`].
     ///
     /// # Errors
@@ -34,7 +34,7 @@ impl Answers {
     pub fn create(path: impl AsRef<Path>, options: impl Into<WriteOptions>) -> Result<Self> {
         let options = options.into();
         let wire = wire_of(options.format);
-        let class_ids = if wire == Wire::Ros1 { ClassIds::Numbers } else { ClassIds::Names };
+        let class_ids = if wire == WireFormat::Ros1 { ClassIds::Numbers } else { ClassIds::Names };
         let bridge = RosBridge { class_ids, ..RosBridge::default() };
         let writer = BagWriter::create(path, options)?;
         Ok(Self { writer, wire, bridge, channels: HashMap::new(), copied: HashMap::new() })
@@ -72,7 +72,7 @@ impl Answers {
     /// # Errors
     /// As [`Answers::write`].
     pub fn write_classes(&mut self, topic: &str, classes: &Classes, log_time_ns: i64) -> Result<()> {
-        if self.wire == Wire::Ros1 || classes.is_empty() {
+        if self.wire == WireFormat::Ros1 || classes.is_empty() {
             return Ok(());
         }
         let header = Header { stamp_ns: Some(log_time_ns), frame_id: None };
@@ -118,7 +118,7 @@ impl Answers {
     ///
     /// # Errors
     /// As [`Answers::write_message`]; `Unsupported` for a message that needs conversion and is unknown to OpenDR.
-    pub fn copy(&mut self, recording: &Recording, message: &Recorded) -> Result<()> {
+    pub fn copy(&mut self, recording: &Recording, message: &RecordedMessage) -> Result<()> {
         let channel = recording.bag().channels().get(message.channel);
         let channel = channel.ok_or_else(|| Error::invalid_input("the message is of another recording"))?;
         match recording.known().get(message.channel) {
@@ -131,7 +131,7 @@ impl Answers {
         }
     }
 
-    fn copy_bytes(&mut self, channel: &Channel, message: &Recorded) -> Result<()> {
+    fn copy_bytes(&mut self, channel: &Channel, message: &RecordedMessage) -> Result<()> {
         let key = (channel.topic.clone(), channel.message_type.clone());
         let number = match self.copied.get(&key) {
             Some(number) => *number,
@@ -146,7 +146,7 @@ impl Answers {
 
     /// Returns whether the format keeps messages of ROS 1.
     pub fn is_ros1(&self) -> bool {
-        self.wire == Wire::Ros1
+        self.wire == WireFormat::Ros1
     }
 
     /// Writes the remaining messages and the index.

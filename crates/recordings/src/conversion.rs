@@ -4,7 +4,7 @@ use std::path::Path;
 
 use opendr_bags::{BagFormat, BagWriter, Channel, Encoding, Selection, WriteOptions};
 use opendr_engine::{Error, Progress, Result, ResultExt, Unit};
-use opendr_messages::Wire;
+use opendr_messages::WireFormat;
 
 use crate::Recording;
 use crate::channels::{Known, channel_of, unreadable};
@@ -31,7 +31,7 @@ impl<O: Into<WriteOptions>> From<O> for Conversion {
 /// How the messages of a channel are converted.
 enum Way {
     Copied(usize),
-    Converted(Known, Wire, usize),
+    Converted(Known, WireFormat, usize),
     LeftOut,
 }
 
@@ -109,14 +109,14 @@ impl Conversion {
 
     fn way(&self, writer: &mut BagWriter, channel: &Channel, known: Known) -> Result<Way> {
         let own = match channel.encoding {
-            Encoding::Ros1 => Some(Wire::Ros1),
-            Encoding::Cdr => Some(Wire::Cdr),
+            Encoding::Ros1 => Some(WireFormat::Ros1),
+            Encoding::Cdr => Some(WireFormat::Cdr),
             Encoding::Other(_) => None,
         };
         let needed = match self.options.format {
-            BagFormat::Bag1 => Some(Wire::Ros1),
+            BagFormat::Bag1 => Some(WireFormat::Ros1),
             BagFormat::Mcap if !self.is_ros2 => own,
-            _ => Some(Wire::Cdr),
+            _ => Some(WireFormat::Cdr),
         };
         match (known, needed) {
             _ if own.is_some() && own == needed => writer.add_channel(channel.clone()).map(Way::Copied),

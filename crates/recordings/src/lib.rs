@@ -33,10 +33,10 @@ mod sets;
 mod stamp;
 mod topic;
 
-pub use answers::Answers;
+pub use answers::RecordingWriter;
 pub use conversion::Conversion;
 pub use opendr_bags::*;
 pub use recording::{Recording, is_recording};
-pub use sets::{Need, PortTopic, Set, Sets};
+pub use sets::{Need, PortTopic, SyncedSet, SyncedSets};
 pub use stamp::{stamp_of, value_of};
 pub use topic::Topic;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use opendr_bags::{Bag, Recorded};
+use opendr_bags::{Bag, RecordedMessage};
 use opendr_engine::{Error, Result, ValueType};
 use opendr_messages::{Message, MessageType};
 
@@ -143,7 +143,7 @@ impl Recording {
     /// # Errors
     /// `Unsupported` for a type or encoding that OpenDR does not support, `Format` for bytes that are not such a
     /// message.
-    pub fn decode(&self, message: &Recorded) -> Result<Message> {
+    pub fn decode(&self, message: &RecordedMessage) -> Result<Message> {
         decode(&self.known, self.bag.channels(), message)
     }
 
@@ -155,7 +155,7 @@ impl Recording {
 pub(crate) fn decode(
     known: &[Known],
     channels: &[opendr_bags::Channel],
-    message: &Recorded,
+    message: &RecordedMessage,
 ) -> Result<Message> {
     let (known, channel) = (known.get(message.channel), channels.get(message.channel));
     match (known, channel) {

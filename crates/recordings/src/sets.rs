@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use opendr_bags::{Channel, Messages, Recorded, Selection};
+use opendr_bags::{Channel, Messages, RecordedMessage, Selection};
 use opendr_engine::{Result, ResultExt, Value, ValueType};
 use opendr_messages::Message;
 
@@ -52,12 +52,12 @@ impl PortTopic {
 
 /// The inputs of one inference, with their messages.
 #[derive(Debug, Clone)]
-pub struct Set {
+pub struct SyncedSet {
     /// One value for each port, in the order of the ports. A value without a stamp gets the log time of its
     /// message.
     pub values: Vec<Option<Value>>,
     /// The messages of the values.
-    pub messages: Vec<Option<Recorded>>,
+    pub messages: Vec<Option<RecordedMessage>>,
     /// Log time of the first port's message, in nanoseconds.
     pub log_time_ns: i64,
     /// Stamp of the first port's message, or its log time without a stamp; in nanoseconds.
@@ -70,7 +70,7 @@ pub struct Set {
 /// 20 ms, recorded up to one second later. The queues are bounded. A message that cannot be read yields an error,
 /// and reading continues.
 #[derive(Debug)]
-pub struct Sets {
+pub struct SyncedSets {
     ports: Vec<PortTopic>,
     channels: Vec<Channel>,
     known: Vec<Known>,
@@ -87,11 +87,11 @@ pub struct Sets {
 #[derive(Debug)]
 struct Waiting {
     message: Message,
-    recorded: Recorded,
+    recorded: RecordedMessage,
     stamp_ns: i64,
 }
 
-impl Sets {
+impl SyncedSets {
     /// Opens the sets of `recording`, with a topic for each port.
     ///
     /// # Errors
@@ -112,7 +112,7 @@ impl Sets {
         self.unmatched
     }
 
-    fn enqueue(&mut self, recorded: &Recorded) -> Result<()> {
+    fn enqueue(&mut self, recorded: &RecordedMessage) -> Result<()> {
         self.now_ns = recorded.log_time_ns;
         let topic = self.channels.get(recorded.channel).map(|channel| channel.topic.as_str());
         for (port, queue) in self.ports.iter().zip(&mut self.queues) {
@@ -148,7 +148,7 @@ impl Sets {
     }
 
     /// Takes the set of the first queued message; `None` if a required port has no match.
-    fn take(&mut self) -> Option<Result<Set>> {
+    fn take(&mut self) -> Option<Result<SyncedSet>> {
         let lead = self.queues.first_mut()?.pop_front()?;
         self.held -= lead.recorded.bytes.len();
         let (stamp_ns, log_time_ns) = (lead.stamp_ns, lead.recorded.log_time_ns);
@@ -186,7 +186,7 @@ impl Sets {
             self.unmatched += 1;
             return None;
         }
-        let mut set = Set { values: Vec::new(), messages: Vec::new(), log_time_ns, stamp_ns };
+        let mut set = SyncedSet { values: Vec::new(), messages: Vec::new(), log_time_ns, stamp_ns };
         for (port, waiting) in self.ports.iter().zip(waiting) {
             let Some(Waiting { message, recorded, stamp_ns }) = waiting else {
                 set.values.push(None);
@@ -203,8 +203,8 @@ impl Sets {
     }
 }
 
-impl Iterator for Sets {
-    type Item = Result<Set>;
+impl Iterator for SyncedSets {
+    type Item = Result<SyncedSet>;
 
     fn next(&mut self) -> Option<Self::Item> {
         loop {

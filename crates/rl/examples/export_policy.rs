@@ -8,7 +8,7 @@ use opendr_engine::environment::{EnvironmentSpec, Space};
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm as _, Beginning, Head, NetworkConfig, PictureNetwork, Policy, PolicyMemory, Ppo,
+    ActionMode, Algorithm as _, Head, ImageNetwork, NetworkConfig, ParameterInit, Policy, PolicyMemory, Ppo,
     PpoConfig, Sac, SacConfig, onnx_from_policy,
 };
 use opendr_simulation::make_vec;
@@ -38,14 +38,14 @@ fn main() -> Result<()> {
         [("depth", Space::uniform(0.0, 15.0, &[64, 64, 1])?), ("target", Space::symmetric(&[5.0; 3]))];
     let observation = Space::Dict(parts.map(|(name, part)| (name.to_owned(), part)).into());
     for (name, picture_network, gru_size, action) in [
-        ("depth_small", PictureNetwork::Small, None, Space::symmetric(&[1.0, 1.0])),
-        ("depth_nature", PictureNetwork::Nature, None, Space::MultiDiscrete(vec![3, 4])),
-        ("depth_memory", PictureNetwork::Small, Some(24), Space::MultiBinary(vec![3])),
+        ("depth_small", ImageNetwork::Small, None, Space::symmetric(&[1.0, 1.0])),
+        ("depth_nature", ImageNetwork::Nature, None, Space::MultiDiscrete(vec![3, 4])),
+        ("depth_memory", ImageNetwork::Small, Some(24), Space::MultiBinary(vec![3])),
     ] {
         let spec = EnvironmentSpec::new(name, observation.clone(), action);
         let config = NetworkConfig { picture_network, gru_size, ..NetworkConfig::default() };
         let mut policy = Policy::new(&spec, Head::stochastic(&spec.action)?, &config, Some(10.0))?;
-        policy.initialise(Beginning::Orthogonal(1.0), 0.0, &mut Random::new(5));
+        policy.initialise(ParameterInit::Orthogonal(1.0), 0.0, &mut Random::new(5));
         export(&folder, name, &policy)?;
     }
     Ok(())
@@ -61,7 +61,7 @@ fn export(folder: &Path, name: &str, policy: &Policy) -> Result<()> {
     let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
     let steps = observations.chunks_exact(observations.len() / 3);
     for (observations, actions) in steps.zip(actions.chunks_exact_mut(32 * policy.action().len())) {
-        policy.act(&compute, observations, Acting::Deterministic, &mut memory, actions)?;
+        policy.act(&compute, observations, ActionMode::Deterministic, &mut memory, actions)?;
     }
     let record = BTreeMap::from([("observations", observations), ("actions", actions)]);
     let json = serde_json::to_vec(&record)

@@ -30,7 +30,7 @@ pub struct Report {
 }
 
 /// Argument of the observer of [`Algorithm::train`], after each iteration.
-pub struct Event<'a, A> {
+pub struct IterationEvent<'a, A> {
     /// The learner, e.g. to evaluate its policy.
     pub learner: &'a A,
     /// Its environments, e.g. to save a checkpoint.
@@ -80,7 +80,7 @@ pub trait Algorithm {
     fn restore(&mut self, state: &SavedState, environments: &mut dyn VecEnvironment) -> Result<()>;
 
     /// Names of the arrays in a saved state.
-    fn rows(&self) -> &'static [&'static str];
+    fn array_names(&self) -> &'static [&'static str];
 
     /// Saves a checkpoint of this step. Returns its folder.
     ///
@@ -116,7 +116,7 @@ pub trait Algorithm {
         environments: &mut dyn VecEnvironment,
     ) -> Result<Option<Checkpoint>> {
         let Some(checkpoint) = checkpoints.latest()? else { return Ok(None) };
-        SavedState::from_files(&|name| checkpoint.file(name), self.rows())
+        SavedState::from_files(&|name| checkpoint.file(name), self.array_names())
             .and_then(|state| self.restore(&state, environments))
             .context(|| format!("resuming from {}", checkpoint.path().display()))?;
         Ok(Some(checkpoint))
@@ -131,14 +131,15 @@ pub trait Algorithm {
         &mut self,
         environments: &mut dyn VecEnvironment,
         total_timesteps: u64,
-        observer: &mut dyn FnMut(Event<'_, Self>) -> Result<ControlFlow<()>>,
+        observer: &mut dyn FnMut(IterationEvent<'_, Self>) -> Result<ControlFlow<()>>,
     ) -> Result<&Report>
     where
         Self: Sized,
     {
         while self.report().timesteps < total_timesteps {
             self.iterate(environments, total_timesteps)?;
-            let event = Event { learner: &*self, environments: &*environments, report: self.report() };
+            let event =
+                IterationEvent { learner: &*self, environments: &*environments, report: self.report() };
             if observer(event)?.is_break() {
                 break;
             }

@@ -139,7 +139,7 @@ pub fn clone_behaviour(
     policy.encoder.encode(&demonstrations.observations, &mut encoded)?;
     let mut actions = vec![0.0; demonstrations.actions.len()];
     policy.head.distribution_actions(&demonstrations.actions, &mut actions);
-    let mut random = Random::at([config.seed, 2]);
+    let mut random = Random::from_key([config.seed, 2]);
     let mut adam = Adam::new(policy.parameters.len(), AdamOptions::default());
     let mut order: Vec<_> = (0..steps).collect();
     let (mut memory, mut losses) = (Memory::default(), Vec::new());
@@ -215,7 +215,7 @@ mod tests {
     use opendr_engine::environment::Space;
 
     use super::*;
-    use crate::policy::{Beginning, Bounds, NetworkConfig};
+    use crate::policy::{Bounds, NetworkConfig, ParameterInit};
 
     fn demonstrations(spec: &EnvironmentSpec, act: impl Fn(f32, f32) -> f32) -> Demonstrations {
         let mut random = Random::new(4);
@@ -241,7 +241,7 @@ mod tests {
         ];
         for (spec, head, demonstrations) in cases {
             let mut policy = Policy::new(spec, head, &NetworkConfig::default(), None).unwrap();
-            policy.initialise(Beginning::Orthogonal(0.01), 0.0, &mut Random::new(1));
+            policy.initialise(ParameterInit::Orthogonal(0.01), 0.0, &mut Random::new(1));
             let config = BehaviourCloningConfig { n_epochs: 30, ..Default::default() };
             let compute = Compute::single();
             let mut observer = |_, _| ControlFlow::Continue(());
@@ -249,7 +249,7 @@ mod tests {
                 clone_behaviour(&mut policy, demonstrations, &config, &compute, &mut observer).unwrap();
             assert!(losses[29] < losses[0], "{losses:?}");
             let mut actions = vec![0.0; 400];
-            let acting = crate::Acting::Deterministic;
+            let acting = crate::ActionMode::Deterministic;
             let mut memory = PolicyMemory::default();
             policy.act(&compute, &demonstrations.observations, acting, &mut memory, &mut actions).unwrap();
             let errors = actions.iter().zip(&demonstrations.actions).map(|(a, b)| (a - b).abs());

@@ -3,7 +3,7 @@
 use opendr_engine::environment::{EnvironmentSpec, Space, StateReader};
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result};
-use opendr_kernels::{Adam, AdamOptions, Compute, clip_gradient_norm, move_towards};
+use opendr_kernels::{Adam, AdamOptions, Compute, clip_gradient_norm, polyak_update};
 
 use crate::algorithm::diverged;
 use crate::off_policy::{Experience, OffPolicyAlgorithm, OffPolicyBase, OffPolicyConfig};
@@ -20,7 +20,7 @@ pub struct DqnConfig {
     #[param(flatten, learning_rate = 1e-4, batch_size = 32, tau = 1.0, train_freq = 4)]
     pub off_policy: OffPolicyConfig,
     /// Q-network.
-    #[param(flatten, activation_fn = crate::Hidden::Relu)]
+    #[param(flatten, activation_fn = crate::ActivationFn::Relu)]
     pub network: NetworkConfig,
     /// Steps of all environments between two updates of the target network.
     #[param(default = 10_000, range = 1..=1_000_000_000, log)]
@@ -175,7 +175,7 @@ impl OffPolicyAlgorithm for Dqn {
         let before = after - experience.interaction.count() as u64;
         if before / interval != after / interval {
             let tau = self.base.config.tau;
-            move_towards(&mut self.target.parameters, &self.base.policy.parameters, tau);
+            polyak_update(&mut self.target.parameters, &self.base.policy.parameters, tau);
         }
     }
 

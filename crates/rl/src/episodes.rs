@@ -13,7 +13,7 @@ const KEPT: usize = 100;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Episode {
     /// Return: the sum of its rewards.
-    pub earned: f64,
+    pub total_reward: f64,
     /// Number of steps.
     pub length: u64,
     /// Value of `success` in its final info, if present.
@@ -43,7 +43,7 @@ impl Episodes {
                 if self.last.len() == KEPT {
                     self.last.pop_front();
                 }
-                self.last.push_back(Episode { earned: *earned, length: *length, success });
+                self.last.push_back(Episode { total_reward: *earned, length: *length, success });
                 (*earned, *length) = (0.0, 0);
                 self.count += 1;
             }
@@ -67,7 +67,7 @@ impl Episodes {
 
     /// Returns the mean return of the last 100 episodes; none before the first has ended.
     pub fn mean_return(&self) -> Option<f64> {
-        self.mean(|episode| Some(episode.earned))
+        self.mean(|episode| Some(episode.total_reward))
     }
 
     /// Returns the mean length of the last 100 episodes, in steps.
@@ -94,7 +94,7 @@ impl Episodes {
         }
         words.push(self.last.len() as u64);
         for episode in &self.last {
-            words.push_number(episode.earned);
+            words.push_number(episode.total_reward);
             words.push(episode.length);
             words.push(episode.success.map_or(2, u64::from));
         }
@@ -112,7 +112,7 @@ impl Episodes {
                 2 => None,
                 reported => Some(reported == 1),
             };
-            self.last.push_back(Episode { earned, length, success });
+            self.last.push_back(Episode { total_reward: earned, length, success });
         }
         Ok(())
     }

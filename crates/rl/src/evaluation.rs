@@ -8,7 +8,7 @@ use opendr_engine::{Error, Random, Result, ResultExt as _, Statistics};
 use opendr_kernels::Compute;
 use opendr_metrics::{Interval, wilson_interval};
 
-use crate::policy::{Acting, Policy, PolicyMemory};
+use crate::policy::{ActionMode, Policy, PolicyMemory};
 
 /// Episodes of an evaluation, and how the policy acts in them.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -33,7 +33,7 @@ pub struct EvaluatedEpisode {
     /// Seed of its reset.
     pub seed: u64,
     /// Return: the sum of its rewards.
-    pub earned: f64,
+    pub total_reward: f64,
     /// Number of steps.
     pub length: u64,
     /// Whether it was a success; none if not reported.
@@ -94,7 +94,7 @@ pub fn evaluate(
         policy,
         compute: Compute::single(),
         memory: PolicyMemory::default(),
-        random: (!protocol.deterministic).then(|| Random::at([protocol.first_seed, 1])),
+        random: (!protocol.deterministic).then(|| Random::from_key([protocol.first_seed, 1])),
     };
     let success = |step: &Step| step.info.success();
     evaluate_controller(&mut controller, environment, protocol, &success)
@@ -115,7 +115,7 @@ impl Controller for PolicyController<'_> {
     }
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
-        let acting = self.random.as_mut().map_or(Acting::Deterministic, Acting::Sampled);
+        let acting = self.random.as_mut().map_or(ActionMode::Deterministic, ActionMode::Sampled);
         self.policy.act(&self.compute, observation, acting, &mut self.memory, action)
     }
 }
@@ -145,9 +145,9 @@ impl EvaluationReport {
     pub fn of(episodes: Vec<EvaluatedEpisode>, seconds: f64) -> Self {
         let count = episodes.len() as f64;
         let mean = |of: &dyn Fn(&EvaluatedEpisode) -> f64| episodes.iter().map(of).sum::<f64>() / count;
-        let mean_return = mean(&|episode| episode.earned);
+        let mean_return = mean(&|episode| episode.total_reward);
         let variance =
-            mean(&|episode| (episode.earned - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
+            mean(&|episode| (episode.total_reward - mean_return).powi(2)) * count / (count - 1.0).max(1.0);
         let reported: Vec<_> = episodes.iter().filter_map(|episode| episode.success).collect();
         Self {
             mean_return,
@@ -181,7 +181,7 @@ fn run(
         earned += step.reward;
         if step.is_over() || length == max_steps {
             let (success, terminated) = (success(&step), step.terminated);
-            return Ok(EvaluatedEpisode { seed, earned, length, success, terminated });
+            return Ok(EvaluatedEpisode { seed, total_reward: earned, length, success, terminated });
         }
     }
     Err(Error::internal("an episode has no steps"))

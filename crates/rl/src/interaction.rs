@@ -136,7 +136,7 @@ impl Interaction {
         if !states.id().is_empty() {
             return environments.restore(states).map(|()| true);
         }
-        let seeds = Seeds::From(Random::at([self.timesteps, self.count() as u64]).bits() >> 32);
+        let seeds = Seeds::From(Random::from_key([self.timesteps, self.count() as u64]).bits() >> 32);
         environments.reset(seeds, &ResetOptions::new(), None, &mut self.batch)?;
         self.episodes.discard_running();
         check_finite(&self.batch.observations, self.size)?;

@@ -50,7 +50,7 @@ mod td3;
 mod training;
 mod twin_critics;
 
-pub use algorithm::{Algorithm, Event, Report};
+pub use algorithm::{Algorithm, IterationEvent, Report};
 pub use behaviour_cloning::{BehaviourCloningConfig, Demonstrations, clone_behaviour};
 pub use dqn::{Dqn, DqnConfig};
 pub use episodes::{Episode, Episodes};
@@ -65,8 +65,8 @@ pub use learner::{
 pub use off_policy::OffPolicyConfig;
 pub use onnx::onnx_from_policy;
 pub use policy::{
-    Acting, Beginning, Bounds, Head, Hidden, NetworkConfig, ObservationEncoder, ObservationNormaliser,
-    PictureNetwork, Policy, PolicyMemory,
+    ActionMode, ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, ObservationEncoder,
+    ObservationNormaliser, ParameterInit, Policy, PolicyMemory,
 };
 pub use ppo::{Ppo, PpoConfig, Trajectory, generalised_advantages};
 pub use preset::Preset;
@@ -75,4 +75,4 @@ pub use saved_state::SavedState;
 pub use schedule::Schedule;
 pub use stable_baselines3::policy_from_stable_baselines3;
 pub use td3::{ActionNoise, Td3, Td3Config};
-pub use training::{POLICY, fit_policy};
+pub use training::{POLICY_FILE, fit_policy};

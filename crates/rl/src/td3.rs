@@ -3,7 +3,7 @@
 use opendr_engine::Result;
 use opendr_engine::environment::{EnvironmentSpec, StateReader};
 use opendr_engine::params::Params;
-use opendr_kernels::{Adam, AdamOptions, Compute, move_towards, tanh_in_place};
+use opendr_kernels::{Adam, AdamOptions, Compute, polyak_update, tanh_in_place};
 
 use crate::algorithm::diverged;
 use crate::off_policy::{Experience, OffPolicyAlgorithm, OffPolicyBase, OffPolicyConfig};
@@ -30,7 +30,7 @@ pub struct Td3Config {
     #[param(flatten, learning_rate = 1e-3)]
     pub off_policy: OffPolicyConfig,
     /// Networks of policy and critics.
-    #[param(flatten, net_arch = vec![400, 300], activation_fn = crate::Hidden::Relu)]
+    #[param(flatten, net_arch = vec![400, 300], activation_fn = crate::ActivationFn::Relu)]
     pub network: NetworkConfig,
     /// Standard deviation of the exploration noise, for actions in [-1, 1]. The default is rl-zoo's; Stable-Baselines3 has none.
     #[param(default = 0.1, range = 0.0..=2.0)]
@@ -165,7 +165,7 @@ impl Td3 {
         policy.backward(compute, doutputs, now, gradients);
         self.actor_adam.step(compute, config.learning_rate, &mut policy.parameters, gradients);
         self.critics.update_targets(config.tau);
-        move_towards(&mut self.target.parameters, &policy.parameters, config.tau);
+        polyak_update(&mut self.target.parameters, &policy.parameters, config.tau);
         report.metrics.set("actor_loss", (-value).into());
         Ok(())
     }

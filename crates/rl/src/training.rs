@@ -19,7 +19,7 @@ use crate::onnx::onnx_from_policy;
 use crate::policy::Policy;
 
 /// File of the policy in a container.
-pub const POLICY: &str = "policy.safetensors";
+pub const POLICY_FILE: &str = "policy.safetensors";
 /// Folder of the checkpoints in the output folder.
 const CHECKPOINTS: &str = "checkpoints";
 /// Further files of a checkpoint: the best policy so far, and the results of the evaluations.
@@ -57,16 +57,16 @@ pub fn fit_policy<M: Method>(
     val_env: Option<&dyn EnvironmentSource>,
     job: &FitJob<'_>,
 ) -> Result<Statistics> {
-    let base = base.map(|model| Policy::from_bytes(&model.file(POLICY)?)).transpose()?;
+    let base = base.map(|model| Policy::from_bytes(&model.file(POLICY_FILE)?)).transpose()?;
     let begun = Instant::now();
     let first = env.make()?;
     let id = first.spec().id.clone();
-    let first = M::seen(first, true)?;
+    let first = M::wrap(first, true)?;
     let spec = first.spec().clone();
-    let fit_params = M::for_environment(fit_params, &id);
+    let fit_params = M::with_preset(fit_params, &id);
     fit_params.check()?;
     let training = M::training(&fit_params);
-    let further = (1..training.n_envs).map(|_| M::seen(env.make()?, true));
+    let further = (1..training.n_envs).map(|_| M::wrap(env.make()?, true));
     let environments = std::iter::once(Ok(first)).chain(further).collect::<Result<Vec<_>>>()?;
     let environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.num_workers)?;
     let compute = if training.num_workers > 1 {
@@ -104,7 +104,7 @@ fn evaluation_environment<M: Method>(
         environment => environment,
     };
     environment
-        .and_then(|environment| M::seen(environment, false))
+        .and_then(|environment| M::wrap(environment, false))
         .map(Some)
         .context(|| "making the environment for evaluations")
 }
@@ -279,7 +279,7 @@ fn write_model<M: Method>(
         manifest.metrics.insert(environment.to_owned(), numbers);
     }
     let mut writer = ModelWriter::new(job.model(), manifest)?;
-    writer.add(POLICY, &policy.to_bytes()?)?;
+    writer.add(POLICY_FILE, &policy.to_bytes()?)?;
     if let Ok(network) = onnx_from_policy(policy) {
         writer.add("policy.onnx", &network)?;
     }

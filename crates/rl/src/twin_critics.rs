@@ -2,9 +2,9 @@
 
 use opendr_engine::environment::StateReader;
 use opendr_engine::{Random, Result};
-use opendr_kernels::{Adam, AdamOptions, Compute, Network, Tape, move_towards};
+use opendr_kernels::{Adam, AdamOptions, Compute, Network, Tape, polyak_update};
 
-use crate::policy::{Beginning, Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder};
+use crate::policy::{Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder, ParameterInit};
 use crate::saved_state::SavedState;
 
 /// Names of the arrays of saved critics and of their shared extractor: parameters, target and moments of Adam of each.
@@ -72,7 +72,7 @@ impl TwinCritics {
         let count = network.parameters();
         let critics = [(); 2].map(|()| {
             let mut parameters = vec![0.0; count];
-            network.initialise(Beginning::Uniform.of_output(), random, &mut parameters);
+            network.initialise(ParameterInit::Uniform.of_output(), random, &mut parameters);
             Critic {
                 target: parameters.clone(),
                 parameters,
@@ -209,9 +209,9 @@ impl TwinCritics {
     /// Moves the target networks by `tau` towards the online networks.
     pub fn update_targets(&mut self, tau: f32) {
         for critic in &mut self.critics {
-            move_towards(&mut critic.target, &critic.parameters, tau);
+            polyak_update(&mut critic.target, &critic.parameters, tau);
         }
-        move_towards(&mut self.shared.target, &self.shared.parameters, tau);
+        polyak_update(&mut self.shared.target, &self.shared.parameters, tau);
     }
 
     fn set_inputs(
@@ -263,7 +263,7 @@ impl SharedExtractor {
         let extractor = Extractor::new(encoder, config.picture_network)?;
         let count = extractor.parameters();
         let mut parameters = vec![0.0; count];
-        extractor.initialise(Beginning::Uniform, random, &mut parameters);
+        extractor.initialise(ParameterInit::Uniform, random, &mut parameters);
         Ok(Self {
             extractor,
             target: parameters.clone(),

@@ -5,7 +5,7 @@ use opendr_engine::{Error, Header, Result};
 use opendr_messages::opendr_msgs::Float32MultiArrayStamped;
 use opendr_messages::std_msgs::{Float32MultiArray, MultiArrayDimension, MultiArrayLayout};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Writes an array whose axes are named `labels`.
 ///
@@ -88,7 +88,7 @@ arrays! {
 }
 
 /// Array of other nodes: the stamp is the time of arrival, and a plain row is one feature over time.
-impl Bridged<Float32MultiArray> for Timeseries {
+impl FromToMessage<Float32MultiArray> for Timeseries {
     fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
         let (shape, data) = array_from_message(message)?;
         let shape = if let [length] = shape[..] { [length, 1] } else { exact::<2>(&shape, "Timeseries")? };
@@ -101,7 +101,7 @@ impl Bridged<Float32MultiArray> for Timeseries {
 }
 
 /// Without stamp and frame.
-impl Bridged<Float32MultiArray> for Vector {
+impl FromToMessage<Float32MultiArray> for Vector {
     fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
         let (_, data) = array_from_message(message)?;
         Self::from_data(data)

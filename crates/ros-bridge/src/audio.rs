@@ -5,13 +5,13 @@ use opendr_engine::{Error, Result};
 use opendr_messages::audio_common_msgs::{AudioData, AudioInfo};
 use opendr_messages::opendr_msgs::AudioStamped;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Written sample format of `audio_common`, in GStreamer's notation.
 const FLOATS: &str = "F32LE";
 
 /// Written losslessly as floats; also read as 8 (`U8`), 16 (`S16LE`) and 32 bits (`S32LE`).
-impl Bridged<AudioStamped> for Audio {
+impl FromToMessage<AudioStamped> for Audio {
     fn from_message(message: AudioStamped, _: &RosBridge) -> Result<Self> {
         let AudioInfo { channels, sample_rate, sample_format, coding_format, .. } = message.info;
         if !matches!(coding_format.as_str(), "" | "wave" | "WAVE" | "raw" | "pcm") {

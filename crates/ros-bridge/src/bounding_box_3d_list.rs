@@ -10,12 +10,12 @@ use opendr_messages::vision_msgs::{
 
 use crate::bounding_box_list::best;
 use crate::class_id::name_from_class_id;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// One detection per box, in the camera frame of KITTI (x right, y down, z ahead): centre in metres, rotation about y as a
 /// quaternion; length, height and width are the sizes along the box's x, y and z. Further fields of KITTI (truncation, occlusion,
 /// observation angle, 2D box) are not in the message.
-impl Bridged<Detection3DArray> for BoundingBox3DList {
+impl FromToMessage<Detection3DArray> for BoundingBox3DList {
     fn from_message(message: Detection3DArray, _: &RosBridge) -> Result<Self> {
         let boxes: Vec<_> = message.detections.iter().map(box_from_detection).collect();
         Ok(Self { header: header_from_message(&message.header), ..Self::from(boxes) })

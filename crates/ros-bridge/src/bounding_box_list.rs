@@ -8,11 +8,11 @@ use opendr_messages::vision_msgs::{
 };
 
 use crate::class_id::name_from_class_id;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// One detection per box, with centre and size in pixels. Masks, face landmarks and the image id of a data set are not in the
 /// message. The hypothesis with the highest score is read; a rotated box becomes its axis-aligned enclosing box.
-impl Bridged<Detection2DArray> for BoundingBoxList {
+impl FromToMessage<Detection2DArray> for BoundingBoxList {
     fn from_message(message: Detection2DArray, _: &RosBridge) -> Result<Self> {
         let boxes: Vec<_> = message.detections.iter().map(box_from_detection).collect();
         Ok(Self { header: header_from_message(&message.header), ..Self::from(boxes) })

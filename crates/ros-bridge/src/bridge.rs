@@ -6,7 +6,7 @@ use opendr_messages::{Message, MessageType, RosMessage};
 use crate::ClassIds;
 
 /// A data or target type that converts to and from the message type `M`.
-pub trait Bridged<M>: Sized {
+pub trait FromToMessage<M>: Sized {
     /// Reads the message.
     ///
     /// # Errors
@@ -41,7 +41,7 @@ impl RosBridge {
     ///
     /// # Errors
     /// As [`Bridged::from_message`].
-    pub fn from_message<T: Bridged<M>, M>(&self, message: M) -> Result<T> {
+    pub fn from_message<T: FromToMessage<M>, M>(&self, message: M) -> Result<T> {
         T::from_message(message, self)
     }
 
@@ -49,7 +49,7 @@ impl RosBridge {
     ///
     /// # Errors
     /// As [`Bridged::to_message`].
-    pub fn to_message<T: Bridged<M>, M>(&self, value: &T) -> Result<M> {
+    pub fn to_message<T: FromToMessage<M>, M>(&self, value: &T) -> Result<M> {
         value.to_message(self)
     }
 
@@ -98,7 +98,7 @@ fn find(value_type: ValueType, message_type: MessageType) -> Result<&'static Pai
 
 fn read<T, M>(message: Message, bridge: &RosBridge) -> Result<Value>
 where
-    T: Bridged<M> + Into<Value>,
+    T: FromToMessage<M> + Into<Value>,
     M: TryFrom<Message, Error = Error>,
 {
     T::from_message(message.try_into()?, bridge).map(Into::into)
@@ -106,7 +106,7 @@ where
 
 fn write<T, M>(value: ValueRef<'_>, bridge: &RosBridge) -> Result<Message>
 where
-    T: Bridged<M> + Datum,
+    T: FromToMessage<M> + Datum,
     M: Into<Message>,
 {
     let value = T::from_value_ref(value).ok_or_else(|| {

@@ -4,10 +4,10 @@ use opendr_engine::data::Calibration;
 use opendr_engine::{Error, Result};
 use opendr_messages::{opendr_msgs, sensor_msgs};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// The three matrices in row-major order.
-impl Bridged<opendr_msgs::Calibration> for Calibration {
+impl FromToMessage<opendr_msgs::Calibration> for Calibration {
     fn from_message(message: opendr_msgs::Calibration, _: &RosBridge) -> Result<Self> {
         let all = message.p2.iter().chain(&message.r0_rect).chain(&message.tr_velo_to_cam);
         check_finite(all)?;
@@ -30,7 +30,7 @@ impl Bridged<opendr_msgs::Calibration> for Calibration {
 }
 
 /// Projection and rectification of a camera; the lidar is assumed to be in the camera's frame, and its pose is not written.
-impl Bridged<sensor_msgs::CameraInfo> for Calibration {
+impl FromToMessage<sensor_msgs::CameraInfo> for Calibration {
     fn from_message(message: sensor_msgs::CameraInfo, _: &RosBridge) -> Result<Self> {
         check_finite(message.p.iter().chain(&message.r))?;
         if message.p[0] == 0.0 || message.p[5] == 0.0 {

@@ -5,10 +5,10 @@ use opendr_engine::{Error, Result};
 use opendr_messages::vision_msgs::{Classification, ObjectHypothesis};
 
 use crate::class_id::{ClassIds, name_from_class_id};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// The predicted class first, by description or index, then the scores of all classes by index, if the learner predicts them.
-impl Bridged<Classification> for Category {
+impl FromToMessage<Classification> for Category {
     fn from_message(message: Classification, _: &RosBridge) -> Result<Self> {
         let [first, all @ ..] = &message.results[..] else {
             return Err(Error::format("the classification has no result"));

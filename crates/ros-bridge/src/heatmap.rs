@@ -5,11 +5,11 @@ use opendr_engine::target::{Heatmap, HeatmapValues};
 use opendr_engine::{Error, Result};
 use opendr_messages::sensor_msgs;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Class indices are `mono8`, `16UC1` or `32SC1`, the smallest that holds them. Scores are `32FC1`; those of shape
 /// `[classes, height, width]` are `32FCn` with n classes. `vision_msgs/LabelInfo` contains the names of the classes.
-impl Bridged<sensor_msgs::Image> for Heatmap {
+impl FromToMessage<sensor_msgs::Image> for Heatmap {
     fn from_message(mut message: sensor_msgs::Image, bridge: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         let (height, width) = (message.height as usize, message.width as usize);

@@ -4,10 +4,10 @@ use opendr_engine::Result;
 use opendr_engine::data::ImageWithDetections;
 use opendr_messages::opendr_msgs;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Image and boxes, each as in its own message.
-impl Bridged<opendr_msgs::ImageWithDetections> for ImageWithDetections {
+impl FromToMessage<opendr_msgs::ImageWithDetections> for ImageWithDetections {
     fn from_message(message: opendr_msgs::ImageWithDetections, bridge: &RosBridge) -> Result<Self> {
         Ok(Self {
             header: header_from_message(&message.header),

@@ -41,7 +41,7 @@ mod tracking_annotation_list;
 mod transcription;
 mod view_action;
 
-pub use bridge::{Bridged, RosBridge, message_types};
+pub use bridge::{FromToMessage, RosBridge, message_types};
 pub use class_id::{ClassIds, label_info};
 pub use header::{header_from_message, message_from_header, nanoseconds, time};
 pub use view_action::view_action;

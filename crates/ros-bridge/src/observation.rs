@@ -6,10 +6,10 @@ use opendr_messages::opendr_msgs::{self, Float32MultiArrayStamped, ObservationPa
 use opendr_messages::std_msgs::Float32MultiArray;
 
 use crate::array::{array_from_message, message_from_array};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Parts by name; an observation without parts is one unnamed part.
-impl Bridged<opendr_msgs::Observation> for Observation {
+impl FromToMessage<opendr_msgs::Observation> for Observation {
     fn from_message(message: opendr_msgs::Observation, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         let mut parts = Vec::with_capacity(message.parts.len());
@@ -47,10 +47,11 @@ impl Bridged<opendr_msgs::Observation> for Observation {
 }
 
 /// The numbers as one row.
-impl Bridged<Float32MultiArrayStamped> for Observation {
+impl FromToMessage<Float32MultiArrayStamped> for Observation {
     fn from_message(message: Float32MultiArrayStamped, bridge: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
-        Ok(<Self as Bridged<Float32MultiArray>>::from_message(message.array, bridge)?.with_header(header))
+        Ok(<Self as FromToMessage<Float32MultiArray>>::from_message(message.array, bridge)?
+            .with_header(header))
     }
 
     fn to_message(&self, bridge: &RosBridge) -> Result<Float32MultiArrayStamped> {
@@ -60,7 +61,7 @@ impl Bridged<Float32MultiArrayStamped> for Observation {
 }
 
 /// The numbers as one row, without stamp and frame.
-impl Bridged<Float32MultiArray> for Observation {
+impl FromToMessage<Float32MultiArray> for Observation {
     fn from_message(message: Float32MultiArray, _: &RosBridge) -> Result<Self> {
         Self::from_data(array_from_message(message)?.1)
     }

@@ -4,7 +4,7 @@ use opendr_engine::data::PointCloud;
 use opendr_engine::{Error, Result};
 use opendr_messages::sensor_msgs::{PointCloud2, PointField};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Written names of the channels; further ones are `channel_7` and so on.
 const NAMES: [&str; 7] = ["x", "y", "z", "intensity", "r", "g", "b"];
@@ -18,7 +18,7 @@ const PACKED_COLOURS: [&str; 2] = ["rgb", "rgba"];
 /// Reads x, y, z, then the intensity, then colours (single fields, or packed `rgb`/`rgba` as in PCL, 0 to 255 each), then
 /// `channel_N`, of any number type, offset and byte order; other fields (ring, time) are skipped. NaN points are kept. Writes
 /// floats in the same order.
-impl Bridged<PointCloud2> for PointCloud {
+impl FromToMessage<PointCloud2> for PointCloud {
     fn from_message(message: PointCloud2, _: &RosBridge) -> Result<Self> {
         let columns = Columns::of(&message)?;
         let (points, step) = (columns.points, message.point_step as usize);

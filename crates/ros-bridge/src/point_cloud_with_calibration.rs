@@ -4,10 +4,10 @@ use opendr_engine::data::PointCloudWithCalibration;
 use opendr_engine::{Error, Result};
 use opendr_messages::opendr_msgs;
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Point cloud and calibration, each as in its own message; an image size of 0 means unknown.
-impl Bridged<opendr_msgs::PointCloudWithCalibration> for PointCloudWithCalibration {
+impl FromToMessage<opendr_msgs::PointCloudWithCalibration> for PointCloudWithCalibration {
     fn from_message(message: opendr_msgs::PointCloudWithCalibration, bridge: &RosBridge) -> Result<Self> {
         let shape = [message.image_height as usize, message.image_width as usize];
         Ok(Self {

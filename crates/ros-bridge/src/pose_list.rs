@@ -4,10 +4,10 @@ use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Error, Result};
 use opendr_messages::opendr_msgs::{Pose2D, Pose2DArray, Pose2DKeypoint};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Keypoints by name and position. The person boxes of data sets are not in the message.
-impl Bridged<Pose2DArray> for PoseList {
+impl FromToMessage<Pose2DArray> for PoseList {
     fn from_message(message: Pose2DArray, _: &RosBridge) -> Result<Self> {
         let poses = message.poses.iter().map(pose_from_message).collect::<Result<Vec<_>>>()?;
         Ok(Self { header: header_from_message(&message.header), ..Self::from(poses) })

@@ -5,10 +5,10 @@ use opendr_engine::{Error, Result};
 use opendr_messages::vision_msgs::{Classification, ObjectHypothesis};
 
 use crate::class_id::{ClassIds, name_from_class_id};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Word or index with its score. Start and end within the audio are not in the message.
-impl Bridged<Classification> for SpeechCommand {
+impl FromToMessage<Classification> for SpeechCommand {
     fn from_message(message: Classification, _: &RosBridge) -> Result<Self> {
         let first = message.results.first();
         let first = first.ok_or_else(|| Error::format("the classification has no result"))?;

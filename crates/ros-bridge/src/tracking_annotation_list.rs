@@ -5,11 +5,11 @@ use opendr_engine::target::{TrackingAnnotation, TrackingAnnotationList};
 use opendr_messages::vision_msgs::Detection2DArray;
 
 use crate::bounding_box_list::{box_from_detection, detection_from_box};
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// As boxes, with the track id as the detection's `id`. The frame index is not in the message; the stamp identifies the frame. An
 /// `id` that is not a number is read as -1 (unknown).
-impl Bridged<Detection2DArray> for TrackingAnnotationList {
+impl FromToMessage<Detection2DArray> for TrackingAnnotationList {
     fn from_message(message: Detection2DArray, _: &RosBridge) -> Result<Self> {
         let annotation = |detection| TrackingAnnotation {
             bounding_box: box_from_detection(detection),

@@ -4,10 +4,10 @@ use opendr_engine::Result;
 use opendr_engine::target::{BaseTranscription, VoskTranscription, WhisperSegment, WhisperTranscription};
 use opendr_messages::opendr_msgs::{Transcription, TranscriptionSegment};
 
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// The text.
-impl Bridged<Transcription> for BaseTranscription {
+impl FromToMessage<Transcription> for BaseTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         Ok(Self { header: header_from_message(&message.header), text: message.text, action: None })
     }
@@ -19,7 +19,7 @@ impl Bridged<Transcription> for BaseTranscription {
 }
 
 /// The text so far, and whether it is final.
-impl Bridged<Transcription> for VoskTranscription {
+impl FromToMessage<Transcription> for VoskTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         Ok(Self { header, text: message.text, accept_waveform: message.is_final, action: None })
@@ -33,7 +33,7 @@ impl Bridged<Transcription> for VoskTranscription {
 }
 
 /// The text with its segments.
-impl Bridged<Transcription> for WhisperTranscription {
+impl FromToMessage<Transcription> for WhisperTranscription {
     fn from_message(message: Transcription, _: &RosBridge) -> Result<Self> {
         let segments = message.segments.into_iter().map(segment_from_message).collect();
         Ok(Self { header: header_from_message(&message.header), text: message.text, segments, action: None })

@@ -41,13 +41,13 @@ impl Default for EnvironmentOptions {
 }
 
 /// Converts the numbers of an observation into an observation with named parts.
-pub type Observe = Box<dyn Fn(&[f32]) -> Result<Observation> + Send>;
+pub type ObservationWriter = Box<dyn Fn(&[f32]) -> Result<Observation> + Send>;
 
 /// An environment as a node: it subscribes to actions and publishes the observation (`~/observation`), the reward (`~/reward`) and
 /// whether the episode is over (`~/is_over`). After an episode it begins the next; the service `~/reset` begins one at once.
 pub struct EnvironmentNode {
     environment: Box<dyn Environment>,
-    observe: Observe,
+    observe: ObservationWriter,
     options: EnvironmentOptions,
     actions: Receiver<Result<Message>>,
     reset: Arc<AtomicBool>,
@@ -73,7 +73,7 @@ impl EnvironmentNode {
     pub fn new(
         graph: &mut dyn Graph,
         environment: Box<dyn Environment>,
-        observe: Observe,
+        observe: ObservationWriter,
         options: EnvironmentOptions,
     ) -> Result<Self> {
         let known = opendr_ros_bridge::message_types(ValueType::RlTarget);

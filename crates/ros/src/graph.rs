@@ -29,13 +29,13 @@ impl Qos {
 }
 
 /// Callback for received messages; an error stands for bytes that cannot be read as the type.
-pub type Deliver = Box<dyn FnMut(Result<Message>) + Send>;
+pub type MessageCallback = Box<dyn FnMut(Result<Message>) + Send>;
 
 /// Handler of a `std_srvs/Trigger`; returns the message of the response.
-pub type Trigger = Box<dyn FnMut() -> Result<String> + Send>;
+pub type TriggerHandler = Box<dyn FnMut() -> Result<String> + Send>;
 
 /// Returns the response of a trigger.
-pub(crate) fn answer_to(trigger: &mut Trigger) -> std_srvs::TriggerResponse {
+pub(crate) fn answer_to(trigger: &mut TriggerHandler) -> std_srvs::TriggerResponse {
     let (success, message) = match trigger() {
         Ok(message) => (true, message),
         Err(error) => (false, error.to_string()),
@@ -102,14 +102,19 @@ pub trait Graph: Send {
     ///
     /// # Errors
     /// As [`Graph::advertise`].
-    fn subscribe(&mut self, topic: &str, message_type: MessageType, qos: Qos, deliver: Deliver)
-    -> Result<()>;
+    fn subscribe(
+        &mut self,
+        topic: &str,
+        message_type: MessageType,
+        qos: Qos,
+        deliver: MessageCallback,
+    ) -> Result<()>;
 
     /// Serves a `std_srvs/Trigger`.
     ///
     /// # Errors
     /// As [`Graph::advertise`].
-    fn serve(&mut self, service: &str, trigger: Trigger) -> Result<()>;
+    fn serve(&mut self, service: &str, trigger: TriggerHandler) -> Result<()>;
 
     /// Declares the parameters, which other nodes can then read and set.
     ///

@@ -25,12 +25,12 @@ mod ros1;
 mod ros2;
 mod ros_args;
 
-pub use environment_node::{EnvironmentNode, EnvironmentOptions, Observe};
-pub use graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger};
+pub use environment_node::{EnvironmentNode, EnvironmentOptions, ObservationWriter};
+pub use graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, Severity, TriggerHandler};
 pub use names::Names;
-pub use node::{Feeds, LearnerNode, NodeOptions, NodeParams, TopicOptions, default_topics};
+pub use node::{LearnerNode, NodeOptions, NodeParams, SharedSubscriptions, TopicOptions, default_topics};
 pub use parameter_table::ParameterTable;
-pub use ros_args::{RosArgs, words_from_ros1};
+pub use ros_args::{RosArgs, ros_args_from_ros1};
 pub use ros1::Ros1Node;
 pub use ros2::{Middleware, Ros2, Ros2Node, Ros2Options};
 pub use {opendr_messages as messages, opendr_ros_bridge as bridge};

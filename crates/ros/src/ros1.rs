@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use opendr_engine::params::ParamValue;
 use opendr_engine::{Error, ErrorKind, Result};
-use opendr_messages::{Message, MessageType, RosService as _, StdSrvsTrigger, Wire, ros1_from_message};
+use opendr_messages::{Message, MessageType, RosService as _, StdSrvsTrigger, WireFormat, ros1_from_message};
 use opendr_ros1::{
     Listener, Node, NodeOptions, ParameterValue, ParameterWatch, PublisherOptions, ServiceServer,
     ServiceType, SubscriberOptions, TopicType,
 };
 
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Severity, Trigger, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, Severity, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};
 
 /// Maximum wait for a master that is being started.
@@ -41,8 +41,8 @@ impl Ros1Node {
         let full_name = names.full();
         let log = terminal_log(&full_name);
         let logger = log.clone();
-        let mut options = NodeOptions::new(names.node())
-            .on_problem(move |error| logger(Severity::Warn, &error.to_string()));
+        let mut options =
+            NodeOptions::new(names.node()).on_error(move |error| logger(Severity::Warn, &error.to_string()));
         options.namespace = Some(names.namespace().to_owned());
         options.wait_for_master = PATIENCE_WITH_MASTER;
         let node = Arc::new(Node::new(options)?);
@@ -85,19 +85,19 @@ impl Graph for Ros1Node {
         topic: &str,
         message_type: MessageType,
         qos: Qos,
-        mut deliver: Deliver,
+        mut deliver: MessageCallback,
     ) -> Result<()> {
         let name = self.names.resolve(topic)?;
         let options = SubscriberOptions { queue_size: qos.depth.max(1), ..SubscriberOptions::default() };
         let subscription = self.node.subscribe(&name, topic_type(message_type)?, options)?;
         self.listeners.push(subscription.on_message(move |message| {
-            let read = Message::from_bytes(message_type, Wire::Ros1, &message.bytes);
+            let read = Message::from_bytes(message_type, WireFormat::Ros1, &message.bytes);
             deliver(read.map_err(|error| error.context(name.clone())));
         })?);
         Ok(())
     }
 
-    fn serve(&mut self, service: &str, trigger: Trigger) -> Result<()> {
+    fn serve(&mut self, service: &str, trigger: TriggerHandler) -> Result<()> {
         let trigger = Mutex::new(trigger);
         let kind = StdSrvsTrigger::TYPE;
         let kind = ServiceType::new(format!("{}/{}", kind.package, kind.name), kind.md5sum);
@@ -158,7 +158,7 @@ struct Ros1Publisher(opendr_ros1::Publisher);
 
 impl Publisher for Ros1Publisher {
     fn publish(&self, message: Message) -> Result<()> {
-        self.0.publish_owned(message.to_bytes(Wire::Ros1)?)
+        self.0.publish_owned(message.to_bytes(WireFormat::Ros1)?)
     }
 
     fn subscribers(&self) -> usize {
@@ -170,7 +170,7 @@ fn topic_type(message_type: MessageType) -> Result<TopicType> {
     let known = message_type.ros1().ok_or_else(|| {
         Error::new(ErrorKind::Unsupported, format!("ROS 1 has no message {}", message_type.ros2_name()))
     })?;
-    Ok(TopicType::new(known.name, known.md5sum, message_type.definition(Wire::Ros1)?))
+    Ok(TopicType::new(known.name, known.md5sum, message_type.definition(WireFormat::Ros1)?))
 }
 
 fn param_value(value: &ParameterValue) -> Option<ParamValue> {

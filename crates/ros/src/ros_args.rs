@@ -104,7 +104,7 @@ impl RosArgs {
 ///
 /// # Errors
 /// `Unsupported` for `__master`, `__ip` and `__hostname`, which are environment variables here.
-pub fn words_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
+pub fn ros_args_from_ros1(word: &str) -> Result<Option<Vec<String>>> {
     let Some((name, value)) = word.split_once(":=") else { return Ok(None) };
     if name.is_empty() || name.starts_with('-') {
         return Ok(None);
@@ -148,13 +148,13 @@ mod tests {
 
     #[test]
     fn arguments_of_roslaunch_are_converted() {
-        let words = |word| words_from_ros1(word).unwrap().map(|words| words.join(" "));
+        let words = |word| ros_args_from_ros1(word).unwrap().map(|words| words.join(" "));
         assert_eq!(words("image_raw:=/camera").as_deref(), Some("-r image_raw:=/camera"));
         assert_eq!(words("__name:=eyes").as_deref(), Some("-r __name:=eyes"));
         assert_eq!(words("_threshold:=0.5").as_deref(), Some("-p threshold:=0.5"));
         assert_eq!(words("__log:=/tmp/x.log").as_deref(), Some(""));
         assert_eq!((words("nanodet"), words("--image")), (None, None));
-        assert!(words_from_ros1("__master:=http://x").is_err());
+        assert!(ros_args_from_ros1("__master:=http://x").is_err());
     }
 
     #[test]

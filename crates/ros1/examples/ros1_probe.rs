@@ -61,7 +61,7 @@ fn run(arguments: &Arguments) -> Result<()> {
     options.wait_for_master = Duration::from_secs(10);
     options.max_message_bytes = option(&words, "max", 1 << 30) as usize;
     let options = options
-        .on_problem(|error| say("problem", &error.to_string()))
+        .on_error(|error| say("problem", &error.to_string()))
         .on_shutdown(|reason| say("shutdown", reason));
     let node = Node::new(options)?;
     say("node", node.name());

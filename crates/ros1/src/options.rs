@@ -74,7 +74,7 @@ impl NodeOptions {
     /// Calls `hook` with errors in the background: conflicting types, invalid data of a peer, a lost master. It is called on the
     /// node's threads and should return quickly. Without a hook these errors are dropped.
     #[must_use]
-    pub fn on_problem(mut self, hook: impl Fn(Error) + Send + Sync + 'static) -> Self {
+    pub fn on_error(mut self, hook: impl Fn(Error) + Send + Sync + 'static) -> Self {
         self.on_problem = Arc::new(hook);
         self
     }

@@ -33,7 +33,7 @@ fn main() -> Result<()> {
         }
         if let Some((height, width, samples)) = line.picture {
             let image = Image::from_rgb8(samples, width, height)?;
-            log.picture(&line.tag, line.step, &image)?;
+            log.image(&line.tag, line.step, &image)?;
         }
     }
     log.flush()

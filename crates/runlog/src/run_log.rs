@@ -91,7 +91,7 @@ impl RunLog {
     ///
     /// # Errors
     /// `InvalidInput` when the image is empty or too large for a PNG file; else as [`RunLog::scalar`].
-    pub fn picture(&mut self, tag: &str, step: u64, image: &Image) -> Result<()> {
+    pub fn image(&mut self, tag: &str, step: u64, image: &Image) -> Result<()> {
         let Some(files) = checked(tag, &mut self.files)? else { return Ok(()) };
         let side = |pixels: usize| i32::try_from(pixels).unwrap_or(i32::MAX);
         let picture = Picture {

@@ -4,8 +4,8 @@
 
 use opendr_engine::environment::ResetOptions;
 use opendr_engine::{Error, Random, Result};
-use opendr_simulation::uav_corridor::{CorridorController as _, CorridorSight, Reactive};
-use opendr_simulation::{Film, make};
+use opendr_simulation::uav_corridor::{CorridorController as _, CorridorObservation, ReactiveController};
+use opendr_simulation::{Recording, make};
 
 fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
@@ -17,9 +17,9 @@ fn main() -> Result<()> {
     let mut environment = make(&id)?;
     let spec = environment.spec().clone();
     let (mut seen, mut action) = (vec![0.0; spec.observation.len()], vec![0.0; spec.action.len()]);
-    let (mut random, mut pilot) = (Random::new(seed), Reactive::default());
-    let mut sight = CorridorSight::default();
-    let mut film = Film::create(&file, 10.0)?;
+    let (mut random, mut pilot) = (Random::new(seed), ReactiveController::default());
+    let mut sight = CorridorObservation::default();
+    let mut film = Recording::create(&file, 10.0)?;
     environment.reset(Some(seed), &ResetOptions::new(), &mut seen)?;
     let mut steps = 0;
     loop {

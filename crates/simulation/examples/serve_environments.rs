@@ -11,7 +11,7 @@ use opendr_engine::{Error, Result};
 use opendr_simulation::classic_control::{
     Acrobot, CartPole, Classic, Dynamics, MountainCar, MountainCarContinuous, Pendulum,
 };
-use opendr_simulation::{Registered, make};
+use opendr_simulation::{RegisteredEnvironment, make};
 use serde_json::{Value, json};
 
 fn main() -> Result<()> {

@@ -12,7 +12,7 @@ use opendr_vision::VideoWriter;
 /// Writes images to an animated GIF, a video (with an installed `ffmpeg`) or numbered PNG files.
 ///
 /// GIFs and videos appear atomically when [`Film::finish`] is called.
-pub struct Film {
+pub struct Recording {
     path: PathBuf,
     target: Target,
 }
@@ -24,7 +24,7 @@ enum Target {
     Images(usize),
 }
 
-impl Film {
+impl Recording {
     /// Creates a recording of `rate` images per second at `path`, which ends in `.gif`, `.mp4`, `.mov`, `.mkv` or `.png`; image 7 of
     /// `flight.png` is `flight-00007.png`.
     ///
@@ -142,7 +142,7 @@ impl Gif {
     }
 
     fn finish(mut self, path: &Path) -> Result<()> {
-        let encoder = self.encoder.take().ok_or_else(no_picture)?;
+        let encoder = self.encoder.take().ok_or_else(no_image)?;
         encoder.into_inner().map_err(failed)?.flush()?;
         Ok(fs::rename(&self.partial, path)?)
     }
@@ -193,7 +193,7 @@ mod tests {
         fs::create_dir_all(&folder).unwrap();
         let picture = |grey: u8| Image::from_rgb8(vec![grey; 3 * 6 * 4], 6, 4).unwrap();
         let path = folder.join("a.gif");
-        let mut film = Film::create(&path, 30.0).unwrap();
+        let mut film = Recording::create(&path, 30.0).unwrap();
         (0..3).for_each(|grey| film.write(&picture(grey)).unwrap());
         assert!(!path.exists());
         assert!(film.write(&Image::from_rgb8(vec![0; 3], 1, 1).unwrap()).is_err());
@@ -204,14 +204,14 @@ mod tests {
         let delays: Vec<_> = bytes.windows(6).filter(|w| w[..3] == [0x21, 0xf9, 4]).map(|w| w[4]).collect();
         assert_eq!(delays, [3, 4, 3]);
 
-        let mut film = Film::create(folder.join("b.png"), 1.0).unwrap();
+        let mut film = Recording::create(folder.join("b.png"), 1.0).unwrap();
         film.write(&picture(7)).unwrap();
         film.finish().unwrap();
         assert_eq!(opendr_vision::open(folder.join("b-00001.png")).unwrap().chw_u8(), [7; 72]);
-        assert!(Film::create(folder.join("c.gif"), 5.0).unwrap().finish().is_err());
-        assert!(Film::create(folder.join("c.txt"), 5.0).is_err());
-        assert!(Film::create(folder.join("c.gif"), f64::NAN).is_err());
-        drop(Film::create(&path, 30.0).map(|mut film| film.write(&picture(1))).unwrap());
+        assert!(Recording::create(folder.join("c.gif"), 5.0).unwrap().finish().is_err());
+        assert!(Recording::create(folder.join("c.txt"), 5.0).is_err());
+        assert!(Recording::create(folder.join("c.gif"), f64::NAN).is_err());
+        drop(Recording::create(&path, 30.0).map(|mut film| film.write(&picture(1))).unwrap());
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 2);
         fs::remove_dir_all(&folder).unwrap();
     }

@@ -37,7 +37,7 @@ pub mod uav_corridor;
 pub mod vector;
 pub mod wrappers;
 
-pub use film::Film;
+pub use film::Recording;
 pub use numpy_random::NumpyRandom;
 pub use registered_source::RegisteredSource;
-pub use registry::{Registered, Registration, Registry, make, make_vec};
+pub use registry::{RegisteredEnvironment, Registration, Registry, make, make_vec};

@@ -29,7 +29,7 @@ impl NumpyRandom {
     }
 
     /// Creates a stream with a random seed.
-    pub fn from_chance() -> Self {
+    pub fn from_entropy() -> Self {
         Self::new(RandomState::new().hash_one(0))
     }
 

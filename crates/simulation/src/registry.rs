@@ -14,7 +14,7 @@ use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOpt
 use crate::wrappers::{Checked, TimeLimit};
 
 /// An environment that can be registered.
-pub trait Registered: Environment + Sized + 'static {
+pub trait RegisteredEnvironment: Environment + Sized + 'static {
     /// Name and version, such as `CartPole-v1`.
     const ID: &'static str;
     /// Parameters of the environment.
@@ -39,7 +39,7 @@ pub struct Registration {
 
 impl Registration {
     /// Creates an entry for an environment type. It is created with its time limit and wrapped in [`Checked`].
-    pub fn of<E: Registered>() -> Self {
+    pub fn of<E: RegisteredEnvironment>() -> Self {
         Self::new(E::ID, E::Params::FIELDS, |params| checked(E::new(&E::Params::from_map(params)?)?))
     }
 
@@ -75,7 +75,7 @@ impl Registration {
     /// # Errors
     /// As [`Self::make`], and `InvalidParam` for a count of 0 or too many.
     pub fn make_vec(&self, params: &ParamMap, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
-        if self.id == <CartPole as Registered>::ID {
+        if self.id == <CartPole as RegisteredEnvironment>::ID {
             let carts = CartPoleParams::from_map(params)
                 .and_then(|params| CartPoleVector::new(&params, options.count, options.autoreset));
             return Ok(Box::new(carts.map_err(|error| error.context(format!("creating {}", self.id)))?));

@@ -18,7 +18,9 @@ use opendr_engine::learner::FitJob;
 use opendr_engine::model::Manifest;
 use opendr_engine::{Device as Place, Error, Progress, Random, Result, Unit, Value};
 use opendr_training::layers::{Gru, GruConfig, MobileNetV1, MobileNetV1Config, ResNet18, ResNet18Config};
-use opendr_training::{Container, Loss, Objective, OptimizerKind, TrainingParams, begin, fit_network};
+use opendr_training::{
+    Container, Loss, Objective, OptimizerKind, TrainingParams, fit_network, seeded_device,
+};
 
 const CLASSES: usize = 10;
 /// Number of warm-up steps, which are not measured.
@@ -117,7 +119,7 @@ impl DatasetIterator for Noise<'_> {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let mut random = Random::at([index as u64]);
+        let mut random = Random::from_key([index as u64]);
         let numbers =
             (0..self.0[1..].iter().product()).map(|_| random.uniform(-1.0, 1.0)).collect::<Vec<_>>();
         Ok(Sample { data: vec![Vector::from_data(numbers)?.into()], target: None })
@@ -200,7 +202,7 @@ fn main() -> Result<()> {
         num_workers: 1,
         ..TrainingParams::default()
     };
-    let network = (case.make)(&begin(&job, &params)?);
+    let network = (case.make)(&seeded_device(&job, &params)?);
     fit_network(&Classify(case.shape), network, &params, &Noise(case.shape), None, &job)?;
     fs::remove_dir_all(&output)?;
     let times = times.0.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use opendr_datasets::{OpenOptions, Problems, picture_with_target};
+use opendr_datasets::{OpenOptions, Problems, draw_sample};
 use opendr_engine::data::Image;
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{AnyLearner, Entry, FitJob, Learner, Ports, Probe, Targets};
 use opendr_engine::params::Params;
 use opendr_engine::{Device, Error, Result, Statistics};
-use opendr_evaluation::{Evaluation, Subject, metric_of, open_for};
+use opendr_evaluation::{Evaluation, Subject, metric_of, open_for_metric};
 use opendr_metrics::{MetricEntry, find};
 use opendr_vision::draw;
 
@@ -54,7 +54,7 @@ pub fn fit_learner<L: Learner, O: Objective>(
     let problems = Problems::strict();
     let val_dataset = match val_dataset {
         DatasetRef::Iterator(dataset) => Box::new(dataset),
-        DatasetRef::External(external) => open_for(metric, external, None, &problems)?,
+        DatasetRef::External(external) => open_for_metric(metric, external, None, &problems)?,
     };
     let entry = Entry::of::<L>(Probe::<L>::abilities(None, None, None));
     let mut validate = |container: &Path| -> Result<Score> {
@@ -87,8 +87,8 @@ fn score(
             metric.name
         ))
     })?;
-    let is_error = metric.is_error(&name);
-    Ok(Score { name, value, is_error, numbers, picture })
+    let is_error = metric.is_lower_better(&name);
+    Ok(Score { name, value, is_error, numbers, image: picture })
 }
 
 /// Number of predictions in the log.
@@ -109,7 +109,7 @@ fn predictions_sheet(
         let Ok(mut sample) = dataset.get(index) else { continue };
         let Ok(outputs) = learner.infer(&Ports::of_sample(entry.ports, &sample.data)) else { continue };
         sample.target = outputs.iter().next().map(|(_, value)| value.clone());
-        pictures.extend(picture_with_target(&sample).map(|picture| (picture, dataset.name(index))));
+        pictures.extend(draw_sample(&sample).map(|picture| (picture, dataset.name(index))));
     }
     learner.reset();
     (!pictures.is_empty()).then(|| draw::contact_sheet(&pictures, pictures.len().min(3), SIDE).ok())?

@@ -37,7 +37,7 @@ pub struct Score {
     /// All metrics, for the log.
     pub numbers: BTreeMap<String, f64>,
     /// A few samples with predictions, for the log.
-    pub picture: Option<Image>,
+    pub image: Option<Image>,
 }
 
 /// Evaluates a container on validation data.
@@ -54,9 +54,9 @@ const CANDIDATE: &str = "candidate";
 ///
 /// # Errors
 /// The errors of [`training_device`].
-pub fn begin(job: &FitJob<'_>, params: &TrainingParams) -> Result<Device> {
+pub fn seeded_device(job: &FitJob<'_>, params: &TrainingParams) -> Result<Device> {
     let device = training_device(job.device)?;
-    device.seed(Random::at([params.seed, NETWORK]).bits());
+    device.seed(Random::from_key([params.seed, NETWORK]).bits());
     Ok(device)
 }
 
@@ -273,7 +273,7 @@ impl<'a, O: Objective> Training<'a, O> {
         };
         // Dropout depends on the position alone, so that a resumed training repeats it.
         let place = [self.params.seed, NETWORK, batch.epoch, batch.next_position as u64];
-        self.device.seed(Random::at(place).bits());
+        self.device.seed(Random::from_key(place).bits());
         let loss = self.objective.loss(&network, &batch.content, &self.device)?;
         let value = scalar(loss.total.clone());
         if !value.is_finite() {
@@ -375,7 +375,7 @@ impl<'a, O: Objective> Training<'a, O> {
     fn validate(&mut self, validate: &mut Validate<'_>) -> Result<()> {
         let candidate = self.job.output.join(CANDIDATE);
         self.container()?.write(&candidate)?;
-        let Score { name, value, is_error, numbers, picture } = validate(&candidate)?;
+        let Score { name, value, is_error, numbers, image: picture } = validate(&candidate)?;
         // The evaluation used the progress bar.
         self.job.progress.begin("training", Some(self.steps), Unit::Steps);
         self.job.progress.advance(self.state.step);
@@ -385,7 +385,7 @@ impl<'a, O: Objective> Training<'a, O> {
             self.log.scalar(&format!("val/{name}"), step, *value)?;
         }
         if let Some(picture) = picture {
-            self.log.picture("val/answers", step, &picture)?;
+            self.log.image("val/answers", step, &picture)?;
         }
         self.log.flush()?;
         let better = |best: &Best| if is_error { value < best.value } else { value > best.value };

@@ -68,7 +68,7 @@ fn steps_to_solve(seed: u64, pruner: impl Pruner + 'static, interval: u64) -> Re
     // One seed for both: the comparison is of progress, not of certainty.
     let plan = Plan::every(interval, LENGTH)?.with_seeds(seed, 1);
     let tuner = Tuner::new(study, space()?, plan, &folder, begin)?;
-    tuner.run(&Budget::more(1000).failures(1000), |study, number| {
+    tuner.run(&Budget::more(1000).max_failures(1000), |study, number| {
         let last = study.trials.get(number).and_then(|trial| trial.last_report());
         match last.is_some_and(|(_, value)| value >= SOLVED) {
             true => {

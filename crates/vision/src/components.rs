@@ -5,11 +5,11 @@
 
 /// Connectivity of pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Touching {
+pub enum Connectivity {
     /// 4-connectivity: left, right, above and below.
-    Sides,
+    Four,
     /// 8-connectivity: the diagonal neighbours too.
-    Corners,
+    Eight,
 }
 
 /// Labels of the connected components of an image; its memory is reused.
@@ -28,7 +28,7 @@ impl Components {
     pub fn label(
         &mut self,
         [width, height]: [usize; 2],
-        touching: Touching,
+        touching: Connectivity,
         belongs: impl Fn(usize) -> bool,
         joined: impl Fn(usize, usize) -> bool,
     ) -> usize {
@@ -63,7 +63,7 @@ impl Components {
                 if y > 0 {
                     meet(at - width);
                 }
-                if touching == Touching::Corners && y > 0 {
+                if touching == Connectivity::Eight && y > 0 {
                     if x > 0 {
                         meet(at - width - 1);
                     }
@@ -124,7 +124,7 @@ mod tests {
 
     use super::*;
 
-    fn labels(picture: &[&str], touching: Touching) -> (Vec<u32>, Vec<u32>) {
+    fn labels(picture: &[&str], touching: Connectivity) -> (Vec<u32>, Vec<u32>) {
         let size = [picture[0].len(), picture.len()];
         let pixels: Vec<u8> = picture.concat().into_bytes();
         let mut components = Components::default();
@@ -135,19 +135,19 @@ mod tests {
     #[test]
     fn u_shape_is_one_component_and_diagonals_connect_on_request() {
         let picture = ["#.#.", "#.#a", "###a", "...."];
-        let (sides, areas) = labels(&picture, Touching::Sides);
+        let (sides, areas) = labels(&picture, Connectivity::Four);
         assert_eq!(sides, [1, 0, 1, 0, 1, 0, 1, 2, 1, 1, 1, 2, 0, 0, 0, 0]);
         assert_eq!(areas, [7, 7, 2]);
         let picture = ["#.", ".#"];
-        assert_eq!(labels(&picture, Touching::Sides).0, [1, 0, 0, 2]);
-        assert_eq!(labels(&picture, Touching::Corners).0, [1, 0, 0, 1]);
+        assert_eq!(labels(&picture, Connectivity::Four).0, [1, 0, 0, 2]);
+        assert_eq!(labels(&picture, Connectivity::Eight).0, [1, 0, 0, 1]);
     }
 
     #[test]
     fn nothing_has_no_components() {
         let mut components = Components::default();
-        assert_eq!(components.label([0, 7], Touching::Sides, |_| true, |_, _| true), 0);
-        assert_eq!(components.label([3, 1], Touching::Sides, |_| false, |_, _| true), 0);
+        assert_eq!(components.label([0, 7], Connectivity::Four, |_| true, |_, _| true), 0);
+        assert_eq!(components.label([3, 1], Connectivity::Four, |_| false, |_, _| true), 0);
         assert_eq!(components.areas(), [3]);
     }
 
@@ -155,7 +155,7 @@ mod tests {
         #[test]
         fn agrees_with_flood_fill(width in 1usize..12, pixels in prop::collection::vec(0u8..3, 0..140), corners: bool) {
             let height = pixels.len() / width;
-            let touching = if corners { Touching::Corners } else { Touching::Sides };
+            let touching = if corners { Connectivity::Eight } else { Connectivity::Four };
             let mut components = Components::default();
             let same = |a: usize, b: usize| pixels[a] == pixels[b];
             components.label([width, height], touching, |at| pixels[at] > 0, same);

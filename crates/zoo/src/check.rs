@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::{Card, Import, ItemKind, Variant};
 use crate::embedded::classes;
-use crate::source::{Package, Places, Source};
+use crate::source::{FilePlaces, Package, Source};
 
 /// Maximum size of a file or package, in bytes.
 const MAX_BYTES: u64 = 2 << 30;
@@ -148,7 +148,7 @@ fn check_package(package: &Package) -> Result<()> {
     check_paths(&package.files)
 }
 
-fn check_paths(places: &Places) -> Result<()> {
+fn check_paths(places: &FilePlaces) -> Result<()> {
     places.values().try_for_each(|place| member_path(place).map(drop))
 }
 

@@ -15,7 +15,7 @@ use crate::models_package::ModelsPackage;
 use crate::npm::npm_archive;
 use crate::pip::wheel;
 use crate::repository::Repository;
-use crate::source::{Package, Places, Source};
+use crate::source::{FilePlaces, Package, Source};
 
 /// Context of the downloads.
 pub(crate) struct Fetch<'a> {
@@ -87,7 +87,7 @@ impl Fetch<'_> {
     fn each(
         &self,
         item: &Item<'_>,
-        places: &Places,
+        places: &FilePlaces,
         get: impl Fn(&str, &CardFile) -> Result<()>,
     ) -> Result<()> {
         for file in item.variant.files.iter().filter(|file| !self.cache.has(file)) {

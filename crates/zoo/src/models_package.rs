@@ -9,7 +9,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::CardFile;
 use crate::loaded_from::loaded_from;
-use crate::source::{Package, Places};
+use crate::source::{FilePlaces, Package};
 
 /// Name of the package in the Python package index.
 pub(crate) const PACKAGE: &str = "opendr-rs-models";
@@ -76,7 +76,7 @@ impl ModelsPackage {
 }
 
 /// Returns the wheel of this version in the package index.
-pub(crate) fn published(files: &Places) -> Package {
+pub(crate) fn published(files: &FilePlaces) -> Package {
     Package {
         package: PACKAGE.to_owned(),
         version: env!("CARGO_PKG_VERSION").to_owned(),

@@ -40,13 +40,16 @@ pub struct InstalledRuntime {
     /// Size of the library in bytes.
     pub size: u64,
     /// Whether the library was already in the cache.
-    pub was_there: bool,
+    pub was_cached: bool,
 }
 
 impl fmt::Display for InstalledRuntime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let did =
-            if self.was_there { "already in the cache" } else { "downloaded with pip and loaded as a check" };
+        let did = if self.was_cached {
+            "already in the cache"
+        } else {
+            "downloaded with pip and loaded as a check"
+        };
         let megabytes = self.size as f64 / 1e6;
         write!(f, "ONNX Runtime {}, {did}: {} ({megabytes:.1} MB)", self.version, self.path.display())
     }
@@ -81,8 +84,8 @@ pub fn install_onnx_runtime(options: &ZooOptions, progress: &dyn Progress) -> Re
     let path = folder.join(library.file_name().unwrap_or_default());
     fs::create_dir_all(&folder).context(|| folder.display().to_string())?;
     fs::rename(&library, &path).context(|| path.display().to_string())?;
-    OnnxRuntime::search_again();
-    Ok(InstalledRuntime { size: fs::metadata(&path)?.len(), path, version, was_there: false })
+    OnnxRuntime::reset_search();
+    Ok(InstalledRuntime { size: fs::metadata(&path)?.len(), path, version, was_cached: false })
 }
 
 /// Returns the library in the cache, which holds checked libraries only.
@@ -90,11 +93,11 @@ fn cached(folder: &Path) -> Option<InstalledRuntime> {
     let path = OnnxRuntime::libraries_in(folder).into_iter().next()?;
     let version = version_of(&path).ok().filter(|version| OnnxRuntime::is_supported(version))?;
     let size = fs::metadata(&path).ok()?.len();
-    Some(InstalledRuntime { path, version, size, was_there: true })
+    Some(InstalledRuntime { path, version, size, was_cached: true })
 }
 
 fn wheel(python: Option<&str>, work: &WorkFolder, progress: &dyn Progress) -> Result<PathBuf> {
-    let requirement = format!("onnxruntime>={}", OnnxRuntime::OLDEST);
+    let requirement = format!("onnxruntime>={}", OnnxRuntime::MIN_VERSION);
     pip::download(&Wheel { requirement: &requirement, size: None, python, platform: None }, work, progress)
 }
 

@@ -9,7 +9,7 @@ use serde::Deserialize;
 use crate::models_package::{PACKAGE, published};
 
 /// Place in the source for each file name of the card.
-pub type Places = BTreeMap<String, String>;
+pub type FilePlaces = BTreeMap<String, String>;
 
 /// A source of all files of an item.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -19,18 +19,18 @@ pub enum Source {
     /// Relative paths inside `OPENDR_MODEL_REPOSITORY`, a folder or an address.
     Repository {
         /// Where each file is.
-        files: Places,
+        files: FilePlaces,
     },
     /// Files of `models/weights/`, OpenDR's own weights: in the data package `opendr-rs-models` on this machine
     /// ([`ZooOptions::models`](crate::ZooOptions::models)), else downloaded with the installed pip.
     ModelsPackage {
         /// Path of each file below the package's weights.
-        files: Places,
+        files: FilePlaces,
     },
     /// URLs.
     Url {
         /// Where each file is.
-        files: Places,
+        files: FilePlaces,
     },
     /// A commit of a repository on GitHub.
     Github {
@@ -39,7 +39,7 @@ pub enum Source {
         /// At least twelve digits of the commit hash.
         commit: String,
         /// Paths in the repository.
-        files: Places,
+        files: FilePlaces,
     },
     /// A package of the npm registry, downloaded with the installed client.
     Npm(Package),
@@ -65,12 +65,12 @@ pub struct Package {
     #[serde(default)]
     pub platform: Option<String>,
     /// Members of the archive.
-    pub files: Places,
+    pub files: FilePlaces,
 }
 
 impl Source {
     /// Where each file is.
-    pub fn files(&self) -> &Places {
+    pub fn files(&self) -> &FilePlaces {
         match self {
             Self::Repository { files }
             | Self::ModelsPackage { files }
@@ -111,7 +111,7 @@ impl Source {
 
 impl fmt::Display for Source {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let first = |files: &Places| files.values().next().cloned().unwrap_or_default();
+        let first = |files: &FilePlaces| files.values().next().cloned().unwrap_or_default();
         match self {
             Self::Repository { files } => write!(f, "OPENDR_MODEL_REPOSITORY {}", first(files)),
             Self::ModelsPackage { .. } => f.write_str(PACKAGE),

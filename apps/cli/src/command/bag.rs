@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::bags::{Answers, Bag, BagFormat, Compression, Conversion, Recording, Topic, WriteOptions};
+use opendr::bags::{
+    Bag, BagFormat, Compression, Conversion, Recording, RecordingWriter, Topic, WriteOptions,
+};
 use opendr::{Error, Progress, Result, ValueType};
 use serde_json::json;
 
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -115,11 +117,11 @@ fn info(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn convert(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let recording = open(matches)?;
     let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     let named = matches.get_one::<String>("to").map(|name| name.parse::<BagFormat>()).transpose()?;
-    let format = named.or_else(|| Answers::format_of(&output)).ok_or_else(|| {
+    let format = named.or_else(|| RecordingWriter::format_of(&output)).ok_or_else(|| {
         let output = output.display();
         Error::invalid_param(format!(
             "{output} has no known format: name it .bag or .mcap, or choose a format by --to"

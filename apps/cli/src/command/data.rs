@@ -8,7 +8,7 @@ use opendr::datasets::{self, DatasetStats, OpenOptions, Problems, WriteOptions};
 use opendr::{Error, Progress, Result, inference};
 
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{dataset_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -114,7 +114,7 @@ fn outcome(problems: &Problems) -> Outcome {
 }
 
 fn check(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     // A check lists every problem instead of ending with the first.
     let problems = Problems::skipping();
     let dataset = open(matches, &problems)?;
@@ -132,7 +132,7 @@ fn check(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn stats(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
     let dataset = open(matches, &problems)?;
     let stats = DatasetStats::of(dataset.as_ref(), &problems, &bar)?;
@@ -160,9 +160,9 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn convert(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
-    let to = datasets::find(matches.get_one::<String>("to").map_or("", String::as_str))?;
+    let to = datasets::find_format(matches.get_one::<String>("to").map_or("", String::as_str))?;
     let output = matches.get_one::<PathBuf>("output").cloned().unwrap_or_default();
     let external = dataset_flags::external(matches);
     let options = OpenOptions { split: dataset_flags::split(matches), target: common_target(&external, to)? };

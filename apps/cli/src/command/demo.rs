@@ -11,7 +11,7 @@ use opendr::zoo::{ItemKind, Zoo};
 use opendr::{Error, Result, vision};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::timings::Timings;
 use crate::{loading, report, stdout};
 
@@ -41,7 +41,7 @@ pub fn grammar() -> Command {
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     stdout::print(format_args!("runtime: {}", describe(loading::device(matches)?)?))?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let zoo = loading::zoo(matches)?;
     let spec = demo_item(&zoo, ItemKind::Model)?;
     let picture = match matches.get_one::<PathBuf>("picture") {

@@ -6,7 +6,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::Result;
 
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
@@ -36,7 +36,7 @@ pub fn grammar() -> Command {
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let zoo = loading::zoo(matches)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let specs: Vec<String> = if matches.get_flag("all") {
         zoo.items().map(|item| item.to_string()).collect()
     } else {

@@ -11,10 +11,10 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{ActingStream, Pipeline, Progress, Result, Statistics};
+use opendr::{Pipeline, PolicyController, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{
     class_flags, dataset_flags, environment_flags, learner_flags, loading, named_value, stdout, then_flag,
 };
@@ -80,7 +80,7 @@ pub fn metric_flags() -> [Arg; 4] {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     if environment_flags::is_policy(entry) {
         return in_environment(spec, entry, matches, &bar);
     }
@@ -118,16 +118,21 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 /// Evaluates a policy in the named environment, or in the one it was trained in.
-fn in_environment(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+fn in_environment(
+    spec: &str,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &ProgressBar,
+) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
     let mut environment = source.make()?;
-    let mut acting = ActingStream::new(learner.stream()?, entry, environment.spec())?;
+    let mut acting = PolicyController::new(learner.stream()?, entry, environment.spec())?;
     let mut protocol = EvaluationProtocol::default();
     if let Some(episodes) = matches.get_one::<u64>("episodes") {
         protocol.episodes = *episodes;
     }
-    let report = opendr::eval_in(&mut acting, environment.as_mut(), &protocol, bar)?;
+    let report = opendr::evaluate_policy(&mut acting, environment.as_mut(), &protocol, bar)?;
     let statistics = Statistics::from(&report);
     if matches.get_flag("json") {
         stdout::print_json(&statistics)?;
@@ -155,7 +160,7 @@ pub fn print_outcome(
     outcome: &Evaluated,
     matches: &ArgMatches,
     problems: &Problems,
-    bar: &Bar,
+    bar: &ProgressBar,
 ) -> Result<Outcome> {
     if matches.get_flag("json") {
         stdout::print_json(outcome)?;

@@ -7,7 +7,7 @@ use opendr::Result;
 use opendr::model::Model;
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -51,7 +51,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if matches.get_flag("zip") && output.extension().is_none_or(|extension| extension != "zip") {
         output.as_mut_os_string().push(".zip");
     }
-    let path = loading::container(source, matches, &Bar::new(matches.get_flag("quiet")))?;
+    let path = loading::container(source, matches, &ProgressBar::new(matches.get_flag("quiet")))?;
     opendr::export(&Model::open(path)?, &output)?;
     stdout::print(output.display())?;
     Ok(Outcome::Done)

@@ -9,7 +9,7 @@ use opendr::params::ParamMap;
 use opendr::{FitData, FitEnvironments, FitOptions, Fitted, Progress, Result};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{class_flags, dataset_flags, environment_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -134,7 +134,7 @@ fn teacher_flags() -> [Arg; 6] {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let params = learner_flags::params(entry, matches)?;
     let device = loading::device(matches)?;
     let options = options(entry.spec.name, learner_flags::fit_params(entry, matches)?, matches)?;
@@ -148,7 +148,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     if environment_flags::is_policy(entry) {
         let source = environment_flags::source(matches, Some(learner.as_ref()))?;
         let environments = FitEnvironments { env: &source, val_env: None };
-        let fitted = opendr::fit_in(learner.as_mut(), entry, environments, &options, &bar)?;
+        let fitted = opendr::fit_policy(learner.as_mut(), entry, environments, &options, &bar)?;
         return print_fitted(&fitted, matches, &bar);
     }
     let val = matches.get_one::<PathBuf>("val");
@@ -191,7 +191,7 @@ fn word(matches: &ArgMatches, flag: &str) -> Option<String> {
 }
 
 /// Loads the pretrained teacher.
-fn load_teacher(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Teacher> {
+fn load_teacher(spec: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<Teacher> {
     let threshold = matches.get_one("teacher-threshold").copied();
     let device = loading::device(matches)?;
     opendr::teacher_with(spec, threshold, device, |params| {
@@ -200,7 +200,7 @@ fn load_teacher(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Teacher> 
 }
 
 /// Prints the outcome, the path of the model, and how to resume.
-fn print_fitted(fitted: &Fitted, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+fn print_fitted(fitted: &Fitted, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
         stdout::print_json(fitted)?;
     } else {

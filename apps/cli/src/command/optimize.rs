@@ -7,10 +7,10 @@ use opendr::dataset::ExternalDataset;
 use opendr::model::Model;
 use opendr::optimize::{OptimizeJob, OptimizeOptions};
 use opendr::params::{Field, ParamValue, Params};
-use opendr::{Opening, Progress, Result};
+use opendr::{DatasetOpener, Progress, Result};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{dataset_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -93,16 +93,18 @@ fn data_ids(name: &str) -> [&'static str; 3] {
 
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let source = matches.get_one::<String>("source").map_or("", String::as_str);
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let path = loading::container(source, matches, &bar)?;
     let entry = loading::entry(&Model::open(&path)?.manifest().learner)?;
     let options = options(matches)?;
     let problems = dataset_flags::problems(matches);
-    let opening = |annotated| Opening { entry, annotated, problems: &problems, progress: &bar };
+    let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress: &bar };
     let [images, dataset] = ["calibration", "validation"].map(|name| external(name, matches));
     let split = |name| matches.get_one::<String>(data_ids(name)[2]).map(String::as_str);
-    let calibration = images.as_ref().map(|data| opening(false).to_train(data.into(), split("calibration")));
-    let validation = dataset.as_ref().map(|data| opening(true).to_measure(data.into(), split("validation")));
+    let calibration =
+        images.as_ref().map(|data| opening(false).open_training(data.into(), split("calibration")));
+    let validation =
+        dataset.as_ref().map(|data| opening(true).open_validation(data.into(), split("validation")));
     let (calibration, validation) = (calibration.transpose()?, validation.transpose()?);
     let output = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);
     let report = OptimizeJob {

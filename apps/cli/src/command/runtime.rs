@@ -6,7 +6,7 @@ use opendr::inference::{OnnxRuntime, SessionOptions, describe, runtimes};
 use opendr::zoo::{ZooOptions, install_onnx_runtime};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{loading, stdout};
 
 pub fn grammar() -> Command {
@@ -47,7 +47,7 @@ fn list() -> Result<()> {
 fn install(matches: &ArgMatches) -> Result<()> {
     let mut options = ZooOptions::from_env()?;
     options.offline |= matches.get_flag("offline");
-    let installed = install_onnx_runtime(&options, &Bar::new(matches.get_flag("quiet")))?;
+    let installed = install_onnx_runtime(&options, &ProgressBar::new(matches.get_flag("quiet")))?;
     stdout::print(&installed)?;
     stdout::print(format_args!("in use: {}", describe(SessionOptions::default())?))
 }

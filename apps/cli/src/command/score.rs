@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::dataset::ExternalDataset;
 use opendr::datasets::{self, OpenOptions, Problems};
-use opendr::evaluation::{self, Answers, ClassMatching, Evaluation, Lines, Subject};
+use opendr::evaluation::{self, ClassMatching, Evaluation, FilePredictions, Lines, Subject};
 use opendr::metrics::{self, MetricEntry};
 use opendr::{Error, Result, inference};
 
 use crate::command::eval;
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{class_flags, dataset_flags, loading};
 
 const EXAMPLES: &str = "\
@@ -51,7 +51,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         Error::invalid_param(format!("name a metric with --metric; there are {}", names.join(", ")))
     })?;
     let metric = metrics::find(name)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let problems = dataset_flags::problems(matches);
     let external = dataset_flags::external(matches);
     let path = matches.get_one::<PathBuf>("answers").cloned().unwrap_or_default();
@@ -66,10 +66,13 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         }
         return eval::print_outcome(&outcome, matches, &problems, &bar);
     }
-    let dataset = evaluation::open_for(metric, &external, split, &problems)?;
+    let dataset = evaluation::open_for_metric(metric, &external, split, &problems)?;
     let answers = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("jsonl") => Answers::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
-        _ => Answers::from_dataset(open(&path, &external, metric, matches, &problems)?, dataset.as_ref()),
+        Some("jsonl") => FilePredictions::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
+        _ => FilePredictions::from_dataset(
+            open(&path, &external, metric, matches, &problems)?,
+            dataset.as_ref(),
+        ),
     };
     let subject = Subject { learner: path.display().to_string(), ..Subject::default() };
     let evaluation = Evaluation {

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
-use opendr::simulation::{Film, RegisteredSource, Registry};
-use opendr::{ActingStream, Error, Progress, Random, Result, Unit};
+use opendr::simulation::{Recording, RegisteredSource, Registry};
+use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{environment_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -111,7 +111,7 @@ fn list(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 fn view(matches: &ArgMatches) -> Result<Outcome> {
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let id = matches.get_one::<String>(ID).map_or("", String::as_str);
     let source = RegisteredSource::new(id, &environment_flags::params(id, matches)?)?;
     let mut environment = source.make()?;
@@ -119,14 +119,14 @@ fn view(matches: &ArgMatches) -> Result<Outcome> {
     let mut acting: Box<dyn Controller> = match matches.get_one::<String>("learner") {
         Some(spec) => {
             let learner = loading::load(spec, &Default::default(), matches, &bar)?;
-            Box::new(ActingStream::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
+            Box::new(PolicyController::new(learner.stream()?, loading::entry(spec)?, environment.spec())?)
         }
         None => random_controller(environment.spec().action.clone(), first),
     };
     let default = PathBuf::from(format!("{}.gif", source.id()));
     let out = matches.get_one::<PathBuf>("out").unwrap_or(&default);
     let rate = matches.get_one::<f64>("rate").copied().unwrap_or(30.0);
-    let mut film = Film::create(out, rate)?;
+    let mut film = Recording::create(out, rate)?;
     let episodes = matches.get_one::<u64>("episodes").copied().unwrap_or(1);
     bar.begin("episodes", Some(episodes), Unit::Items);
     for seed in (first..).take(usize::try_from(episodes).unwrap_or(1)) {
@@ -165,8 +165,8 @@ fn episode(
     environment: &mut dyn Environment,
     acting: &mut dyn Controller,
     seed: u64,
-    film: &mut Film,
-    bar: &Bar,
+    film: &mut Recording,
+    bar: &ProgressBar,
 ) -> Result<String> {
     let spec = environment.spec().clone();
     let (mut observation, mut action) = (vec![0.0; spec.observation.len()], vec![0.0; spec.action.len()]);

@@ -12,7 +12,7 @@ use opendr::tuning::{StudyRecord, line_from_study, table_from_study};
 use opendr::{Error, FitOptions, Progress, Result, Silent, TuneData, TuneOptions, Tuned};
 
 use crate::exit::Outcome;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{dataset_flags, environment_flags, learner_flags, loading, stdout};
 
 const EXAMPLES: &str = "\
@@ -95,7 +95,7 @@ fn search_flags() -> [Arg; 10] {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let options = options(entry, matches)?;
     let output = match matches.get_one::<PathBuf>("out") {
         Some(output) => output.clone(),
@@ -129,7 +129,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         loading::load(spec, &options.params, matches, &bar)?;
         let make = |params: &ParamMap| loading::load(spec, params, matches, &Silent);
         let dataset = DatasetRef::External(&external);
-        let data = TuneData::Answers { make: &make, dataset, split: split.as_deref(), metric };
+        let data = TuneData::Inference { make: &make, dataset, split: split.as_deref(), metric };
         opendr::tune(entry, data, &options, &output, &watch, &bar)?
     } else {
         let external = dataset_flags::external(matches);
@@ -164,7 +164,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
         params: learner_flags::params(entry, matches)?,
         trials: small("trials"),
         seeds: small("tuning-seeds"),
-        length,
+        steps: length,
         interval: length.div_ceil(number("points")),
         pruner: matches.get_one::<String>("pruner").cloned().unwrap_or_default(),
         jobs: small("jobs"),
@@ -174,7 +174,7 @@ fn options(entry: &'static opendr::learner::Entry, matches: &ArgMatches) -> Resu
     })
 }
 
-fn print_tuned(tuned: &Tuned, matches: &ArgMatches, bar: &Bar) -> Result<Outcome> {
+fn print_tuned(tuned: &Tuned, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
     if matches.get_flag("json") {
         stdout::print_json(tuned)?;
     } else {

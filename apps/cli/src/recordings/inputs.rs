@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use opendr::bags::{Recording, Set, Sets, is_recording};
+use opendr::bags::{Recording, SyncedSet, SyncedSets, is_recording};
 use opendr::learner::Entry;
 use opendr::vision::{Frame, VideoInfo};
 use opendr::{Error, Result, Value};
@@ -28,9 +28,9 @@ struct Opened {
     recording: Arc<Recording>,
     path: Arc<Path>,
     ports: Vec<&'static str>,
-    sets: Sets,
+    sets: SyncedSets,
     /// The set after the current one.
-    ahead: Option<Result<Set>>,
+    ahead: Option<Result<SyncedSet>>,
     info: Arc<VideoInfo>,
     /// Number of messages on the first port's topic, from the index of the recording.
     messages: u64,
@@ -97,13 +97,13 @@ impl Opened {
         let topic = recording.topics().into_iter().find(|topic| topic.name == first);
         let messages = topic.map_or(0, |topic| topic.messages);
         let (ports, topics): (Vec<_>, Vec<_>) = topics.into_iter().unzip();
-        let mut sets = Sets::open(&recording, topics)?;
+        let mut sets = SyncedSets::open(&recording, topics)?;
         let ahead = sets.next();
         let span = recording.bag().start_ns().zip(recording.bag().end_ns());
         let duration_s = span.map(|(start, end)| end.saturating_sub(start) as f64 * 1e-9);
         let rate = duration_s.map_or(RATE, |seconds| (messages.saturating_sub(1)) as f64 / seconds);
         let rate = if rate.is_normal() { rate.clamp(0.1, 240.0) } else { RATE };
-        let info = Arc::new(VideoInfo { rate, frames: Some(messages), duration_s });
+        let info = Arc::new(VideoInfo { frame_rate: rate, frames: Some(messages), duration_s });
         Ok(Self {
             recording,
             path: path.into(),
@@ -117,14 +117,14 @@ impl Opened {
         })
     }
 
-    fn next(&mut self) -> Option<Result<Set>> {
+    fn next(&mut self) -> Option<Result<SyncedSet>> {
         let next = self.ahead.take()?;
         self.ahead = self.sets.next();
         Some(next)
     }
 
-    fn item(&self, set: Set, index: u64) -> Result<Item> {
-        let Set { values, messages, log_time_ns, .. } = set;
+    fn item(&self, set: SyncedSet, index: u64) -> Result<Item> {
+        let SyncedSet { values, messages, log_time_ns, .. } = set;
         let number = self.number;
         let mut values = self.ports.iter().copied().zip(values);
         let first = values.next().and_then(|(_, value)| value);
@@ -132,9 +132,13 @@ impl Opened {
         let further = values.filter_map(|(port, value)| Some((port, value?))).collect();
         let path = self.path.clone();
         let datum = match first {
-            Value::Image(image) => {
-                Datum::Frame(Frame { image, path, index, number, video: Some(self.info.clone()) })
-            }
+            Value::Image(image) => Datum::Frame(Frame {
+                image,
+                path,
+                item_index: index,
+                frame_index: number,
+                video: Some(self.info.clone()),
+            }),
             value => Datum::Value { value: Box::new(value), path, index, number, is_of_stream: true },
         };
         let messages = messages.into_iter().flatten().collect();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use opendr::bags::{Answers, BagFormat, WriteOptions, is_recording};
+use opendr::bags::{BagFormat, RecordingWriter, WriteOptions, is_recording};
 use opendr::learner::{Entry, Outputs};
 use opendr::ros::default_topics;
 use opendr::target::Classes;
@@ -21,7 +21,7 @@ pub struct RecordingSink {
     out: PathBuf,
     options: WriteOptions,
     /// The open file, after [`Self::begin`].
-    answers: Option<Answers>,
+    answers: Option<RecordingWriter>,
     with_input: bool,
     classes_written: bool,
     clock: FileClock,
@@ -35,7 +35,7 @@ impl RecordingSink {
     pub fn new(entry: &'static Entry, matches: &ArgMatches, inputs: &[&PathBuf]) -> Result<Option<Self>> {
         let Some(out) = matches.get_one::<PathBuf>("out") else { return Ok(None) };
         let named = matches.get_one::<String>("bag-format").map(|name| name.parse::<BagFormat>());
-        let Some(format) = named.transpose()?.or_else(|| Answers::format_of(out)) else {
+        let Some(format) = named.transpose()?.or_else(|| RecordingWriter::format_of(out)) else {
             if matches.get_flag("with-input") || matches.get_flag("overwrite") {
                 return Err(Error::invalid_param(format!(
                     "{} has no recording format: name it .bag or .mcap, or choose a --bag-format",
@@ -80,7 +80,7 @@ impl RecordingSink {
     /// # Errors
     /// As [`Answers::create`].
     pub fn begin(&mut self) -> Result<()> {
-        self.answers = Some(Answers::create(&self.out, self.options)?);
+        self.answers = Some(RecordingWriter::create(&self.out, self.options)?);
         Ok(())
     }
 
@@ -125,12 +125,17 @@ impl RecordingSink {
     /// # Errors
     /// `Io` when the disk is full.
     pub fn finish(self) -> Result<()> {
-        let finished = self.answers.map_or(Ok(()), Answers::finish);
+        let finished = self.answers.map_or(Ok(()), RecordingWriter::finish);
         finished.context(|| format!("writing {}", self.out.display()))
     }
 }
 
-fn record_input(entry: &'static Entry, answers: &mut Answers, item: &Item, time_ns: i64) -> Result<()> {
+fn record_input(
+    entry: &'static Entry,
+    answers: &mut RecordingWriter,
+    item: &Item,
+    time_ns: i64,
+) -> Result<()> {
     if let Some(recorded) = &item.recorded {
         return recorded.messages.iter().try_for_each(|message| answers.copy(&recorded.recording, message));
     }

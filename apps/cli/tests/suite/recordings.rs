@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::place::Place;
-use opendr::bags::{Answers, BagFormat, PortTopic, Recording, Sets};
+use opendr::bags::{BagFormat, PortTopic, Recording, RecordingWriter, SyncedSets};
 use opendr::data::{Audio, Image, Timeseries};
 use opendr::model::{Manifest, ModelWriter};
 use opendr::target::{BoundingBox, BoundingBoxList};
@@ -20,7 +20,7 @@ fn beat(number: i64) -> Value {
 }
 
 fn record(path: &Path, format: BagFormat, topics: &[&str]) {
-    let mut answers = Answers::create(path, format).unwrap();
+    let mut answers = RecordingWriter::create(path, format).unwrap();
     for number in 0..20 {
         for topic in topics {
             answers.write(topic, beat(number).as_value_ref(), START + number * STEP + 3).unwrap();
@@ -48,7 +48,7 @@ fn every_format_is_read_and_written() {
         let recording = Recording::open(place.path(&out)).unwrap();
         assert_eq!(recording.bag().format(), format);
         let port = PortTopic::new(format!("/{LEARNER}/category"), ValueType::Category);
-        let sets: Vec<_> = Sets::open(&recording, vec![port]).unwrap().map(Result::unwrap).collect();
+        let sets: Vec<_> = SyncedSets::open(&recording, vec![port]).unwrap().map(Result::unwrap).collect();
         assert_eq!(sets.len(), 20);
         for (number, (set, line)) in sets.iter().zip(&lines).enumerate() {
             assert_eq!(set.log_time_ns, START + number as i64 * STEP + 3);
@@ -115,7 +115,7 @@ fn chunks_of_audio_are_one_stream() {
     let place = Place::new();
     let samples: Vec<f32> = (0..40_000).map(|at| (at as f32 / 9.0).sin() * 0.3).collect();
     let record = |name: &str, size: usize| {
-        let mut answers = Answers::create(place.path(name), BagFormat::Mcap).unwrap();
+        let mut answers = RecordingWriter::create(place.path(name), BagFormat::Mcap).unwrap();
         for (number, piece) in samples.chunks(size).enumerate() {
             let value = Value::from(Audio::new(piece.to_vec(), 1, 16_000).unwrap());
             answers.write("/audio", value.as_value_ref(), START + number as i64 * STEP).unwrap();
@@ -153,7 +153,7 @@ fn further_inputs_come_from_topics() {
     let mut model = ModelWriter::new(place.path("model"), Manifest::new("counter", "")).unwrap();
     model.add("bias.bin", &[0]).unwrap();
     model.finish().unwrap();
-    let mut answers = Answers::create(place.path("a.mcap"), BagFormat::Mcap).unwrap();
+    let mut answers = RecordingWriter::create(place.path("a.mcap"), BagFormat::Mcap).unwrap();
     let boxes = |count: usize, stamp: i64| {
         let list = vec![BoundingBox::new(0, 0.0, 0.0, 1.0, 1.0, 0.9); count];
         Value::from(BoundingBoxList { header: Header::new(stamp, "camera"), ..list.into() })

@@ -131,7 +131,7 @@ impl VectorEnvironment {
             let seeds = match (&seeds, seed) {
                 (Some(seeds), _) => Seeds::Each(seeds),
                 (None, Some(seed)) => Seeds::From(seed),
-                (None, None) => Seeds::Chance,
+                (None, None) => Seeds::Random,
             };
             worlds.reset(seeds, &options, mask.as_deref(), batch)?;
             self.write(batch);

@@ -13,7 +13,7 @@ use super::compressed::decompressed;
 use super::metadata::Metadata;
 use super::sqlite::Sqlite;
 use crate::mcap;
-use crate::recorded::{Recorded, Stream};
+use crate::recorded::{RecordedMessage, Stream};
 use crate::selection::Filter;
 use crate::source::Source;
 use crate::storage::{Storage, Summary};
@@ -146,12 +146,12 @@ struct Merged {
     parts: Arc<Parts>,
     filter: Filter,
     upcoming: Vec<(i64, usize)>,
-    streams: Vec<Option<(Stream, Option<Recorded>)>>,
+    streams: Vec<Option<(Stream, Option<RecordedMessage>)>>,
     heads: BinaryHeap<Reverse<(i64, usize)>>,
 }
 
 impl Merged {
-    fn step(&mut self) -> Result<Option<Recorded>> {
+    fn step(&mut self) -> Result<Option<RecordedMessage>> {
         while let Some(&(start, at)) = self.upcoming.last() {
             let is_early = self.heads.peek().is_some_and(|Reverse((time, _))| *time < start);
             if is_early || (self.filter.in_file_order && !self.heads.is_empty()) {
@@ -186,7 +186,7 @@ impl Merged {
 }
 
 impl Iterator for Merged {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         self.step().transpose()

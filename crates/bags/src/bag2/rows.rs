@@ -9,7 +9,7 @@ use rusqlite::{Connection, Row};
 use super::sqlite_error::sqlite_error;
 use crate::compression;
 use crate::in_order::Entry;
-use crate::recorded::Recorded;
+use crate::recorded::RecordedMessage;
 use crate::selection::Filter;
 
 /// Iterator over the selected messages in order.
@@ -110,7 +110,7 @@ impl Rows {
 }
 
 impl Iterator for Rows {
-    type Item = Result<Recorded>;
+    type Item = Result<RecordedMessage>;
 
     fn next(&mut self) -> Option<Self::Item> {
         if self.ready.is_empty()
@@ -120,7 +120,7 @@ impl Iterator for Rows {
         }
         let Entry { log_time_ns, publish_time_ns, channel, start, end } = self.ready.pop_front()?;
         let bytes = self.bytes.slice(start..end);
-        Some(Ok(Recorded { channel: channel as usize, log_time_ns, publish_time_ns, bytes }))
+        Some(Ok(RecordedMessage { channel: channel as usize, log_time_ns, publish_time_ns, bytes }))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use opendr_bags::{Bag, BagFormat, BagWriter, Channel, Encoding, Recorded, Selection, WriteOptions};
+use opendr_bags::{Bag, BagFormat, BagWriter, Channel, Encoding, RecordedMessage, Selection, WriteOptions};
 use opendr_engine::ErrorKind;
 use rusqlite::Connection;
 use tempfile::{TempDir, tempdir};
@@ -25,7 +25,7 @@ fn written(format: BagFormat) -> (TempDir, PathBuf) {
     (folder, path)
 }
 
-fn read(path: &Path) -> Vec<Recorded> {
+fn read(path: &Path) -> Vec<RecordedMessage> {
     Bag::open(path).unwrap().messages().unwrap().map(Result::unwrap).collect()
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use opendr_bags::{
-    Bag, BagFormat, BagWriter, Channel, Compression, Encoding, Recorded, Selection, WriteOptions,
+    Bag, BagFormat, BagWriter, Channel, Compression, Encoding, RecordedMessage, Selection, WriteOptions,
 };
 use opendr_engine::ErrorKind;
 use tempfile::{TempDir, tempdir};
@@ -69,7 +69,7 @@ fn written(options: WriteOptions) -> (TempDir, std::path::PathBuf) {
     (folder, path)
 }
 
-fn read(bag: &Bag, selection: &Selection) -> Vec<Recorded> {
+fn read(bag: &Bag, selection: &Selection) -> Vec<RecordedMessage> {
     bag.select(selection).unwrap().map(Result::unwrap).collect()
 }
 
@@ -106,8 +106,8 @@ fn a_selection_equals_filtering_all_messages() {
         let bag = Bag::open(&path).unwrap();
         let all = read(&bag, &Selection::default());
         let (start, end) = (time(100), time(333));
-        let of_topic = |message: &&Recorded| message.channel == 1;
-        let in_time = |message: &&Recorded| (start..=end).contains(&message.log_time_ns);
+        let of_topic = |message: &&RecordedMessage| message.channel == 1;
+        let in_time = |message: &&RecordedMessage| (start..=end).contains(&message.log_time_ns);
         let topic = Selection::topics(["/empty", "/nowhere"]);
         assert_eq!(read(&bag, &topic), all.iter().filter(of_topic).cloned().collect::<Vec<_>>());
         let times = Selection { start_ns: Some(start), end_ns: Some(end), ..topic };
@@ -215,9 +215,10 @@ fn mcap_keeps_the_time_of_publishing() {
     let folder = tempdir().unwrap();
     let mut writer = BagWriter::create(folder.path().join("a.mcap"), BagFormat::Mcap).unwrap();
     let channel = writer.add_channel(channels(BagFormat::Mcap).remove(0)).unwrap();
-    let message = Recorded { channel: 9, log_time_ns: 7, publish_time_ns: Some(3), bytes: "hi".into() };
+    let message =
+        RecordedMessage { channel: 9, log_time_ns: 7, publish_time_ns: Some(3), bytes: "hi".into() };
     writer.copy(channel, &message).unwrap();
     writer.finish().unwrap();
     let read = read(&Bag::open(folder.path().join("a.mcap")).unwrap(), &Selection::default());
-    assert_eq!(read, [Recorded { channel, ..message }]);
+    assert_eq!(read, [RecordedMessage { channel, ..message }]);
 }

@@ -4,7 +4,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::{Field, ParamMap, Params};
 use opendr_engine::{Error, Random, Result};
 
-use crate::augment::Others;
+use crate::augment::OtherSamples;
 
 /// Random change of samples.
 pub trait Augment: Send + Sync {
@@ -14,11 +14,11 @@ pub trait Augment: Send + Sync {
     /// # Errors
     /// `InvalidInput` if the sample has no data of the type that is changed, `Unsupported` if its target cannot be
     /// changed accordingly, and errors of reading other samples. The sample is invalid after an error.
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()>;
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()>;
 }
 
 impl<A: Augment + ?Sized> Augment for Box<A> {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         (**self).apply(sample, random, others)
     }
 }

@@ -16,11 +16,11 @@ mod series;
 pub use audio::{AudioGain, AudioNoise, AudioShift};
 pub use augmentation::{Augment, AugmentEntry, Augmentation};
 pub use cloud::{CloudFlip, CloudRotate, CloudScale, DropPoints, JitterPoints, PasteObjects};
-pub use others::Others;
+pub use others::OtherSamples;
 pub use picture::{
-    Affine, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop, Letterbox, MixUp,
-    Mosaic, PictureMap, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate, picture_size,
-    transform,
+    Affine, AffineMap, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop,
+    Letterbox, MixUp, Mosaic, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate,
+    image_size, transform,
 };
 pub use pipeline::Pipeline;
 pub use registry::{augmentations, find_augmentation};

@@ -5,9 +5,9 @@ use opendr_engine::{Error, Random, Result};
 
 /// The unchanged samples of the data set.
 #[derive(Clone, Copy, Default)]
-pub struct Others<'a>(Option<&'a dyn DatasetIterator>);
+pub struct OtherSamples<'a>(Option<&'a dyn DatasetIterator>);
 
-impl<'a> Others<'a> {
+impl<'a> OtherSamples<'a> {
     /// Returns the samples of `dataset`.
     pub fn of(dataset: &'a dyn DatasetIterator) -> Self {
         Self(Some(dataset))

@@ -5,7 +5,7 @@ use opendr_engine::params::ParamMap;
 use opendr_engine::{Error, Random, Result, ResultExt};
 
 use crate::augment::augmentation::check;
-use crate::augment::{Augment, Augmentation, Others, find_augmentation};
+use crate::augment::{Augment, Augmentation, OtherSamples, find_augmentation};
 
 /// Augmentations in the order in which they are applied, each with its probability.
 ///
@@ -78,7 +78,7 @@ impl Pipeline {
 }
 
 impl Augment for Pipeline {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         for step in &self.steps {
             if random.chance(step.probability) {
                 step.augment

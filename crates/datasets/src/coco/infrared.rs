@@ -80,8 +80,8 @@ impl DatasetIterator for CocoInfrared {
         self.coco.path(index)
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
-        self.coco.picture_size(index)
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
+        self.coco.image_size(index)
     }
 
     fn classes(&self) -> Classes {

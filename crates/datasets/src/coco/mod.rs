@@ -159,7 +159,7 @@ impl DatasetIterator for Coco {
         self.picture_path(index).ok()
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
         self.picture(index).ok().map(|picture| picture.size).filter(|size| !size.contains(&0))
     }
 

@@ -184,7 +184,7 @@ impl DatasetIterator for CocoPanoptic {
         self.picture_path(index).ok()
     }
 
-    fn picture_size(&self, index: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, index: usize) -> Option<[u32; 2]> {
         self.picture(index).ok().map(|picture| picture.size).filter(|size| !size.contains(&0))
     }
 

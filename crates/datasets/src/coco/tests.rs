@@ -61,7 +61,7 @@ fn pictures_have_their_annotations() {
     let coco = open(scratch.path(), &Problems::strict()).unwrap();
     assert_eq!((coco.len(), coco.class_ids()), (2, vec![18, 90]));
     assert_eq!(coco.classes().iter().collect::<Vec<_>>(), ["dog", "toothbrush"]);
-    assert_eq!((coco.name(1), coco.id(1), coco.picture_size(0)), ("b.png".into(), Some(7), Some([40, 30])));
+    assert_eq!((coco.name(1), coco.id(1), coco.image_size(0)), ("b.png".into(), Some(7), Some([40, 30])));
     let first = boxes(&coco, 0);
     assert_eq!(first.boxes, [BoundingBox::new(0, 0.0, 0.0, 40.0, 30.0, 1.0)]);
     let second = boxes(&coco, 1);

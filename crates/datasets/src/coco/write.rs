@@ -77,7 +77,7 @@ pub(super) fn write(
             Some(pictures) => pictures.place(index)?,
             None => Placed {
                 name: dataset.name(index),
-                size: dataset.picture_size(index).ok_or_else(|| {
+                size: dataset.image_size(index).ok_or_else(|| {
                     Error::invalid_input("the image size is unknown; write to a folder instead of a file")
                 })?,
             },

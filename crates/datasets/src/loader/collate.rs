@@ -20,9 +20,9 @@ pub trait Collate: Send + Sync + 'static {
 
 /// Batches as lists of samples.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Samples;
+pub struct SampleBatches;
 
-impl Collate for Samples {
+impl Collate for SampleBatches {
     type Batch = Vec<Sample>;
 
     fn start(&self, capacity: usize) -> Vec<Sample> {

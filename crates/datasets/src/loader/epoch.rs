@@ -8,7 +8,7 @@ use std::thread::{self, Builder, JoinHandle};
 use opendr_engine::Result;
 
 use crate::loader::queue::{Job, WorkQueue};
-use crate::loader::{Collate, Samples, Skipped};
+use crate::loader::{Collate, SampleBatches, Skipped};
 
 /// A batch of an epoch.
 #[derive(Debug, Clone)]
@@ -61,7 +61,7 @@ impl Reading {
 ///
 /// A sample that cannot be read or augmented is an error in place of its batch (unless broken samples are skipped),
 /// after which the next batch follows. A panic of a thread resumes in the thread that requests the batch.
-pub struct Epoch<C: Collate = Samples> {
+pub struct Epoch<C: Collate = SampleBatches> {
     queue: Arc<WorkQueue<'static, C>>,
     threads: Vec<JoinHandle<()>>,
     reading: Reading,

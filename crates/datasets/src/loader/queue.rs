@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Random, Result, ResultExt};
 
-use crate::augment::{Augment, Others, Pipeline};
+use crate::augment::{Augment, OtherSamples, Pipeline};
 use crate::loader::{Collate, LoaderOptions, Skipped};
 
 /// The samples of an epoch, or of the rest of one, in batches.
@@ -64,9 +64,9 @@ impl<C: Collate> Job<'_, C> {
     }
 
     fn add(&self, batch: &mut C::Batch, index: usize) -> Result<()> {
-        let mut random = Random::at([self.options.seed, self.epoch, index as u64]);
+        let mut random = Random::from_key([self.options.seed, self.epoch, index as u64]);
         let done = self.dataset.get(index).and_then(|mut sample| {
-            self.pipeline.apply(&mut sample, &mut random, &Others::of(&*self.dataset))?;
+            self.pipeline.apply(&mut sample, &mut random, &OtherSamples::of(&*self.dataset))?;
             self.collate.add(batch, sample)
         });
         done.context(|| format!("sample {index} ({})", self.dataset.name(index)))

@@ -206,7 +206,7 @@ impl MotSequence {
     }
 
     /// Returns the rows of `gt.txt` for frame number `frame`, including ignored objects.
-    pub fn truth(&self, frame: i64) -> &[MotRow] {
+    pub fn ground_truth(&self, frame: i64) -> &[MotRow] {
         rows_of(&self.truth, frame)
     }
 

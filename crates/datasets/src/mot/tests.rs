@@ -40,7 +40,7 @@ fn sequences_follow_one_another() {
     let mot = open(&folder, &Problems::strict()).unwrap();
     let names: Vec<_> = mot.sequences().iter().map(MotSequence::name).collect();
     assert_eq!((names, mot.len()), (vec!["A", "B"], 5));
-    assert_eq!([1, 2, 4].map(|index| mot.place(index).unwrap()), [(0, 1), (1, 0), (1, 2)]);
+    assert_eq!([1, 2, 4].map(|index| mot.sequence_and_frame(index).unwrap()), [(0, 1), (1, 0), (1, 2)]);
     assert_eq!(mot.sequences()[0].image_size(), Some([4, 3]));
     let first = tracks(&mot, 0);
     assert_eq!(first.mot_text(), "1,1,10,20,30,40,1,-1,-1,-1\n1,7,50,60,10,20,0,-1,-1,-1\n");
@@ -55,12 +55,12 @@ fn sequences_follow_one_another() {
     let options = OpenOptions { target: Some(ValueType::BoundingBoxList), ..OpenOptions::default() };
     let boxes = Mot::open(folder.path(), &options, &Problems::strict()).unwrap();
     assert_eq!(boxes.get(0).unwrap().data.len(), 1);
-    assert_eq!(mot.sequences()[0].truth(2)[0].visibility, 0.75);
+    assert_eq!(mot.sequences()[0].ground_truth(2)[0].visibility, 0.75);
     assert!(mot.get(2).unwrap().data.is_empty());
     assert_eq!(tracks(&mot, 4).annotations[0].id, 4);
     assert_eq!(mot.detections(0).unwrap().boxes[0].confidence, 0.875);
     assert_eq!([0, 1, 2].map(|index| mot.sequence(index)), [Some(0), Some(0), Some(1)]);
-    assert_eq!((mot.name(1), mot.picture_size(1)), ("A/000002".to_owned(), Some([4, 3])));
+    assert_eq!((mot.name(1), mot.image_size(1)), ("A/000002".to_owned(), Some([4, 3])));
     assert!(mot.path(1).unwrap().ends_with("train/A/img1/000002.jpg") && mot.path(2).is_none());
     assert!(mot.get(5).is_err() && mot.detections(5).is_none());
 }

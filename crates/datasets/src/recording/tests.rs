@@ -1,7 +1,7 @@
 use opendr_engine::data::Image;
 use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Header, ValueRef};
-use opendr_recordings::{Answers, BagFormat, WriteOptions};
+use opendr_recordings::{BagFormat, RecordingWriter, WriteOptions};
 
 use super::*;
 use crate::folder::TemporaryFolder;
@@ -12,7 +12,7 @@ const STEP: i64 = 100_000_000;
 /// Records ten images, and boxes for every second one: stamped 3 ms later, recorded a second later.
 fn record(path: &Path, format: BagFormat, pictures: &[&str]) {
     let options = WriteOptions { chunk_bytes: 300, ..format.into() };
-    let mut answers = Answers::create(path, options).unwrap();
+    let mut answers = RecordingWriter::create(path, options).unwrap();
     for number in 0..10 {
         let stamp = START + number * STEP;
         let image = Image::from_rgb8(vec![number as u8; 4 * 2 * 3], 4, 2).unwrap();

@@ -64,7 +64,7 @@ pub trait DatasetIterator: Dataset {
     }
 
     /// Returns width and height in pixels of the image of sample `index`, if they are known without reading it.
-    fn picture_size(&self, _index: usize) -> Option<[u32; 2]> {
+    fn image_size(&self, _index: usize) -> Option<[u32; 2]> {
         None
     }
 

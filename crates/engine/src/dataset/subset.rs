@@ -35,7 +35,7 @@ impl<D: DatasetIterator> Subset<D> {
     /// Creates a random permutation of all samples, determined by `seed`.
     pub fn shuffled(original: D, seed: u64) -> Self {
         let mut indices: Vec<usize> = (0..original.len()).collect();
-        Random::at([seed, SHUFFLE]).shuffle(&mut indices);
+        Random::from_key([seed, SHUFFLE]).shuffle(&mut indices);
         Self { original, indices }
     }
 
@@ -75,7 +75,7 @@ impl<'a, D: DatasetIterator + ?Sized> Subset<&'a D> {
             .collect();
         starts.push(original.len());
         let mut groups: Vec<[usize; 2]> = starts.windows(2).map(|ends| [ends[0], ends[1]]).collect();
-        Random::at([seed, SPLIT]).shuffle(&mut groups);
+        Random::from_key([seed, SPLIT]).shuffle(&mut groups);
         let first_len = (share * original.len() as f64).round() as usize;
         let (mut first, mut second) = (Vec::new(), Vec::new());
         for [begin, end] in groups {

@@ -49,7 +49,7 @@ impl Entry {
     }
 
     /// Creates the entry of a learner that is added at run time, from its tables and its constructor `make`.
-    pub fn added(
+    pub fn dynamic(
         spec: Spec,
         params: &'static [Field],
         ports: &'static [Port],

@@ -19,7 +19,7 @@ pub struct Spec {
 
 impl Spec {
     /// Reason for training arguments in [`Spec::without_effect`].
-    pub const OF_TRAINING: &'static str = "it belongs to training, which this learner does not have";
+    pub const TRAINING_ONLY: &'static str = "it belongs to training, which this learner does not have";
 
     /// Creates the specification of a learner named `name`.
     pub const fn new(name: &'static str, task: Task) -> Self {

@@ -151,5 +151,5 @@ fn a_model_of_another_learner_is_rejected() {
 
 fn registry_rejects_duplicates() -> bool {
     let registry = crate::learners![Counter];
-    registry.add(crate::learner::Entry::added(Counter::SPEC, &[], &[], &[], |_, _| unreachable!())).is_err()
+    registry.add(crate::learner::Entry::dynamic(Counter::SPEC, &[], &[], &[], |_, _| unreachable!())).is_err()
 }

@@ -5,5 +5,5 @@
 mod rotated;
 mod upright;
 
-pub use rotated::{RotatedRectangle, StandingBox};
-pub use upright::{image_cover, image_distance_overlap, image_generalised_overlap, image_overlap};
+pub use rotated::{RotatedRectangle, UprightBox3D};
+pub use upright::{box_diou, box_giou, box_ioa, box_iou};

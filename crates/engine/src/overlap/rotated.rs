@@ -22,7 +22,7 @@ impl RotatedRectangle {
     ///
     /// `other` is moved into the frame of `self` and clipped by four axis-parallel lines (I. E. Sutherland,
     /// G. W. Hodgman, "Reentrant polygon clipping", Communications of the ACM 17, 1974).
-    pub fn shared_area(&self, other: &Self) -> f64 {
+    pub fn intersection_area(&self, other: &Self) -> f64 {
         if self.area() == 0.0 || other.area() == 0.0 || self.is_apart(other) {
             return 0.0;
         }
@@ -39,8 +39,8 @@ impl RotatedRectangle {
     }
 
     /// Returns the intersection over union; 0 for a rectangle without area.
-    pub fn overlap(&self, other: &Self) -> f64 {
-        let shared = self.shared_area(other);
+    pub fn iou(&self, other: &Self) -> f64 {
+        let shared = self.intersection_area(other);
         if shared > 0.0 { shared / (self.area() + other.area() - shared) } else { 0.0 }
     }
 
@@ -63,39 +63,39 @@ impl RotatedRectangle {
 
 /// A 3D box with a vertical axis, rotated about that axis only.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StandingBox {
+pub struct UprightBox3D {
     /// Base of the box, on the ground plane.
-    pub floor: RotatedRectangle,
+    pub base: RotatedRectangle,
     /// Lower and upper end along the vertical axis.
     pub vertical: [f64; 2],
 }
 
-impl StandingBox {
+impl UprightBox3D {
     /// Creates a box from KITTI's camera frame (x right, y down, z forward), as in
     /// [`BoundingBox3D`](crate::target::BoundingBox3D): length, height and width, the center of the base, the rotation about
     /// y. The ground plane is x and z; the vertical axis points up.
-    pub fn in_camera([length, height, width]: [f64; 3], [x, y, z]: [f64; 3], rotation_y: f64) -> Self {
+    pub fn from_kitti([length, height, width]: [f64; 3], [x, y, z]: [f64; 3], rotation_y: f64) -> Self {
         // A rotation about y, which points down, goes from z to x.
-        let floor = RotatedRectangle { center: [x, z], size: [length, width], angle: -rotation_y };
-        Self { floor, vertical: [-y, height - y] }
+        let base = RotatedRectangle { center: [x, z], size: [length, width], angle: -rotation_y };
+        Self { base, vertical: [-y, height - y] }
     }
 
     /// Returns the area of the base times the height; 0 if a side is not positive.
     pub fn volume(&self) -> f64 {
-        self.floor.area() * (self.vertical[1] - self.vertical[0]).max(0.0)
+        self.base.area() * (self.vertical[1] - self.vertical[0]).max(0.0)
     }
 
     /// Returns the intersection over union of the volumes, given the intersection area of the bases; 0 for a box without
     /// volume.
-    pub fn overlap_with_shared_floor(&self, other: &Self, shared_floor: f64) -> f64 {
+    pub fn iou_with_base_intersection(&self, other: &Self, shared_floor: f64) -> f64 {
         let ([low, high], [other_low, other_high]) = (self.vertical, other.vertical);
         let shared = shared_floor * (high.min(other_high) - low.max(other_low)).max(0.0);
         if shared > 0.0 { shared / (self.volume() + other.volume() - shared) } else { 0.0 }
     }
 
     /// Returns the intersection over union of the volumes; 0 for a box without volume.
-    pub fn overlap(&self, other: &Self) -> f64 {
-        self.overlap_with_shared_floor(other, self.floor.shared_area(&other.floor))
+    pub fn iou(&self, other: &Self) -> f64 {
+        self.iou_with_base_intersection(other, self.base.intersection_area(&other.base))
     }
 }
 

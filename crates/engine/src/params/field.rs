@@ -24,17 +24,17 @@ impl fmt::Display for ParamRange {
 #[derive(Debug, Clone, Copy)]
 pub enum FieldDefault {
     /// A function, for the fields of a struct.
-    Made(fn() -> ParamValue),
+    Function(fn() -> ParamValue),
     /// A value, for learners that are registered at run time.
-    Given(&'static ParamValue),
+    Value(&'static ParamValue),
 }
 
 impl FieldDefault {
     /// Returns the default value.
     pub fn value(self) -> ParamValue {
         match self {
-            Self::Made(make) => make(),
-            Self::Given(value) => value.clone(),
+            Self::Function(make) => make(),
+            Self::Value(value) => value.clone(),
         }
     }
 }

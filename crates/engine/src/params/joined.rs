@@ -13,7 +13,7 @@ const NO_FIELD: Field = Field {
     log_scale: false,
     live: false,
     aliases: &[],
-    default: FieldDefault::Given(&ParamValue::None),
+    default: FieldDefault::Value(&ParamValue::None),
 };
 
 /// Returns the number of fields in all tables.

@@ -27,7 +27,7 @@ impl Keypoint {
     pub const MISSING: Self = Self { x: -1.0, y: -1.0, confidence: 0.0 };
 
     /// Returns whether the keypoint was detected.
-    pub fn is_found(&self) -> bool {
+    pub fn is_detected(&self) -> bool {
         self.x >= 0.0 && self.y >= 0.0
     }
 }

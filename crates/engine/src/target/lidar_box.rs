@@ -1,7 +1,7 @@
 //! 3D bounding boxes in the frame of a lidar, and their conversion to and from the camera frame.
 
 use crate::data::Calibration;
-use crate::overlap::{RotatedRectangle, StandingBox};
+use crate::overlap::{RotatedRectangle, UprightBox3D};
 use crate::target::BoundingBox3D;
 
 /// A 3D bounding box with a vertical axis in a lidar's frame: x forward, y left, z up, in metres.
@@ -20,10 +20,10 @@ const NEAREST: f64 = 0.1;
 
 impl LidarBox {
     /// Converts to a base rectangle with an extent along z.
-    pub fn standing_box(&self) -> StandingBox {
+    pub fn upright_box(&self) -> UprightBox3D {
         let ([x, y, z], [length, width, height]) = (self.center, self.size);
         let floor = RotatedRectangle { center: [x, y], size: [length, width], angle: self.yaw };
-        StandingBox { floor, vertical: [z, z + height] }
+        UprightBox3D { base: floor, vertical: [z, z + height] }
     }
 
     /// Returns the eight corners, those of the base first.
@@ -142,7 +142,7 @@ mod tests {
             let apart = car.center.iter().zip(again.center).chain(car.size.iter().zip(again.size));
             assert!(apart.map(|(a, b)| (a - b).abs()).all(|apart| apart < 1e-5), "{again:?}");
             assert!(wrapped(car.yaw - again.yaw).abs() < 1e-5);
-            assert!(car.standing_box().overlap(&again.standing_box()) > 0.999);
+            assert!(car.upright_box().iou(&again.upright_box()) > 0.999);
         }
     }
 

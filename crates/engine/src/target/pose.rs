@@ -39,7 +39,7 @@ impl Pose {
 
     /// Returns the box `[left, top, width, height]` around the detected keypoints, in pixels.
     pub fn bounding_box(&self) -> Option<[f32; 4]> {
-        let mut found = self.keypoints.iter().filter(|keypoint| keypoint.is_found());
+        let mut found = self.keypoints.iter().filter(|keypoint| keypoint.is_detected());
         let first = found.next()?;
         let [x0, y0, x1, y1] =
             found.fold([first.x, first.y, first.x, first.y], |[x0, y0, x1, y1], keypoint| {
@@ -52,7 +52,7 @@ impl Pose {
         if let Some(id) = self.id {
             write!(f, "#{id} ")?;
         }
-        let found = self.keypoints.iter().filter(|keypoint| keypoint.is_found()).count();
+        let found = self.keypoints.iter().filter(|keypoint| keypoint.is_detected()).count();
         let (body, joints) = (self.skeleton.body(), self.keypoints.len());
         write!(f, "{body} {:.2} with {found} of {joints} joints", self.confidence)?;
         if let Some([left, top, width, height]) = self.bounding_box() {

@@ -77,7 +77,7 @@ impl Setup {
 
     fn teacher(&self) -> Teacher {
         let spec = Spec::new("finder", Task::ObjectDetection2d).class("FinderLearner");
-        let entry = Entry::added(spec, &[], PORTS, OUTPUTS, |_, _| Err(Error::unsupported("making")));
+        let entry = Entry::dynamic(spec, &[], PORTS, OUTPUTS, |_, _| Err(Error::unsupported("making")));
         let stream = || Box::new(Finder(self.processed.clone())) as Box<dyn AnyStream>;
         Teacher {
             subject: Subject { learner: "finder".to_owned(), ..Subject::default() },
@@ -91,11 +91,11 @@ impl Setup {
         &self,
         samples: &Numbers,
         problems: &Problems,
-        change: impl FnOnce(&mut Lesson<'_>),
+        change: impl FnOnce(&mut Distillation<'_>),
     ) -> Result<Vec<Labelled>> {
-        let mut lesson = Lesson {
+        let mut lesson = Distillation {
             dataset: "numbers".to_owned(),
-            wanted: ValueType::BoundingBoxList,
+            annotation_type: ValueType::BoundingBoxList,
             threshold: 0.5,
             classes: Classes::default(),
             class_matching: ClassMatching::default(),
@@ -105,7 +105,7 @@ impl Setup {
             progress: &Silent,
         };
         change(&mut lesson);
-        let labelled = lesson.teach(self.teacher(), Box::new(samples))?;
+        let labelled = lesson.label(self.teacher(), Box::new(samples))?;
         assert!(labelled.is_complete());
         (0..labelled.len()).map(|at| Ok((labelled.name(at), labels(&labelled.get(at)?)))).collect()
     }
@@ -174,7 +174,7 @@ fn samples_without_predictions_are_reported_or_skipped() {
     let problems = Problems::skipping();
     assert_eq!(setup.teach(&samples, &problems, |_| {}).unwrap().len(), 2);
     assert_eq!(problems.count(), 1);
-    let poses = |lesson: &mut Lesson<'_>| lesson.wanted = ValueType::PoseList;
+    let poses = |lesson: &mut Distillation<'_>| lesson.annotation_type = ValueType::PoseList;
     let error = setup.teach(&samples, &problems, poses).unwrap_err();
     assert!(error.to_string().contains("finder predicts BoundingBoxList, but"), "{error}");
 }

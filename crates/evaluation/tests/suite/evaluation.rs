@@ -165,7 +165,7 @@ fn evaluate(
     let mut learners: [Box<dyn AnyLearner>; 2] = [Box::new(Counter::default()), Box::new(Counter::default())];
     let spec = Spec::new("counter", Task::ObjectDetection2d);
     let make = |_: &ParamMap, _| Err(Error::unsupported("making"));
-    let entry = Entry::added(spec, &[], <&Vector as Inputs<'_>>::PORTS, Category::OUTPUTS, make);
+    let entry = Entry::dynamic(spec, &[], <&Vector as Inputs<'_>>::PORTS, Category::OUTPUTS, make);
     evaluation.run(&mut learners, &entry, dataset)
 }
 

@@ -156,7 +156,7 @@ impl Predictor for Predictions {
 fn numbers(metric: &str, learner: &Numbering, dataset: &Numbering, seed: u64) -> BTreeMap<String, f64> {
     let [mut truths, mut predictions] = [Vec::new(), Vec::new()];
     for at in 0..SAMPLES {
-        let place = |what| Random::at([seed, at as u64, what]);
+        let place = |what| Random::from_key([seed, at as u64, what]);
         truths.push(value(metric, dataset, &mut place(0), true, &mut place(1)));
         predictions.push(value(metric, learner, &mut place(0), false, &mut place(2)));
     }

@@ -105,7 +105,7 @@ impl<'a> Ctranslate2File<'a> {
                 )));
             }
         };
-        let floats = float_type.numbers(bytes);
+        let floats = float_type.decode(bytes);
         if floats.iter().any(|value| !value.is_finite()) {
             return Err(Error::format(format!(
                 "CTranslate2: {name:?} contains NaN or infinity; download the file again"

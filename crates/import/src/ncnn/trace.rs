@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{Builder, Dim, Kind, Operator, Wire};
+use opendr_onnx::{Builder, Dim, ElementType, Operator, Value};
 
 use super::operator::output;
 use super::param::Layer;
@@ -15,7 +15,7 @@ use crate::tensorflow::ImportOptions;
 pub struct Trace<'a> {
     pub graph: Builder,
     pub weights: Weights<'a>,
-    tensors: HashMap<&'a str, Wire>,
+    tensors: HashMap<&'a str, Value>,
 }
 
 impl<'a> Trace<'a> {
@@ -57,7 +57,7 @@ impl<'a> Trace<'a> {
     ///
     /// # Errors
     /// `Format` when no layer has produced it.
-    pub fn tensor(&self, name: &str) -> Result<Wire> {
+    pub fn tensor(&self, name: &str) -> Result<Value> {
         self.tensors
             .get(name)
             .cloned()
@@ -68,7 +68,7 @@ impl<'a> Trace<'a> {
     ///
     /// # Errors
     /// `Format` when the layer has no such input.
-    pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<Wire> {
+    pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<Value> {
         let few =
             || Error::format(format!("it has {} inputs, but input {index} is needed", layer.inputs.len()));
         self.tensor(layer.inputs.get(index).ok_or_else(few)?)
@@ -82,23 +82,23 @@ impl<'a> Trace<'a> {
         &mut self,
         layer: &Layer<'_>,
         operator: Operator,
-        inputs: &[&Wire],
+        inputs: &[&Value],
         dims: Vec<Dim>,
-    ) -> Result<Wire> {
-        self.graph.add(layer.name, operator, inputs, Kind::Float, dims)
+    ) -> Result<Value> {
+        self.graph.add(layer.name, operator, inputs, ElementType::Float, dims)
     }
 
     /// Adds an operator whose output has the dimensions of its first input.
     ///
     /// # Errors
     /// Those of [`Trace::add`].
-    pub fn same(&mut self, layer: &Layer<'_>, operator: Operator, inputs: &[&Wire]) -> Result<Wire> {
+    pub fn same(&mut self, layer: &Layer<'_>, operator: Operator, inputs: &[&Value]) -> Result<Value> {
         let dims = inputs.first().map(|input| input.dims().to_vec()).unwrap_or_default();
         self.add(layer, operator, inputs, dims)
     }
 
     /// Adds an input of the model: an image, of open size where neither text nor options fix it.
-    fn open(&mut self, layer: &Layer<'a>, layers: &[Layer<'a>], options: &ImportOptions) -> Result<Wire> {
+    fn open(&mut self, layer: &Layer<'a>, layers: &[Layer<'a>], options: &ImportOptions) -> Result<Value> {
         let name = layer.outputs.first().copied().unwrap_or_default();
         let given = |key: i64| layer.parameters.size(key, 0).map(|size| Some(size).filter(|size| *size > 0));
         let (width, height, own) = (given(0)?, given(1)?, given(2)?);
@@ -112,7 +112,7 @@ impl<'a> Trace<'a> {
         ];
         let open = ["", "channels", "height", "width"].map(|axis| format!("{name}_{axis}"));
         let open = [0, 1, 2, 3].map(|axis| open[axis].as_str());
-        Ok(self.graph.input(name, Kind::Float, dims, &open))
+        Ok(self.graph.input(name, ElementType::Float, dims, &open))
     }
 }
 

@@ -51,7 +51,7 @@ impl WhisperWeights for Weights<'_> {
         let tensor = self.tensor(name).ok_or_else(|| {
             Error::format(format!("there is no weight \"model.{name:.80}\"; download the file again"))
         })?;
-        let floats = tensor.float_type.numbers(tensor.bytes);
+        let floats = tensor.float_type.decode(tensor.bytes);
         if floats.iter().any(|value| !value.is_finite()) {
             return Err(Error::format(format!("{name:?} contains NaN or infinity; download the file again")));
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use opendr_onnx::Kind;
+use opendr_onnx::ElementType;
 
 /// A parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub enum Attribute {
     Text(String),
     Ints(Vec<i64>),
     Texts(Vec<String>),
-    Kind(Kind),
+    Kind(ElementType),
     /// Dimensions, -1 where open.
     Shape(Vec<i64>),
 }
@@ -76,7 +76,7 @@ impl Attributes {
     }
 
     /// Returns an element type; `None` for a type that the graphs do not support (strings, complex numbers).
-    pub fn kind(&self, key: &str) -> Option<Kind> {
+    pub fn kind(&self, key: &str) -> Option<ElementType> {
         match self.0.get(key)? {
             Attribute::Kind(kind) => Some(*kind),
             _ => None,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use opendr_onnx::Kind;
+use opendr_onnx::ElementType;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value as Json;
 
@@ -41,13 +41,13 @@ fn list(json: &Json) -> Option<Attribute> {
 }
 
 /// Returns an element type; `None` for a type that the graphs do not support (strings, complex numbers).
-fn kind(json: &Json) -> Option<Kind> {
+fn kind(json: &Json) -> Option<ElementType> {
     let name = json.as_str().map_or_else(|| json.to_string(), str::to_owned);
     Some(match name.as_str() {
-        "DT_FLOAT" | "DT_HALF" | "DT_DOUBLE" | "1" | "2" | "19" => Kind::Float,
-        "DT_INT32" | "DT_INT64" | "DT_UINT8" | "DT_INT8" | "DT_INT16" | "DT_UINT16" => Kind::Int,
-        "3" | "4" | "5" | "6" | "9" | "17" => Kind::Int,
-        "DT_BOOL" | "10" => Kind::Bool,
+        "DT_FLOAT" | "DT_HALF" | "DT_DOUBLE" | "1" | "2" | "19" => ElementType::Float,
+        "DT_INT32" | "DT_INT64" | "DT_UINT8" | "DT_INT8" | "DT_INT16" | "DT_UINT16" => ElementType::Int,
+        "3" | "4" | "5" | "6" | "9" | "17" => ElementType::Int,
+        "DT_BOOL" | "10" => ElementType::Bool,
         _ => return None,
     })
 }
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(a.text("bytes"), Some("VA"));
         assert_eq!((a.int("n"), a.int("m"), a.float("f")), (Some(-3), Some(4), Some(0.5)));
         assert!(a.flag("b") && !a.flag("missing"));
-        assert_eq!((a.kind("T"), a.kind("U")), (Some(Kind::Int), Some(Kind::Float)));
+        assert_eq!((a.kind("T"), a.kind("U")), (Some(ElementType::Int), Some(ElementType::Float)));
         assert_eq!(a.ints("strides"), [1, 2]);
         assert_eq!(a.texts("ops"), ["BiasAdd", "Relu"]);
         assert_eq!((a.shape("shape"), a.shape("any")), (Some(&[-1, 3][..]), None));

@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use super::model_json::{Node, producer};
 use crate::tensorflow::{Call, ImportOptions, Lowering, Value, input, ops};
-use opendr_onnx::{Array, Kind, Wire};
+use opendr_onnx::{Array, ElementType, Value};
 
 /// The traversal of a TensorFlow graph from its outputs.
 pub struct Trace<'a> {
@@ -116,7 +116,7 @@ impl<'a> Trace<'a> {
             "Const" => {
                 let array = self.weights.get(&node.name);
                 let array = array.ok_or_else(|| Error::format("the manifest has no such weight"))?;
-                Ok(vec![Value::plain(Wire::named_constant(&node.name, array.clone()))])
+                Ok(vec![Value::plain(Value::named_constant(&node.name, array.clone()))])
             }
             "Placeholder" | "PlaceholderWithDefault" => Ok(vec![self.input(node)?]),
             op => {
@@ -135,7 +135,7 @@ impl<'a> Trace<'a> {
             .attr
             .shape("shape")
             .ok_or_else(|| Error::unsupported("an input of unknown rank is not supported"))?;
-        let kind = node.attr.kind("dtype").unwrap_or(Kind::Float);
+        let kind = node.attr.kind("dtype").unwrap_or(ElementType::Float);
         Ok(input(&mut self.lowering, self.options, &node.name, kind, dims))
     }
 }

@@ -1,7 +1,7 @@
 //! Element types of tensors, and decoding of elements.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Data, Kind};
+use opendr_onnx::{Data, ElementType};
 
 use opendr_onnx::float_from_half;
 
@@ -41,11 +41,11 @@ impl Element {
     ///
     /// # Errors
     /// `Unsupported` for strings, complex numbers and 4-bit numbers.
-    pub fn kind(self) -> Result<Kind> {
+    pub fn kind(self) -> Result<ElementType> {
         match self {
-            Self::Float32 | Self::Float16 => Ok(Kind::Float),
-            Self::Int32 | Self::UInt8 | Self::Int64 | Self::Int16 | Self::Int8 => Ok(Kind::Int),
-            Self::Bool => Ok(Kind::Bool),
+            Self::Float32 | Self::Float16 => Ok(ElementType::Float),
+            Self::Int32 | Self::UInt8 | Self::Int64 | Self::Int16 | Self::Int8 => Ok(ElementType::Int),
+            Self::Bool => Ok(ElementType::Bool),
             Self::Other(number) => {
                 Err(Error::unsupported(format!("a tensor has the unsupported element type {number}")))
             }

@@ -1,7 +1,7 @@
 //! Conversion of the operators in order, as far as the outputs need them.
 
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, Operator, Value};
 
 use super::model::{Model, Node};
 use super::names::name;
@@ -19,7 +19,7 @@ pub struct Trace<'m, 'a, 'f> {
     /// Converted tensors.
     values: Vec<Option<Value>>,
     /// Elements of constants in stored form.
-    constants: Vec<Option<Wire>>,
+    constants: Vec<Option<Value>>,
     /// Tensors that are copies of constants.
     same: Vec<Option<usize>>,
 }
@@ -41,7 +41,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         for &index in &model.inputs {
             let tensor = &model.tensors[index];
             let kind = match &tensor.quantisation {
-                Some(_) => Kind::Float,
+                Some(_) => ElementType::Float,
                 None => tensor.element.kind().context(|| format!("reading input {:?}", tensor.name))?,
             };
             let value = input(&mut trace.lowering, options, tensor.port(), kind, &tensor.dims);
@@ -107,7 +107,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
             return Err(Error::format(format!("tensor {:?} is produced twice", tensor.name)));
         }
         let value = match &tensor.quantisation {
-            Some(quantisation) if value.kind() == Kind::Float => {
+            Some(quantisation) if value.kind() == ElementType::Float => {
                 quantisation.rounded(&mut self.lowering, tensor.name, &value)?
             }
             _ => value,
@@ -157,7 +157,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
     }
 
     /// Returns the elements of a constant, with its axes in the given order.
-    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<Wire> {
+    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<Value> {
         let tensor = &self.model.tensors[index];
         if !tensor.is_constant() {
             return Err(Error::format(format!(
@@ -167,7 +167,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         }
         let wire = match &self.constants[index] {
             Some(wire) => wire.clone(),
-            None => Wire::named_constant(tensor.name, tensor.array()?),
+            None => Value::named_constant(tensor.name, tensor.array()?),
         };
         self.constants[index] = Some(wire.clone());
         let stored = match axes.is_sorted() {
@@ -176,7 +176,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
                 let transpose = Operator::new("Transpose").ints("perm", axes.iter().map(|&axis| axis as i64));
                 let dims = axes.iter().map(|&axis| wire.dims()[axis]).collect();
                 let moved = self.lowering.graph.add(tensor.name, transpose, &[&wire], wire.kind(), dims)?;
-                moved.array().cloned().map_or(moved, |array| Wire::named_constant(tensor.name, array))
+                moved.array().cloned().map_or(moved, |array| Value::named_constant(tensor.name, array))
             }
         };
         match &tensor.quantisation {

@@ -1,7 +1,7 @@
 //! Layers of encoder and decoder. Positions are rows: tensors are `[positions, features]`.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Builder, Data, Dim, Kind, Operator, Wire};
+use opendr_onnx::{Array, Builder, Data, Dim, ElementType, Operator, Value};
 
 use super::{HEAD, WhisperWeights};
 
@@ -19,8 +19,8 @@ impl<'a> Layers<'a> {
     }
 
     /// Returns a weight of known shape.
-    pub fn weight(&self, name: &str, dims: &[usize]) -> Result<Wire> {
-        self.array(name, dims).map(|array| Wire::named_constant(name, array))
+    pub fn weight(&self, name: &str, dims: &[usize]) -> Result<Value> {
+        self.array(name, dims).map(|array| Value::named_constant(name, array))
     }
 
     fn array(&self, name: &str, dims: &[usize]) -> Result<Array> {
@@ -34,15 +34,21 @@ impl<'a> Layers<'a> {
     }
 
     /// Adds an operator on floats.
-    pub fn add(&mut self, hint: &str, operator: Operator, inputs: &[&Wire], dims: Vec<Dim>) -> Result<Wire> {
-        self.graph.add(hint, operator, inputs, Kind::Float, dims)
+    pub fn add(
+        &mut self,
+        hint: &str,
+        operator: Operator,
+        inputs: &[&Value],
+        dims: Vec<Dim>,
+    ) -> Result<Value> {
+        self.graph.add(hint, operator, inputs, ElementType::Float, dims)
     }
 
     /// Adds a dense layer; a missing or zero bias is omitted.
-    pub fn linear(&mut self, name: &str, input: &Wire, columns: usize) -> Result<Wire> {
+    pub fn linear(&mut self, name: &str, input: &Value, columns: usize) -> Result<Value> {
         let rows = input.dims().last().copied().flatten().unwrap_or_default();
         let (weight, bias) = (format!("{name}.weight"), format!("{name}.bias"));
-        let matrix = Wire::named_constant(&weight, transposed(&self.array(&weight, &[columns, rows])?)?);
+        let matrix = Value::named_constant(&weight, transposed(&self.array(&weight, &[columns, rows])?)?);
         let dims = with_last(input.dims(), columns);
         let product = self.add(name, Operator::new("MatMul"), &[input, &matrix], dims.clone())?;
         if !self.weights.has(&bias) {
@@ -53,10 +59,10 @@ impl<'a> Layers<'a> {
         if array.as_floats().is_some_and(|values| values.iter().all(|value| *value == 0.0)) {
             return Ok(product);
         }
-        self.add(name, Operator::new("Add"), &[&product, &Wire::named_constant(&bias, array)], dims)
+        self.add(name, Operator::new("Add"), &[&product, &Value::named_constant(&bias, array)], dims)
     }
 
-    pub fn norm(&mut self, name: &str, input: &Wire) -> Result<Wire> {
+    pub fn norm(&mut self, name: &str, input: &Value) -> Result<Value> {
         let scale = self.weight(&format!("{name}.weight"), &[self.width])?;
         let bias = self.weight(&format!("{name}.bias"), &[self.width])?;
         let operator = Operator::new("LayerNormalization").int("axis", -1).float("epsilon", 1e-5);
@@ -64,22 +70,22 @@ impl<'a> Layers<'a> {
     }
 
     /// Adds the activation x / 2 (1 + erf(x / sqrt 2)), in the order of operations that runtimes recognise and fuse.
-    pub fn gelu(&mut self, input: &Wire) -> Result<Wire> {
+    pub fn gelu(&mut self, input: &Value) -> Result<Value> {
         let dims = input.dims().to_vec();
-        let scaled = Wire::scalar(std::f32::consts::SQRT_2);
+        let scaled = Value::scalar(std::f32::consts::SQRT_2);
         let scaled = self.add("gelu", Operator::new("Div"), &[input, &scaled], dims.clone())?;
         let erf = self.add("gelu", Operator::new("Erf"), &[&scaled], dims.clone())?;
-        let sum = self.add("gelu", Operator::new("Add"), &[&erf, &Wire::scalar(1.0)], dims.clone())?;
+        let sum = self.add("gelu", Operator::new("Add"), &[&erf, &Value::scalar(1.0)], dims.clone())?;
         let product = self.add("gelu", Operator::new("Mul"), &[input, &sum], dims.clone())?;
-        self.add("gelu", Operator::new("Mul"), &[&product, &Wire::scalar(0.5)], dims)
+        self.add("gelu", Operator::new("Mul"), &[&product, &Value::scalar(0.5)], dims)
     }
 
-    pub fn sum(&mut self, a: &Wire, b: &Wire) -> Result<Wire> {
+    pub fn sum(&mut self, a: &Value, b: &Value) -> Result<Value> {
         self.add("sum", Operator::new("Add"), &[a, b], a.dims().to_vec())
     }
 
     /// Adds the block's feed-forward network with its residual connection.
-    pub fn dense(&mut self, block: &str, input: &Wire) -> Result<Wire> {
+    pub fn dense(&mut self, block: &str, input: &Value) -> Result<Value> {
         let hidden = self.norm(&format!("{block}.final_layer_norm"), input)?;
         let hidden = self.linear(&format!("{block}.fc1"), &hidden, self.inner)?;
         let hidden = self.gelu(&hidden)?;
@@ -88,9 +94,9 @@ impl<'a> Layers<'a> {
     }
 
     /// Splits positions by heads: `[heads, positions, HEAD]`, or transposed for keys, `[heads, HEAD, positions]`.
-    pub fn heads(&mut self, input: &Wire, transpose: bool) -> Result<Wire> {
+    pub fn heads(&mut self, input: &Value, transpose: bool) -> Result<Value> {
         let (places, heads) = (input.dims().first().copied().flatten(), self.width / HEAD);
-        let shape = Wire::ints([-1, heads as i64, HEAD as i64]);
+        let shape = Value::ints([-1, heads as i64, HEAD as i64]);
         let parted = vec![places, Some(heads), Some(HEAD)];
         let parted = self.add("heads", Operator::new("Reshape"), &[input, &shape], parted)?;
         let (order, dims) = match transpose {
@@ -104,14 +110,14 @@ impl<'a> Layers<'a> {
     /// to the scores.
     pub fn attend(
         &mut self,
-        queries: &Wire,
-        keys: &Wire,
-        values: &Wire,
-        mask: Option<&Wire>,
-    ) -> Result<Wire> {
+        queries: &Value,
+        keys: &Value,
+        values: &Value,
+        mask: Option<&Value>,
+    ) -> Result<Value> {
         let places = queries.dims().first().copied().flatten();
         let heads = Some(self.width / HEAD);
-        let scale = Wire::scalar((HEAD as f32).powf(-0.5));
+        let scale = Value::scalar((HEAD as f32).powf(-0.5));
         let queries =
             self.add("queries", Operator::new("Mul"), &[queries, &scale], queries.dims().to_vec())?;
         let queries = self.heads(&queries, false)?;
@@ -126,7 +132,7 @@ impl<'a> Layers<'a> {
         let found = self.add("found", Operator::new("MatMul"), &[&weights, values], dims)?;
         let order = Operator::new("Transpose").ints("perm", [1, 0, 2]);
         let found = self.add("found", order, &[&found], vec![places, heads, Some(HEAD)])?;
-        let shape = Wire::ints([-1, self.width as i64]);
+        let shape = Value::ints([-1, self.width as i64]);
         self.add("found", Operator::new("Reshape"), &[&found, &shape], vec![places, Some(self.width)])
     }
 }

@@ -66,7 +66,7 @@ pub fn onnx_from_whisper(weights: &dyn WhisperWeights) -> Result<WhisperOnnx> {
 fn bytes(mut graph: GraphProto, weights: &dyn WhisperWeights) -> Vec<u8> {
     passes::remove_identities(&mut graph);
     if weights.is_half() {
-        passes::halve_weights(&mut graph);
+        passes::weights_to_fp16(&mut graph);
     }
     bytes_from_model(&model_from_graph(graph))
 }

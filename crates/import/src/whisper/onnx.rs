@@ -159,7 +159,7 @@ impl WhisperWeights for Weights {
             Ok(DataType::Float16) => {
                 let dims: Option<Vec<usize>> =
                     tensor.dims.iter().map(|dim| usize::try_from(*dim).ok()).collect();
-                dims.and_then(|dims| Array::new(dims, Data::Float(FloatType::F16.numbers(&tensor.raw_data))))
+                dims.and_then(|dims| Array::new(dims, Data::Float(FloatType::F16.decode(&tensor.raw_data))))
             }
             _ => Array::from_tensor(tensor),
         };

@@ -147,7 +147,7 @@ fn too_old(version: &str, path: &Path) -> Error {
     Error::unsupported(format!(
         "ONNX Runtime {version} at {} is older than {}; update it or run \"opendr runtime install\"",
         path.display(),
-        OnnxRuntime::OLDEST
+        OnnxRuntime::MIN_VERSION
     ))
 }
 

@@ -93,7 +93,7 @@ impl OnnxRuntime {
     }
 
     /// Oldest supported version.
-    pub const OLDEST: &str = "1.23";
+    pub const MIN_VERSION: &str = "1.23";
 
     /// Returns whether a version, e.g. `"1.31.1"`, is supported.
     pub fn is_supported(version: &str) -> bool {
@@ -117,7 +117,7 @@ impl OnnxRuntime {
     }
 
     /// Makes the next [`OnnxRuntime::find`] search again if none was found so far, e.g. after an installation.
-    pub fn search_again() {
+    pub fn reset_search() {
         let mut search = SEARCH.lock().unwrap_or_else(PoisonError::into_inner);
         search.done = search.found.is_some();
         search.skipped.clear();
@@ -193,7 +193,9 @@ impl Runtime for OnnxRuntime {
     }
 
     fn version(&self) -> String {
-        self.0.version.map_or_else(|| format!("{} or later", Self::OLDEST), |version| version.to_string())
+        self.0
+            .version
+            .map_or_else(|| format!("{} or later", Self::MIN_VERSION), |version| version.to_string())
     }
 
     fn devices(&self) -> Vec<Device> {

@@ -10,4 +10,4 @@ mod session;
 mod test_data;
 
 #[global_allocator]
-static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;
+static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;

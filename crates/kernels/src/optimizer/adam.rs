@@ -24,7 +24,7 @@ pub struct AdamOptions {
     /// Term in the denominator that keeps a step finite where gradients vanish.
     pub epsilon: f32,
     /// Weight decay.
-    pub decay: WeightDecay,
+    pub weight_decay: WeightDecay,
 }
 
 /// Weight decay.
@@ -33,14 +33,14 @@ pub enum WeightDecay {
     /// No weight decay.
     None,
     /// Added to the gradient, times the parameter, as in PyTorch's `Adam`.
-    Gradient(f32),
+    L2(f32),
     /// Subtracted from the parameter, times the parameter and the learning rate: `AdamW`.
     Decoupled(f32),
 }
 
 impl Default for AdamOptions {
     fn default() -> Self {
-        Self { betas: [0.9, 0.999], epsilon: 1e-8, decay: WeightDecay::None }
+        Self { betas: [0.9, 0.999], epsilon: 1e-8, weight_decay: WeightDecay::None }
     }
 }
 
@@ -72,9 +72,9 @@ impl AdamOptions {
     fn update(&self, rate: f32, step: u64) -> Update {
         let power = i32::try_from(step).unwrap_or(i32::MAX);
         let [first, second] = self.betas.map(|beta| 1.0 - beta.powi(power));
-        let (added, kept) = match self.decay {
+        let (added, kept) = match self.weight_decay {
             WeightDecay::None => (0.0, 1.0),
-            WeightDecay::Gradient(decay) => (decay, 1.0),
+            WeightDecay::L2(decay) => (decay, 1.0),
             WeightDecay::Decoupled(decay) => (0.0, 1.0 - rate * decay),
         };
         Update {
@@ -191,9 +191,9 @@ mod tests {
     fn reference(options: AdamOptions, rate: f64, p: &mut f64, state: &mut [f64; 2], g: f64, t: i32) {
         let [beta1, beta2] = options.betas;
         let mut g = g;
-        match options.decay {
+        match options.weight_decay {
             WeightDecay::None => (),
-            WeightDecay::Gradient(decay) => g += f64::from(decay) * *p,
+            WeightDecay::L2(decay) => g += f64::from(decay) * *p,
             WeightDecay::Decoupled(decay) => *p *= 1.0 - rate * f64::from(decay),
         }
         state[0] = beta1 * state[0] + (1.0 - beta1) * g;
@@ -205,8 +205,8 @@ mod tests {
     #[test]
     fn equals_the_rule_in_double_precision() {
         let count = 37;
-        for decay in [WeightDecay::None, WeightDecay::Gradient(0.1), WeightDecay::Decoupled(0.1)] {
-            let options = AdamOptions { decay, epsilon: 1e-5, ..AdamOptions::default() };
+        for decay in [WeightDecay::None, WeightDecay::L2(0.1), WeightDecay::Decoupled(0.1)] {
+            let options = AdamOptions { weight_decay: decay, epsilon: 1e-5, ..AdamOptions::default() };
             for isa in Isa::available() {
                 let compute = Compute::new(isa, Arc::new(WorkerPool::new(1)));
                 let mut adam = Adam::new(count, options);

@@ -3,7 +3,7 @@
 ///
 /// # Panics
 /// When the lengths differ.
-pub fn move_towards(target: &mut [f32], source: &[f32], rate: f32) {
+pub fn polyak_update(target: &mut [f32], source: &[f32], rate: f32) {
     assert_eq!(target.len(), source.len(), "`target` and `source` must have equal lengths");
     let kept = 1.0 - rate;
     for (target, &source) in target.iter_mut().zip(source) {
@@ -18,9 +18,9 @@ mod tests {
     #[test]
     fn interpolates_by_the_rate() {
         let mut target = [0.0, 4.0];
-        move_towards(&mut target, &[1.0, 0.0], 0.25);
+        polyak_update(&mut target, &[1.0, 0.0], 0.25);
         assert_eq!(target, [0.25, 3.0]);
-        move_towards(&mut target, &[1.5, -7.0], 1.0);
+        polyak_update(&mut target, &[1.5, -7.0], 1.0);
         assert_eq!(target, [1.5, -7.0]);
     }
 }

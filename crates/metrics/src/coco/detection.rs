@@ -8,7 +8,7 @@ use super::accumulator::Accumulator;
 use super::decimal::f64_box;
 use super::list_accumulator::ListAccumulator;
 use super::matching::{Detection, Truth};
-use super::overlap::{box_overlap, check_box};
+use super::overlap::{box_iou, check_box};
 use super::protocol::Protocol;
 use crate::{Metric, Report};
 
@@ -36,7 +36,7 @@ impl Metric for CocoDetection {
     const NAME: &'static str = "coco_detection";
     const ABOUT: &'static str = "average precision and recall of boxes, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;
     type Truth = BoundingBoxList;
@@ -55,7 +55,7 @@ impl Metric for CocoDetection {
         let to_truth = |(object, bounds): (&BoundingBox, &[f64; 4])| truth_of(object, bounds[2] * bounds[3]);
         let truths: Vec<_> = truth.boxes.iter().zip(&annotated).map(to_truth).collect();
         let overlap =
-            |detection: &[f64; 4], truth: &[f64; 4], crowd: bool| Ok(box_overlap(*detection, *truth, crowd));
+            |detection: &[f64; 4], truth: &[f64; 4], crowd: bool| Ok(box_iou(*detection, *truth, crowd));
         let lists = [prediction, truth];
         self.lists.add(image_index(at)?, lists, [&detected, &annotated], &detections, &truths, overlap)
     }

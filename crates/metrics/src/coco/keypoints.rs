@@ -35,7 +35,7 @@ impl Metric for CocoKeypoints {
     const NAME: &'static str = "coco_keypoints";
     const ABOUT: &'static str = "average precision and recall of persons by their keypoints, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = CocoKeypointsParams;
     type Prediction = PoseList;
     type Truth = PoseList;
@@ -68,7 +68,7 @@ impl Metric for CocoKeypoints {
 fn joints(pose: &Pose) -> ([[f64; 2]; JOINTS], [bool; JOINTS]) {
     let (mut positions, mut is_detected) = ([[0.0; 2]; JOINTS], [false; JOINTS]);
     for (at, name) in Skeleton::Coco17.joints().iter().enumerate().take(JOINTS) {
-        if let Some(keypoint) = pose.keypoint(name).filter(|keypoint| keypoint.is_found()) {
+        if let Some(keypoint) = pose.keypoint(name).filter(|keypoint| keypoint.is_detected()) {
             positions[at] = [keypoint.x, keypoint.y].map(f64_from_f32);
             is_detected[at] = true;
         }

@@ -24,7 +24,7 @@ pub use accumulator::Accumulator;
 pub use detection::{CocoDetection, CocoDetectionParams};
 pub use keypoints::{CocoKeypoints, CocoKeypointsParams};
 pub use matching::{Detection, Truth};
-pub use overlap::{JOINTS, Mask, Person, box_overlap, keypoint_similarity};
+pub use overlap::{JOINTS, Mask, Person, box_iou, keypoint_similarity};
 pub use protocol::{AreaRange, Protocol, RECALLS, THRESHOLDS, recalls, thresholds};
 pub use segmentation::CocoSegmentation;
 pub use summary::Outcome;

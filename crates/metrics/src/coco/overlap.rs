@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 
 /// Returns the intersection over union of boxes `[left, top, width, height]`; for a crowd the intersection over the area
 /// of the detection.
-pub fn box_overlap(detection: [f64; 4], truth: [f64; 4], crowd: bool) -> f64 {
+pub fn box_iou(detection: [f64; 4], truth: [f64; 4], crowd: bool) -> f64 {
     let [left, top, wide, high] = detection;
     let [x, y, width, height] = truth;
     let across = (left + wide).min(x + width) - left.max(x);
@@ -35,7 +35,7 @@ impl Mask {
     ///
     /// # Errors
     /// Returns `InvalidInput` for masks of different sizes.
-    pub fn overlap(&self, truth: &Self, crowd: bool) -> Result<f64> {
+    pub fn iou(&self, truth: &Self, crowd: bool) -> Result<f64> {
         let [(left, right), (top, bottom)] = [0, 1].map(|axis| {
             let end = |mask: &Self| mask.extent[axis] + mask.extent[axis + 2];
             (self.extent[axis].max(truth.extent[axis]), end(self).min(end(truth)))

@@ -25,7 +25,7 @@ impl Metric for CocoSegmentation {
     const NAME: &'static str = "coco_segmentation";
     const ABOUT: &'static str = "average precision and recall of masks, as pycocotools";
     const NUMBERS: &'static [(&'static str, &'static str)] = super::summary::NUMBERS;
-    const RANKS: bool = true;
+    const IS_RANKING: bool = true;
     type Params = CocoDetectionParams;
     type Prediction = BoundingBoxList;
     type Truth = BoundingBoxList;
@@ -49,7 +49,7 @@ impl Metric for CocoSegmentation {
         let truths: Vec<_> = objects.map(|(object, mask)| truth_of(object, mask.area() as f64)).collect();
         let lists = [prediction, truth];
         let at = image_index(at)?;
-        self.lists.add(at, lists, [&detected, &annotated], &detections, &truths, Mask::overlap)
+        self.lists.add(at, lists, [&detected, &annotated], &detections, &truths, Mask::iou)
     }
 
     fn merge(&mut self, other: Self) {

@@ -18,7 +18,7 @@ fn count(
         |(bounds, score): &([f64; 4], f64)| Detection { score: *score, area: bounds[2] * bounds[3] };
     let detections: Vec<_> = detected.iter().map(detection).collect();
     let overlap = |detection: usize, truth: usize| {
-        Ok(box_overlap(detected[detection].0, annotated[truth].0, annotated[truth].2))
+        Ok(box_iou(detected[detection].0, annotated[truth].0, annotated[truth].2))
     };
     accumulator.add(&class, at, &truths, &detections, overlap).unwrap()
 }

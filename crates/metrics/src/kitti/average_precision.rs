@@ -16,7 +16,7 @@ pub struct KittiScore {
     /// Difficulty of the ground truth.
     pub difficulty: KittiDifficulty,
     /// Limit of the overlap: matching boxes overlap by more.
-    pub least_overlap: f64,
+    pub overlap_threshold: f64,
     /// Whether that is the lower one of the two common limits.
     pub is_loose: bool,
     /// Highest precision at recall 0, 1/40 to 1 or above.
@@ -75,7 +75,7 @@ pub(super) fn curves(frames: &[&Frame], rules: &Rules, with_orientation: bool) -
         class,
         overlap,
         difficulty,
-        least_overlap: rules.least_overlap(),
+        overlap_threshold: rules.least_overlap(),
         is_loose,
         precision: running_maximum(precision),
         orientation: (with_orientation && overlap == KittiOverlap::Image)

@@ -4,7 +4,7 @@ use opendr_engine::{Error, Result};
 
 use super::object::KittiObject;
 use super::rules::{KittiOverlap, ObjectKind, Role, Rules, SMALLEST_LEAST_OVERLAP, Traits};
-use crate::{StandingBox, image_cover, image_overlap};
+use crate::{UprightBox3D, box_ioa, box_iou};
 
 /// Maximum number of boxes per image, which bounds the memory of their overlaps.
 const MOST_BOXES: usize = 1024;
@@ -76,22 +76,22 @@ impl Frame {
     }
 
     fn fill_overlaps(&mut self, found: &[KittiObject], truth: &[KittiObject]) {
-        let boxes: Vec<StandingBox> = found.iter().map(KittiObject::standing_box).collect();
+        let boxes: Vec<UprightBox3D> = found.iter().map(KittiObject::upright_box).collect();
         let mut best_of_truth = vec![0.0f64; truth.len()];
         let mut best_of_found = vec![0.0f64; found.len()];
         for (row, object) in truth.iter().enumerate() {
             if matches!(self.truth[row].traits.kind, ObjectKind::Other | ObjectKind::DontCare) {
                 continue;
             }
-            let upright = object.standing_box();
+            let upright = object.upright_box();
             for (column, other) in found.iter().enumerate() {
-                let shared = upright.floor.shared_area(&boxes[column].floor);
-                let on_ground = match upright.floor.area() + boxes[column].floor.area() - shared {
+                let shared = upright.base.intersection_area(&boxes[column].base);
+                let on_ground = match upright.base.area() + boxes[column].base.area() - shared {
                     union if shared > 0.0 => shared / union,
                     _ => 0.0,
                 };
-                let in_space = upright.overlap_with_shared_floor(&boxes[column], shared);
-                let overlaps = [image_overlap(object.in_image, other.in_image), on_ground, in_space];
+                let in_space = upright.iou_with_base_intersection(&boxes[column], shared);
+                let overlaps = [box_iou(object.bbox2d, other.bbox2d), on_ground, in_space];
                 for (candidates, overlap) in self.candidates.iter_mut().zip(overlaps) {
                     if overlap > SMALLEST_LEAST_OVERLAP {
                         candidates.push(Candidate { truth: row as u32, found: column as u32, overlap });
@@ -202,7 +202,7 @@ impl Frame {
 
 fn found_from_object(object: &KittiObject, truth: &[KittiObject]) -> Found {
     let regions = truth.iter().filter(|other| other.kind() == ObjectKind::DontCare);
-    let covers = regions.map(|region| image_cover(object.in_image, region.in_image));
+    let covers = regions.map(|region| box_ioa(object.bbox2d, region.bbox2d));
     Found {
         traits: object.into(),
         score: object.score,

@@ -4,7 +4,7 @@ use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Name};
 use opendr_engine::{Error, Result};
 
 use super::rules::{ObjectKind, Traits};
-use crate::StandingBox;
+use crate::UprightBox3D;
 
 /// A ground-truth or predicted object.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,7 +18,7 @@ pub struct KittiObject {
     /// Observation angle in radians; -10 if unknown.
     pub alpha: f64,
     /// Corners `[x0, y0, x1, y1]` in the image, in pixels.
-    pub in_image: [f64; 4],
+    pub bbox2d: [f64; 4],
     /// Length, height and width in metres.
     pub dimensions: [f64; 3],
     /// Center of the base in the camera frame, in metres.
@@ -31,8 +31,8 @@ pub struct KittiObject {
 
 impl KittiObject {
     /// Returns the 3D box.
-    pub fn standing_box(&self) -> StandingBox {
-        StandingBox::in_camera(self.dimensions, self.location, self.rotation_y)
+    pub fn upright_box(&self) -> UprightBox3D {
+        UprightBox3D::from_kitti(self.dimensions, self.location, self.rotation_y)
     }
 
     pub(super) fn kind(&self) -> ObjectKind {
@@ -41,12 +41,12 @@ impl KittiObject {
 
     /// Returns the height in the image, in pixels.
     pub(super) fn height_in_image(&self) -> f64 {
-        self.in_image[3] - self.in_image[1]
+        self.bbox2d[3] - self.bbox2d[1]
     }
 
     pub(super) fn check(&self) -> Result<()> {
         let numbers = [self.truncated, self.alpha, self.rotation_y, self.score].into_iter();
-        let places = self.in_image.into_iter().chain(self.dimensions).chain(self.location);
+        let places = self.bbox2d.into_iter().chain(self.dimensions).chain(self.location);
         if numbers.chain(places).all(f64::is_finite) {
             return Ok(());
         }
@@ -89,7 +89,7 @@ fn object_from_box(found: &BoundingBox3D, list: &BoundingBox3DList) -> Result<Ki
         truncated: as_written(found.truncated),
         occluded: found.occluded,
         alpha: as_written(found.alpha),
-        in_image: found.bbox2d.map(as_written),
+        bbox2d: found.bbox2d.map(as_written),
         dimensions: found.dimensions.map(as_written),
         location: found.location.map(as_written),
         rotation_y: as_written(found.rotation_y),

@@ -11,7 +11,7 @@ fn car(x: f64, score: f64) -> KittiObject {
         truncated: 0.0,
         occluded: 0,
         alpha: 0.0,
-        in_image: [20.0 * x, 100.0, 20.0 * x + 80.0, 160.0],
+        bbox2d: [20.0 * x, 100.0, 20.0 * x + 80.0, 160.0],
         dimensions: [4.0, 1.5, 2.0],
         location: [x, 1.6, 20.0],
         rotation_y: 0.0,
@@ -83,11 +83,11 @@ fn overlap_of_rotated_cars() {
     let long = (2.0 - (1.0 - c) / s).powi(2) * turn.tan() / 2.0;
     let shared = 8.0 - 2.0 * (short + long);
     let rotated = KittiObject { rotation_y: turn, ..car(0.0, 0.9) };
-    let (floor, other) = (rotated.standing_box(), car(0.0, 0.0).standing_box());
+    let (floor, other) = (rotated.upright_box(), car(0.0, 0.0).upright_box());
     let overlap = shared / (16.0 - shared);
-    assert!((floor.overlap(&other) - overlap).abs() < 1e-12, "{} is not {overlap}", floor.overlap(&other));
+    assert!((floor.iou(&other) - overlap).abs() < 1e-12, "{} is not {overlap}", floor.iou(&other));
     // The development kit's front of a car: x = cos(rotation_y), z = -sin(rotation_y).
-    let (sin, cos) = floor.floor.angle.sin_cos();
+    let (sin, cos) = floor.base.angle.sin_cos();
     assert!((cos - c).abs() < 1e-12 && (sin + s).abs() < 1e-12);
 }
 
@@ -95,7 +95,7 @@ fn overlap_of_rotated_cars() {
 fn difficulty_selects_ground_truth() {
     let hidden = KittiObject { occluded: 1, ..car(10.0, 0.0) };
     let cut = KittiObject { truncated: 0.5, ..car(20.0, 0.0) };
-    let low = KittiObject { in_image: [600.0, 100.0, 680.0, 125.0], ..car(30.0, 0.0) };
+    let low = KittiObject { bbox2d: [600.0, 100.0, 680.0, 125.0], ..car(30.0, 0.0) };
     let truth = vec![car(0.0, 0.0), hidden, cut, low];
     let found = truth.iter().cloned().map(|object| KittiObject { score: 0.5, ..object }).collect::<Vec<_>>();
     // Predictions of ignored objects are not false positives; missing them does not count either.
@@ -151,7 +151,7 @@ fn decimals_of_the_file_are_compared_with_the_limits() {
         ..BoundingBox3D::default()
     };
     let [object] = object::objects_from_list(&vec![found].into()).unwrap().try_into().unwrap();
-    assert_eq!((object.truncated, object.in_image[1]), (0.15, 187.13));
+    assert_eq!((object.truncated, object.bbox2d[1]), (0.15, 187.13));
     let truth = vec![object];
     assert!(score_of(&[(vec![], truth)], KittiOverlap::Image, KittiDifficulty::Easy).is_none());
 }

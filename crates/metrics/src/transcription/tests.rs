@@ -36,10 +36,10 @@ fn empty_texts() {
 
 #[test]
 fn words_are_separated_as_by_jiwer() {
-    assert_eq!(words_of_text("one two"), ["one", "two"]);
-    assert_eq!(words_of_text("one\ttwo \tthree\n\nfour"), ["one\ttwo", "three", "four"]);
-    assert_eq!(words_of_text(" one \u{a0} two "), ["one", "two"]);
-    assert!(words_of_text("").is_empty());
+    assert_eq!(split_words("one two"), ["one", "two"]);
+    assert_eq!(split_words("one\ttwo \tthree\n\nfour"), ["one\ttwo", "three", "four"]);
+    assert_eq!(split_words(" one \u{a0} two "), ["one", "two"]);
+    assert!(split_words("").is_empty());
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn fold_one(graph: &mut Rewriter, conv: usize) -> Option<()> {
     let dims = graph.constant_dims(&weights)?;
     let layout = Layout::from_node(node, &dims)?;
     let (rank, filters) = (dims.len(), layout.filters);
-    let affordable = graph.affords(element_count(&dims)?.checked_add(filters)?);
+    let affordable = graph.can_add_constant(element_count(&dims)?.checked_add(filters)?);
     following(graph, conv).filter(|_| affordable)?;
     let shift = match bias {
         Some(name) => vector(graph, &name, filters)?,

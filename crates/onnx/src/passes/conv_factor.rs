@@ -33,7 +33,7 @@ fn fold_one(graph: &mut Rewriter, product: usize) -> Option<()> {
     let sizes =
         convs.iter().map(|&conv| element_count(&graph.constant_dims(graph.node(conv)?.input.get(1)?)?));
     let total = sizes.sum::<Option<usize>>()?;
-    if !graph.affords(total) {
+    if !graph.can_add_constant(total) {
         return None;
     }
     for &conv in &convs {

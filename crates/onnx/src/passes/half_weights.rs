@@ -17,7 +17,7 @@ const LEAST_ELEMENTS: usize = 128;
 const LARGEST: f32 = 65504.0;
 
 /// Stores the float weights as `float16`; returns the number of converted tensors.
-pub fn halve_weights(graph: &mut GraphProto) -> usize {
+pub fn weights_to_fp16(graph: &mut GraphProto) -> usize {
     let inputs: HashSet<String> = graph.input.iter().map(|input| input.name.clone()).collect();
     let mut casts = Vec::new();
     for tensor in &mut graph.initializer {
@@ -66,7 +66,7 @@ mod tests {
             ],
             ..GraphProto::default()
         };
-        assert_eq!(halve_weights(&mut graph), 1);
+        assert_eq!(weights_to_fp16(&mut graph), 1);
         let [cast] = graph.node.as_slice() else { panic!("{:?}", graph.node) };
         assert_eq!((cast.input[0].as_str(), cast.output[0].as_str()), ("weights/half", "weights"));
         assert_eq!(graph.initializer[0].raw_data, [0x00, 0x34].repeat(LEAST_ELEMENTS));

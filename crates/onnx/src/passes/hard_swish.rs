@@ -21,9 +21,9 @@ pub fn fuse_hard_swish(graph: &mut GraphProto) {
 fn fuse_sigmoid(graph: &mut Rewriter, product: usize) -> Option<()> {
     let node = graph.node_of(product, "Mul")?;
     let [a, b] = node.input.as_slice() else { return None };
-    let (x, sigmoid) = match graph.made_by(b, "HardSigmoid") {
+    let (x, sigmoid) = match graph.producer(b, "HardSigmoid") {
         Some(sigmoid) => (a.clone(), sigmoid),
-        None => (b.clone(), graph.made_by(a, "HardSigmoid")?),
+        None => (b.clone(), graph.producer(a, "HardSigmoid")?),
     };
     let node = graph.node(sigmoid)?;
     let number = |key: &str| node.find(key).map(|attribute| attribute.f);
@@ -39,13 +39,13 @@ fn fuse_sigmoid(graph: &mut Rewriter, product: usize) -> Option<()> {
 fn fuse_one(graph: &mut Rewriter, product: usize) -> Option<()> {
     let node = graph.node_of(product, "Mul")?;
     let [a, b] = node.input.as_slice() else { return None };
-    let (scaled, clipped) = match graph.made_by(b, "Clip") {
+    let (scaled, clipped) = match graph.producer(b, "Clip") {
         Some(_) => (a, b),
         None => (b, a),
     };
-    let (scaled, clip) = (graph.made_by(scaled, "Mul")?, graph.made_by(clipped, "Clip")?);
+    let (scaled, clip) = (graph.producer(scaled, "Mul")?, graph.producer(clipped, "Clip")?);
     let [shifted, low, high] = graph.node(clip)?.input.as_slice() else { return None };
-    let shift = graph.made_by(shifted, "Add")?;
+    let shift = graph.producer(shifted, "Add")?;
     let (x, factor) = with_scalar(graph, scaled)?;
     let (same, offset) = with_scalar(graph, shift)?;
     let bounds = (graph.scalar(low)?, graph.scalar(high)?);

@@ -17,7 +17,7 @@ pub use constants::constants_to_initializers;
 pub use conv_affine::fold_affine_into_conv;
 pub use conv_factor::fold_factor_into_conv;
 pub use dead_nodes::remove_dead_nodes;
-pub use half_weights::halve_weights;
+pub use half_weights::weights_to_fp16;
 pub use hard_swish::fuse_hard_swish;
 pub use identity::remove_identities;
 pub use pad::fold_padding;

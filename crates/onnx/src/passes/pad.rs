@@ -21,7 +21,7 @@ fn fold_one(graph: &mut Rewriter, reader: usize, op: &str) -> Option<()> {
     }
     let kernel = node.ints("kernel_shape")?.to_vec();
     let own = node.ints("pads").map_or_else(|| vec![0; 2 * kernel.len()], <[i64]>::to_vec);
-    let pad = graph.node(graph.made_by(node.input.first()?, "Pad")?)?;
+    let pad = graph.node(graph.producer(node.input.first()?, "Pad")?)?;
     let source = pad.input.first()?.clone();
     let outer = outer_pads(graph, pad, op)?;
     if outer.len() != own.len() || own.iter().any(|&pad| pad < 0) {

@@ -58,7 +58,7 @@ impl<'a> Rewriter<'a> {
     }
 
     /// Returns the operator `op` that produces a tensor.
-    pub fn made_by(&self, tensor: &str, op: &str) -> Option<usize> {
+    pub fn producer(&self, tensor: &str, op: &str) -> Option<usize> {
         let index = *self.producers.get(tensor)?;
         self.node_of(index, op).map(|_| index)
     }
@@ -85,7 +85,7 @@ impl<'a> Rewriter<'a> {
 
     /// Returns whether a constant of that many elements may be added. Otherwise a graph whose nodes share large
     /// constants could grow without bound when each node gets its own copy.
-    pub fn affords(&self, elements: usize) -> bool {
+    pub fn can_add_constant(&self, elements: usize) -> bool {
         elements <= self.budget
     }
 

@@ -7,7 +7,7 @@ use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::{Error, Progress, Result, Statistics};
 
 use super::{FitOptions, Fitted, check_fit, finish, run_folder};
-use crate::trained_in;
+use crate::training_environment;
 
 /// Environments in which a policy is trained and evaluated.
 #[derive(Clone, Copy)]
@@ -26,7 +26,7 @@ pub struct FitEnvironments<'a> {
 /// `Unsupported` when the learner does not train in environments; `InvalidParam` for a wrong parameter or an option of
 /// data sets; `InvalidInput` when the output folder is not empty, or the policy has other spaces; `Io`; those of the
 /// environment, with the step.
-pub fn fit_in(
+pub fn fit_policy(
     learner: &mut dyn AnyLearner,
     entry: &'static Entry,
     environments: FitEnvironments<'_>,
@@ -61,7 +61,7 @@ pub fn fit_in(
     };
     let fitted = Fitted {
         learner: entry.spec.name.to_owned(),
-        environment: Some(trained_in(learner).unwrap_or_default().to_owned()),
+        environment: Some(training_environment(learner).unwrap_or_default().to_owned()),
         dataset: String::new(),
         samples: 0,
         complete: !progress.stopped(),

@@ -14,13 +14,13 @@ use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset};
 use opendr_engine::learner::{AnyLearner, Entry, FitJob};
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Device, Error, Progress, Result, Statistics};
-use opendr_evaluation::{Lesson, Teacher};
+use opendr_evaluation::{Distillation, Teacher};
 use opendr_inference as inference;
 
 pub use fitted::Fitted;
-pub use in_environment::{FitEnvironments, fit_in};
+pub use in_environment::{FitEnvironments, fit_policy};
 pub use options::FitOptions;
-pub use samples::{Opening, Samples};
+pub use samples::{DatasetOpener, Samples};
 
 use crate::{learner_with, registry};
 use samples::{annotation_type, limited};
@@ -135,15 +135,15 @@ struct Preparation<'a> {
 }
 
 impl Preparation<'_> {
-    fn opening(&self, annotated: bool) -> Opening<'_> {
-        Opening { entry: self.entry, annotated, problems: self.problems, progress: self.progress }
+    fn opening(&self, annotated: bool) -> DatasetOpener<'_> {
+        DatasetOpener { entry: self.entry, annotated, problems: self.problems, progress: self.progress }
     }
 
     /// Opens the validation samples: `val`, else the validation split of the training data, if one is named.
     fn val<'d>(&self, val: Option<DatasetRef<'d>>, dataset: DatasetRef<'d>) -> Result<Option<Samples<'d>>> {
         let split = self.options.val_split.as_deref();
         let val = val.or(split.is_some().then_some(dataset));
-        val.map(|val| self.opening(true).to_measure(val, split)).transpose()
+        val.map(|val| self.opening(true).open_validation(val, split)).transpose()
     }
 
     /// Returns the name of the data set and its samples, annotated by the teacher if there is one.
@@ -165,12 +165,13 @@ impl Preparation<'_> {
             DatasetRef::Iterator(_) => String::new(),
         };
         let name = self.options.name.clone().unwrap_or(path);
-        let samples = self.opening(teacher.is_none()).to_train(dataset, self.options.split.as_deref())?;
+        let samples =
+            self.opening(teacher.is_none()).open_training(dataset, self.options.split.as_deref())?;
         let mut samples = limited(samples, self.options.limit);
         run_folder::make(self.output)?;
         self.progress.note(&format!("output: {}", self.output.display()));
         if let Some(teacher) = teacher {
-            samples = Box::new(self.lesson(name.clone())?.teach(teacher, samples)?);
+            samples = Box::new(self.lesson(name.clone())?.label(teacher, samples)?);
         }
         if samples.is_empty() && !self.progress.stopped() {
             return Err(Error::invalid_input(format!(
@@ -180,10 +181,10 @@ impl Preparation<'_> {
         Ok((name, samples))
     }
 
-    fn lesson(&self, dataset: String) -> Result<Lesson<'_>> {
-        Ok(Lesson {
+    fn lesson(&self, dataset: String) -> Result<Distillation<'_>> {
+        Ok(Distillation {
             dataset,
-            wanted: annotation_type(self.entry)
+            annotation_type: annotation_type(self.entry)
                 .ok_or_else(|| Error::internal("a learner without outputs"))?,
             threshold: self.options.teacher_threshold.unwrap_or(TEACHER_THRESHOLD),
             classes: self.options.teacher_classes.iter().cloned().collect(),

@@ -1,6 +1,6 @@
 //! Opening of training and validation samples.
 
-use opendr_datasets::{FormatEntry, OpenOptions, Pictures, Problems, format_of};
+use opendr_datasets::{FormatEntry, OpenOptions, Problems, UnlabelledImages, format_of};
 use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset, Subset};
 use opendr_engine::learner::Entry;
 use opendr_engine::{Error, ErrorKind, Progress, Result, ValueType};
@@ -19,7 +19,7 @@ pub fn annotation_type(entry: &Entry) -> Option<ValueType> {
 }
 
 /// Opens data sets for a learner.
-pub struct Opening<'a> {
+pub struct DatasetOpener<'a> {
     /// Learner of the training.
     pub entry: &'a Entry,
     /// Whether annotations are needed; else a folder of images is enough.
@@ -30,12 +30,12 @@ pub struct Opening<'a> {
     pub progress: &'a dyn Progress,
 }
 
-impl Opening<'_> {
+impl DatasetOpener<'_> {
     /// Opens the training samples: those of `split` or, without one, of the training split.
     ///
     /// # Errors
     /// As [`opendr_datasets::open`]; `InvalidInput` without annotations of the type that the learner needs.
-    pub fn to_train<'d>(&self, dataset: DatasetRef<'d>, split: Option<&str>) -> Result<Samples<'d>> {
+    pub fn open_training<'d>(&self, dataset: DatasetRef<'d>, split: Option<&str>) -> Result<Samples<'d>> {
         let external = match dataset {
             DatasetRef::Iterator(samples) => return Ok(Box::new(samples)),
             DatasetRef::External(external) => external,
@@ -43,8 +43,8 @@ impl Opening<'_> {
         let format = match format_of(external) {
             Ok(format) => format,
             // Samples for a teacher need no annotations.
-            Err(_) if !self.annotated && Pictures::are_in(external.path()) => {
-                return Ok(Box::new(Pictures::open(external.path())?));
+            Err(_) if !self.annotated && UnlabelledImages::are_in(external.path()) => {
+                return Ok(Box::new(UnlabelledImages::open(external.path())?));
             }
             Err(error) => return Err(error),
         };
@@ -70,7 +70,7 @@ impl Opening<'_> {
     ///
     /// # Errors
     /// As [`Opening::to_train`].
-    pub fn to_measure<'d>(&self, dataset: DatasetRef<'d>, split: Option<&str>) -> Result<Samples<'d>> {
+    pub fn open_validation<'d>(&self, dataset: DatasetRef<'d>, split: Option<&str>) -> Result<Samples<'d>> {
         match dataset {
             DatasetRef::Iterator(samples) => Ok(Box::new(samples)),
             DatasetRef::External(external) => self.open(external, format_of(external)?, split),

@@ -91,7 +91,7 @@ fn moved_box(inner: BoundingBox, [left, top]: [f32; 2]) -> BoundingBox {
 
 fn moved_poses(list: PoseList, [left, top]: [f32; 2]) -> impl Iterator<Item = Pose> {
     list.poses.into_iter().map(move |mut pose| {
-        for point in pose.keypoints.iter_mut().filter(|point| point.is_found()) {
+        for point in pose.keypoints.iter_mut().filter(|point| point.is_detected()) {
             (point.x, point.y) = (point.x + left, point.y + top);
         }
         // Track ids are valid only within the stream of this box.

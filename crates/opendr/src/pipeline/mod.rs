@@ -212,7 +212,7 @@ impl Pipeline {
                 Err(error) => *predictions = Err(error),
             }
         };
-        assembly_line(&mut self.stages, begun, work, |(_, item, predictions)| {
+        map_in_stages(&mut self.stages, begun, work, |(_, item, predictions)| {
             each(item, predictions.map(merged))
         })
     }

@@ -11,7 +11,7 @@ use opendr_tuning::Training;
 
 use super::until::Until;
 use super::{TuneData, TuneOptions};
-use crate::{ActingStream, FitData, FitEnvironments, FitOptions, eval_in, fit, fit_in};
+use crate::{FitData, FitEnvironments, FitOptions, PolicyController, eval_in, fit, fit_policy};
 
 /// Training of one configuration with one seed, which stops with a checkpoint at each evaluation and resumes.
 pub struct LearnerTraining<'a> {
@@ -44,7 +44,7 @@ impl<'a> LearnerTraining<'a> {
         work: &Path,
         progress: &'a dyn Progress,
     ) -> Result<Self> {
-        if matches!(data, TuneData::Answers { .. }) {
+        if matches!(data, TuneData::Inference { .. }) {
             return Err(Error::unsupported(
                 "these data are for the evaluation of a learner without training",
             ));
@@ -55,7 +55,7 @@ impl<'a> LearnerTraining<'a> {
             LENGTH
                 .into_iter()
                 .filter(|name| has(name))
-                .map(|name| (name.to_owned(), (options.length as i64).into())),
+                .map(|name| (name.to_owned(), (options.steps as i64).into())),
         );
         if has(SEED) {
             params.insert(SEED.to_owned(), (seed as i64).into());
@@ -83,9 +83,9 @@ impl<'a> LearnerTraining<'a> {
         match self.data {
             TuneData::Environment { env, .. } => {
                 let environments = FitEnvironments { env, val_env: None };
-                fit_in(self.learner.as_mut(), self.entry, environments, &options, &until)
+                fit_policy(self.learner.as_mut(), self.entry, environments, &options, &until)
             }
-            TuneData::Dataset { dataset, split, .. } | TuneData::Answers { dataset, split, .. } => {
+            TuneData::Dataset { dataset, split, .. } | TuneData::Inference { dataset, split, .. } => {
                 let options = FitOptions { split: split.map(str::to_owned), ..options };
                 fit(self.learner.as_mut(), self.entry, FitData::from(dataset), &options, &until)
             }
@@ -97,11 +97,12 @@ impl<'a> LearnerTraining<'a> {
         match self.data {
             TuneData::Environment { env, protocol } => {
                 let mut environment = env.make()?;
-                let mut acting = ActingStream::new(self.learner.stream()?, self.entry, environment.spec())?;
-                let report = eval_in(&mut acting, environment.as_mut(), protocol, &Silent)?;
+                let mut acting =
+                    PolicyController::new(self.learner.stream()?, self.entry, environment.spec())?;
+                let report = evaluate_policy(&mut acting, environment.as_mut(), protocol, &Silent)?;
                 Ok(report.success.map_or(report.mean_return, |success| success.rate))
             }
-            TuneData::Dataset { val_dataset: dataset, .. } | TuneData::Answers { dataset, .. } => {
+            TuneData::Dataset { val_dataset: dataset, .. } | TuneData::Inference { dataset, .. } => {
                 let options = self.data.eval_options();
                 let outcome = options.run(&mut self.learner, self.entry, dataset, &Silent)?;
                 let (name, _) = options.metric_for(self.entry)?.numbers[0];

@@ -20,7 +20,7 @@ use opendr_rl::EvaluationProtocol;
 use opendr_runlog::{svg_from_figure, write_atomically};
 use opendr_tuning::{
     Asha, Budget, Direction, Hyperband, Median, NoPruner, Plan, Progress as Going, Storage, Study,
-    StudyRecord, Tpe, Training, TrialState, Tuner, Tuning, history_figure, importance_figure,
+    StudyRecord, Tpe, Training, TrialState, Tuner, TuningStatus, history_figure, importance_figure,
     importance_from_study,
 };
 
@@ -51,7 +51,7 @@ pub enum TuneData<'a> {
         val_split: Option<&'a str>,
     },
     /// Learners without training: their own parameters, evaluated on a data set.
-    Answers {
+    Inference {
         /// Loads a learner with the given parameters.
         make: &'a MakeLearner<'a>,
         /// To measure on.
@@ -80,7 +80,7 @@ pub struct TuneOptions {
     /// Number of seeds of each configuration that completes.
     pub seeds: usize,
     /// Steps of a complete training.
-    pub length: u64,
+    pub steps: u64,
     /// Steps between two evaluations.
     pub interval: u64,
     /// Pruner: `"asha"`, `"median"`, `"hyperband"` or `"none"`.
@@ -122,7 +122,7 @@ pub fn tune(
     let able = match data {
         TuneData::Environment { .. } => entry.capabilities.fit_in,
         TuneData::Dataset { .. } => entry.capabilities.fit,
-        TuneData::Answers { .. } => true,
+        TuneData::Inference { .. } => true,
     };
     if !able {
         let class = entry.spec.class;
@@ -131,7 +131,7 @@ pub fn tune(
         )));
     }
     std::fs::create_dir_all(output).context(|| format!("creating {}", output.display()))?;
-    let trains = !matches!(data, TuneData::Answers { .. });
+    let trains = !matches!(data, TuneData::Inference { .. });
     let fields = if trains { entry.fit_params } else { entry.params };
     let space = match search_space(fields, &options.search) {
         Err(error) if !entry.capabilities.fit => {
@@ -142,11 +142,11 @@ pub fn tune(
     };
     let study = study(entry, data, options, output)?;
     let plan = match trains {
-        true => Plan::every(options.interval, options.length)?.with_seeds(options.seed, options.seeds),
+        true => Plan::every(options.interval, options.steps)?.with_seeds(options.seed, options.seeds),
         false => Plan::every(1, 1)?.with_seeds(options.seed, 1),
     };
     let begin = |trial: &ParamMap, seed: u64| -> Result<Box<dyn Training + '_>> {
-        if let TuneData::Answers { make, dataset, .. } = data {
+        if let TuneData::Inference { make, dataset, .. } = data {
             let params =
                 options.params.iter().chain(trial).map(|(name, value)| (name.clone(), value.clone()));
             let (params, options) = (params.collect(), data.eval_options());
@@ -171,7 +171,7 @@ pub fn tune(
     progress.end();
     let ended = ended?;
     let best = tuner.study().best();
-    let finished = ended == Tuning::Finished && best.is_some();
+    let finished = ended == TuningStatus::Finished && best.is_some();
     let again = if finished && trains { tuner.reevaluate()? } else { None };
     // Fails if a killed process left files there, which is fine.
     std::fs::remove_dir(output.join(WORK)).ok();
@@ -199,18 +199,18 @@ pub fn tune(
 fn study(entry: &Entry, data: TuneData<'_>, options: &TuneOptions, output: &Path) -> Result<Study> {
     let by_error = match data {
         TuneData::Environment { .. } => false,
-        TuneData::Dataset { .. } | TuneData::Answers { .. } => {
+        TuneData::Dataset { .. } | TuneData::Inference { .. } => {
             let metric = data.eval_options().metric_for(entry)?;
-            metric.is_error(metric.numbers[0].0)
+            metric.is_lower_better(metric.numbers[0].0)
         }
     };
     let direction = if by_error { Direction::Minimize } else { Direction::Maximize };
     let study = Study::open(Storage::journal(output.join(STUDY))?, entry.spec.name, &[direction])?
         .with_sampler(Tpe::new(options.seed));
-    if let TuneData::Answers { .. } = data {
+    if let TuneData::Inference { .. } = data {
         return Ok(study.with_pruner(NoPruner));
     }
-    let (first, last) = (options.interval as i64, (options.length * options.seeds as u64) as i64);
+    let (first, last) = (options.interval as i64, (options.steps * options.seeds as u64) as i64);
     Ok(match options.pruner.as_str() {
         "asha" => study.with_pruner(Asha::new(first, 3)?),
         "median" => study.with_pruner(Median::default()),
@@ -230,7 +230,7 @@ impl TuneData<'_> {
         let (split, metric) = match *self {
             Self::Environment { .. } => (None, None),
             Self::Dataset { val_split, .. } => (val_split, None),
-            Self::Answers { split, metric, .. } => (split, metric),
+            Self::Inference { split, metric, .. } => (split, metric),
         };
         let [split, metric] = [split, metric].map(|name| name.map(str::to_owned));
         EvalOptions { split, metric, resamples: Some(0), ..EvalOptions::default() }

@@ -127,7 +127,7 @@ fn scene(models: &Models) -> Scene {
 }
 
 fn overlap(a: [f32; 4], b: [f32; 4]) -> f32 {
-    opendr::overlap::image_overlap(a.map(f64::from), b.map(f64::from)) as f32
+    opendr::overlap::box_iou(a.map(f64::from), b.map(f64::from)) as f32
 }
 
 fn hits(found: &BoundingBoxList, truth: &Truth) -> usize {

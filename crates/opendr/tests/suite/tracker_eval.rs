@@ -74,7 +74,7 @@ fn a_tracker_is_tuned_without_a_training() {
         Ok(learner)
     };
     let external = ExternalDataset::new(folder.clone(), "mot");
-    let data = TuneData::Answers {
+    let data = TuneData::Inference {
         make: &make,
         dataset: DatasetRef::External(&external),
         split: None,
@@ -87,7 +87,7 @@ fn a_tracker_is_tuned_without_a_training() {
         params: ParamMap::new(),
         trials,
         seeds: 3,
-        length: 1000,
+        steps: 1000,
         interval: 10,
         pruner: "asha".into(),
         jobs: 1,

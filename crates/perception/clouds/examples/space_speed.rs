@@ -13,7 +13,7 @@ use std::time::Instant;
 use opendr_clouds::pillars::{PillarGrid, PillarPoint, Voxeliser, scatter};
 use opendr_engine::overlap::RotatedRectangle;
 use opendr_engine::{Error, Result};
-use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
+use opendr_perception_common::suppression::{BevCandidate, suppress_bev};
 
 /// Grid of the PointPillars paper for cars.
 const GRID: PillarGrid = PillarGrid { x: [0.0, 69.12], y: [-39.68, 39.68], z: [-3.0, 1.0], side: 0.16 };
@@ -44,7 +44,7 @@ fn main() -> Result<()> {
     let (mut kept, mut dropped) = (Vec::new(), Vec::new());
     let suppress = median(|| {
         kept.clone_from(&candidates);
-        suppress_standing(&mut kept, &mut dropped, OVERLAP, usize::MAX);
+        suppress_bev(&mut kept, &mut dropped, OVERLAP, usize::MAX);
     });
     println!(
         "{{\"voxelise\": {voxelise}, \"points\": {}, \"pillars\": {}, \"suppress\": {suppress}, \"kept\": {}}}",
@@ -55,11 +55,11 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn candidate(index: u32, numbers: &[f32]) -> StandingCandidate {
+fn candidate(index: u32, numbers: &[f32]) -> BevCandidate {
     let number = |at: usize| numbers.get(at).copied().map_or(f64::NAN, f64::from);
     let floor =
         RotatedRectangle { center: [number(0), number(1)], size: [number(2), number(3)], angle: number(4) };
-    StandingCandidate { floor, score: number(5) as f32, class: 0, index }
+    BevCandidate { footprint: floor, score: number(5) as f32, class: 0, index }
 }
 
 fn floats(path: &str) -> Result<Vec<f32>> {

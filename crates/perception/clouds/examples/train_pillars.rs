@@ -21,7 +21,7 @@ use opendr_clouds::object_detection_3d::{
 use opendr_datasets::{OpenOptions, Problems, open};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};
 use opendr_engine::learner::{FitJob, Handle};
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 use opendr_metrics::{Kitti, Metric};
@@ -124,7 +124,7 @@ fn within_30_metres(found: &BoundingBox3DList, ground_truth: &BoundingBox3DList,
     };
     let standing = |found: &BoundingBox3D| {
         let (size, place) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-        StandingBox::in_camera(size, place, f64::from(found.rotation_y))
+        UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))
     };
     let all: Vec<_> = ground_truth
         .boxes
@@ -142,10 +142,10 @@ fn within_30_metres(found: &BoundingBox3DList, ground_truth: &BoundingBox3DList,
         .map(standing);
     let (mut hit, mut missed) = (0, 0);
     for car in asked {
-        let is_found = told.iter().any(|told| told.overlap(&car) > 0.5);
+        let is_found = told.iter().any(|told| told.iou(&car) > 0.5);
         *if is_found { &mut hit } else { &mut missed } += 1;
     }
-    let wrong = told.iter().filter(|told| all.iter().all(|car| told.overlap(car) <= 0.5)).count();
+    let wrong = told.iter().filter(|told| all.iter().all(|car| told.iou(car) <= 0.5)).count();
     [hit, missed, wrong]
 }
 

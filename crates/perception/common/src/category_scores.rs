@@ -52,7 +52,7 @@ pub fn category_from_probabilities(
 }
 
 /// Fills the binary `category`: class 1 where `holds`, else class 0; `probability` is that of class 1.
-pub fn category_of_two(category: &mut Category, holds: bool, probability: f32, classes: &Classes) {
+pub fn binary_category(category: &mut Category, holds: bool, probability: f32, classes: &Classes) {
     category.class = i64::from(holds);
     category.description = classes.name(category.class).cloned();
     category.confidence = Some(if holds { probability } else { 1.0 - probability });

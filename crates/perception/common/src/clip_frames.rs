@@ -31,7 +31,7 @@ impl ClipFrames {
     ///
     /// # Errors
     /// As the pre-processing of images.
-    pub fn picture_into(&self, image: &Image, input: &mut Vec<f32>) -> Result<()> {
+    pub fn image_into(&self, image: &Image, input: &mut Vec<f32>) -> Result<()> {
         input.resize(self.frame_len(), 0.0);
         self.preprocess.run_into(image.view(), input).map(drop)
     }

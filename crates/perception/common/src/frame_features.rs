@@ -34,19 +34,19 @@ pub struct LastFrame {
 
 impl LastFrame {
     /// Clears the state, but keeps its memory.
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         self.places.clear();
         self.seen.clear();
     }
 
     /// Returns whether the person was observed.
-    pub fn is_seen(&self) -> bool {
+    pub fn is_observed(&self) -> bool {
         !self.places.is_empty()
     }
 }
 
 /// Number of features per coordinate: position, motion, bone.
-pub const KINDS: usize = 3;
+pub const FEATURES_PER_COORDINATE: usize = 3;
 /// Size below which a body is not scaled.
 const SMALLEST: f32 = 1e-6;
 
@@ -54,12 +54,12 @@ impl FrameFeatures {
     /// Creates position, motion and bone features of joints with `coordinates` coordinates; `parents` has the parent of
     /// each joint.
     pub fn new(parents: Vec<usize>, coordinates: usize) -> Self {
-        Self { parents, coordinates, kinds: KINDS }
+        Self { parents, coordinates, kinds: FEATURES_PER_COORDINATE }
     }
 
     /// Creates position and motion features only, for points without bones.
     pub fn without_bones(points: usize, coordinates: usize) -> Self {
-        Self { parents: (0..points).collect(), coordinates, kinds: KINDS - 1 }
+        Self { parents: (0..points).collect(), coordinates, kinds: FEATURES_PER_COORDINATE - 1 }
     }
 
     /// Returns the number of features per frame.
@@ -112,7 +112,7 @@ impl FrameFeatures {
             true => at(coordinates, joint) > 0.0,
             false => (0..coordinates).any(|channel| at(channel, joint) != 0.0),
         };
-        let first = !last.is_seen();
+        let first = !last.is_observed();
         let found = (0..joints).filter(|joint| is_there(*joint)).count();
         if first && found == 0 {
             return false;
@@ -178,11 +178,11 @@ impl FrameFeatures {
         sequence: &SkeletonSequence,
         person: usize,
         frames: usize,
-        work: &mut ClipWork,
+        work: &mut ClipScratch,
     ) -> bool {
         let (joints, given) = (self.parents.len(), sequence.shape()[2]);
-        let ClipWork { last, frame, clip } = work;
-        last.forget();
+        let ClipScratch { last, frame, clip } = work;
+        last.clear();
         frame.resize(self.frame_len(), 0.0);
         clip.clear();
         clip.resize(self.frame_len() * frames, 0.0);
@@ -210,7 +210,7 @@ impl FrameFeatures {
 
 /// Work memory of [`FrameFeatures::clip_into`].
 #[derive(Debug, Default)]
-pub struct ClipWork {
+pub struct ClipScratch {
     last: LastFrame,
     frame: Vec<f32>,
     /// Features of the last clip.
@@ -242,7 +242,7 @@ mod tests {
         let features = FrameFeatures::new(vec![1; JOINTS], 2);
         let sequence = SkeletonSequence::new(numbers, [1, channels, frames, JOINTS, 1]).unwrap();
         features.check(&sequence).unwrap();
-        let mut work = ClipWork::default();
+        let mut work = ClipScratch::default();
         features.clip_into(&sequence, 0, wanted, &mut work).then_some(work.clip)
     }
 

@@ -17,7 +17,7 @@ pub struct FrozenLayers(Session);
 ///
 /// # Errors
 /// `InvalidParam` when the environment variable names no device.
-pub fn is_on_processor(job: &FitJob<'_>) -> Result<bool> {
+pub fn is_on_cpu(job: &FitJob<'_>) -> Result<bool> {
     Ok(training_device(job.device)? == Device::flex())
 }
 

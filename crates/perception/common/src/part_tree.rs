@@ -65,7 +65,7 @@ pub struct PartTree {
     /// Distance within which joints of one kind belong to one person, in pixels of the network's input.
     pub radius: f32,
     /// Maximum number of persons.
-    pub most: usize,
+    pub max_persons: usize,
 }
 
 /// A peak of one heatmap.
@@ -85,7 +85,7 @@ impl PartTree {
             b.score.total_cmp(&a.score).then(a.joint.cmp(&b.joint)).then(a.cell.cmp(&b.cell))
         });
         for peak in peaks.iter() {
-            if persons.len() >= self.most {
+            if persons.len() >= self.max_persons {
                 break;
             }
             let start = maps.offset_point(peak.cell, peak.joint);
@@ -261,7 +261,7 @@ mod tests {
 
     fn decode(synthetic: &SyntheticMaps) -> Vec<Person> {
         let mut persons = Vec::new();
-        let tree = PartTree { peak_threshold: 0.5, radius: 10.0, most: 10 };
+        let tree = PartTree { peak_threshold: 0.5, radius: 10.0, max_persons: 10 };
         tree.decode(&synthetic.maps(), &mut Vec::new(), &mut persons);
         persons
     }

@@ -22,7 +22,7 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 use opendr_metrics::{CocoDetection, Metric};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
-use opendr_tiling::open_picture_learner;
+use opendr_tiling::open_image_learner;
 
 /// IoU thresholds of greedy suppression to compare with.
 const OVERLAPS: [f32; 6] = [0.45, 0.5, 0.55, 0.6, 0.65, 0.7];
@@ -60,7 +60,8 @@ fn suppressed(found: &BoundingBoxList, kind: SuppressionKind, overlap: f32) -> B
         index: index as u32,
     };
     let mut candidates: Vec<_> = found.boxes.iter().enumerate().map(candidate).collect();
-    Suppression { kind, overlap, threshold: 0.01, most: 400 }.run(&mut candidates, &mut Vec::new());
+    Suppression { kind, iou_threshold: overlap, threshold: 0.01, max_boxes: 400 }
+        .run(&mut candidates, &mut Vec::new());
     let boxes = candidates.iter().map(|candidate| BoundingBox {
         confidence: candidate.score,
         ..found.boxes[candidate.index as usize].clone()
@@ -100,7 +101,7 @@ fn main() -> Result<()> {
         ("max_detections".to_owned(), 1000i64.into()),
     ]);
     let model = Model::open(Path::new(detector))?;
-    let detector = open_picture_learner(&model, DETECTORS, &overrides, Device::Cpu)?;
+    let detector = open_image_learner(&model, DETECTORS, &overrides, Device::Cpu)?;
     let metric = || CocoDetection::new(&Default::default());
     let kinds = [SuppressionKind::Hard, SuppressionKind::Soft];
     let mut greedy = Vec::new();

@@ -26,4 +26,4 @@
 //! ```
 
 pub mod face_detection;
-pub mod face_finder;
+pub mod face_detector;

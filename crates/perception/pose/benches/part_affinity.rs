@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use opendr_engine::target::Keypoint;
 use opendr_pose::pose_estimation::part_affinity::{
-    FIELDS, Grid, HEAT_MAPS, JOINTS, Memory, Painter, PartAffinity, PartMaps,
+    FIELDS, Grid, HEAT_MAPS, JOINTS, MapEncoder, PartAffinity, PartMaps, Scratch,
 };
 
 /// The maps of a 16:9 image at a height of 256 pixels.
@@ -29,13 +29,13 @@ fn part_affinity(criterion: &mut Criterion) {
     for count in [1, 5, 20] {
         let persons: Vec<_> = (0..count).map(person).collect();
         let [mut heat, mut fields] = [HEAT_MAPS, FIELDS].map(|maps| vec![0.0; maps * GRID.cells()]);
-        let painter = Painter::default();
+        let painter = MapEncoder::default();
         group.bench_function(BenchmarkId::new("paint", count), |bencher| {
-            bencher.iter(|| painter.paint(GRID, black_box(&persons), &mut heat, &mut fields));
+            bencher.iter(|| painter.encode(GRID, black_box(&persons), &mut heat, &mut fields));
         });
-        painter.paint(GRID, &persons, &mut heat, &mut fields);
+        painter.encode(GRID, &persons, &mut heat, &mut fields);
         let maps = PartMaps::new(GRID, &heat, &fields).expect("as many numbers as the grid says");
-        let (how, mut memory, mut found) = (PartAffinity::default(), Memory::default(), Vec::new());
+        let (how, mut memory, mut found) = (PartAffinity::default(), Scratch::default(), Vec::new());
         group.bench_function(BenchmarkId::new("decode", count), |bencher| {
             bencher.iter(|| how.decode(black_box(&maps), &mut memory, &mut found));
         });

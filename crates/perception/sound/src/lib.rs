@@ -20,5 +20,5 @@ pub mod resampler;
 mod sound;
 mod standardise;
 
-pub use sound::Sound;
+pub use sound::AudioInput;
 pub use standardise::standardise;

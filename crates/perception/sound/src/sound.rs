@@ -8,7 +8,7 @@ use opendr_engine::{Error, Header, Result, ValueRef, ValueType};
 
 /// Audio input: [`Audio`] with its sample rate, or a [`Timeseries`] at the learner's sample rate (as in OpenDR).
 #[derive(Debug, Clone, Copy)]
-pub enum Sound<'a> {
+pub enum AudioInput<'a> {
     /// Audio with its sample rate.
     Audio(&'a Audio),
     /// One feature through time, or one row as in OpenDR.
@@ -19,7 +19,7 @@ const PORT: &str = ValueType::Audio.port();
 /// Maximum absolute value of a sample; spectra of larger values could overflow.
 const LOUDEST: f32 = 1e9;
 
-impl<'a> Sound<'a> {
+impl<'a> AudioInput<'a> {
     /// Returns the sample rate of the audio in Hz, or `of_series` for a series.
     pub fn rate(self, of_series: u32) -> u32 {
         match self {
@@ -63,7 +63,7 @@ impl<'a> Sound<'a> {
     }
 }
 
-impl<'a> Inputs<'a> for Sound<'a> {
+impl<'a> Inputs<'a> for AudioInput<'a> {
     const PORTS: &'static [Port] = &[Port {
         name: PORT,
         doc: "Audio; a Timeseries of one feature has the learner's sample rate.",
@@ -87,13 +87,13 @@ impl<'a> Inputs<'a> for Sound<'a> {
     }
 }
 
-impl<'a> From<&'a Audio> for Sound<'a> {
+impl<'a> From<&'a Audio> for AudioInput<'a> {
     fn from(audio: &'a Audio) -> Self {
         Self::Audio(audio)
     }
 }
 
-impl<'a> From<&'a Timeseries> for Sound<'a> {
+impl<'a> From<&'a Timeseries> for AudioInput<'a> {
     fn from(series: &'a Timeseries) -> Self {
         Self::Series(series)
     }
@@ -110,15 +110,17 @@ mod tests {
         let audio = Audio::new(vec![0.0, 0.5, 1.0, 0.5], 2, 16_000).unwrap();
         let column = Timeseries::new(vec![0.25, 0.75], [2, 1]).unwrap();
         let row = Timeseries::new(vec![0.25, 0.75], [1, 2]).unwrap();
-        for sound in [Sound::from(&audio), Sound::from(&column), Sound::from(&row)] {
+        for sound in [AudioInput::from(&audio), AudioInput::from(&column), AudioInput::from(&row)] {
             assert_eq!(*sound.samples(16_000).unwrap(), [0.25, 0.75]);
         }
-        assert_eq!(Sound::from(&audio).samples(8000).unwrap_err().kind(), ErrorKind::InvalidInput);
+        assert_eq!(AudioInput::from(&audio).samples(8000).unwrap_err().kind(), ErrorKind::InvalidInput);
         let wide = Timeseries::new(vec![0.0; 4], [2, 2]).unwrap();
-        assert!(Sound::from(&wide).samples(16_000).is_err());
+        assert!(AudioInput::from(&wide).samples(16_000).is_err());
         let broken = Timeseries::new(vec![0.0, f32::NAN], [2, 1]).unwrap();
-        assert!(Sound::from(&broken).samples(16_000).is_err());
-        let Ok(Sound::Series(_)) = Sound::from_ports(&Ports::default().with("audio", &row)) else { panic!() };
-        assert!(Sound::from_ports(&Ports::default()).is_err());
+        assert!(AudioInput::from(&broken).samples(16_000).is_err());
+        let Ok(AudioInput::Series(_)) = AudioInput::from_ports(&Ports::default().with("audio", &row)) else {
+            panic!()
+        };
+        assert!(AudioInput::from_ports(&Ports::default()).is_err());
     }
 }

@@ -14,9 +14,9 @@ use opendr_engine::dataset::{DatasetIterator, ExternalDataset, Subset};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{Device, Error, Result, Value};
 use opendr_speech::speech_recognition::{
-    EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams, MatchboxNetFitParams,
-    MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams, QuadraticSelfOnnKind,
-    QuadraticSelfOnnParams, Sound, TrainableWords, WordFitParams, WordLearner,
+    AudioInput, EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams,
+    MatchboxNetFitParams, MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams,
+    QuadraticSelfOnnKind, QuadraticSelfOnnParams, TrainableWords, WordFitParams, WordLearner,
 };
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 
@@ -89,7 +89,7 @@ fn train<K: TrainableWords>(
         else {
             return Err(Error::invalid_input("the sample has no audio with a class"));
         };
-        correct += usize::from(handle.infer(Sound::from(audio))?.class == word.class);
+        correct += usize::from(handle.infer(AudioInput::from(audio))?.class == word.class);
     }
     let (count, trained) = (held_out.len(), training.len());
     println!(

@@ -3,7 +3,7 @@
 use burn::module::Module;
 use burn::optim::{AdamConfig, GradientsParams};
 use burn::tensor::Device;
-use opendr_datasets::augment::{Augment, Others};
+use opendr_datasets::augment::{Augment, OtherSamples};
 use opendr_datasets::loader::Collate;
 use opendr_engine::Random;
 use opendr_engine::dataset::Sample;
@@ -23,7 +23,7 @@ pub fn losses_on_one_batch<O: Objective>(
     let (collate, pipeline) = (objective.collate().unwrap(), objective.pipeline().unwrap());
     let mut batch = collate.start(samples.len());
     for mut sample in samples {
-        pipeline.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+        pipeline.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
         collate.add(&mut batch, sample).unwrap();
     }
     let mut optimizer = AdamConfig::new().init();

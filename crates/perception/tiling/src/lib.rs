@@ -37,12 +37,12 @@ mod tile_picture;
 
 use opendr_engine::params::Params;
 
-pub use looking::{Allowance, look_side_by_side};
-pub use packing::{Looks, Slot};
-pub use picture_learner::{Open, PictureLearner, open_as, open_copies, open_picture_learner};
+pub use looking::{TimeBudget, run_within_budget};
+pub use packing::{Slot, TileInferences};
+pub use picture_learner::{ImageLearner, Open, open_as, open_copies, open_image_learner};
 pub use pieces::{Cut, Piece, merge_pieces};
 pub use schedule::{Tile, Tiles};
-pub use tile_picture::TilePicture;
+pub use tile_picture::TileImage;
 
 /// Parameters of the tiling.
 #[derive(Debug, Clone, Params)]

@@ -7,14 +7,14 @@ use opendr_engine::Result;
 
 /// Time budget of an image.
 #[derive(Debug, Clone, Copy)]
-pub struct Allowance {
+pub struct TimeBudget {
     begun: Instant,
     limit: Option<Duration>,
 }
 
-impl Allowance {
+impl TimeBudget {
     /// Starts a budget of so many milliseconds; without a limit for 0 and NaN.
-    pub fn of_milliseconds(milliseconds: f32) -> Self {
+    pub fn from_milliseconds(milliseconds: f32) -> Self {
         let limit = (milliseconds > 0.0).then(|| Duration::from_secs_f32(milliseconds.min(1e9) / 1000.0));
         Self { begun: Instant::now(), limit }
     }
@@ -34,10 +34,10 @@ impl Allowance {
 ///
 /// # Panics
 /// When `work` panics.
-pub fn look_side_by_side<R: Send>(
+pub fn run_within_budget<R: Send>(
     workers: usize,
     jobs: &[usize],
-    allowance: Allowance,
+    allowance: TimeBudget,
     work: impl Fn(usize, usize) -> Result<R> + Sync,
 ) -> Result<Vec<(usize, R)>> {
     let (next, longest) = (AtomicUsize::new(0), AtomicU64::new(0));
@@ -84,7 +84,7 @@ mod tests {
         for workers in [0, 1, 3] {
             let jobs: Vec<usize> = (0..50).rev().collect();
             let done =
-                look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), |_, job| Ok(job * 2));
+                run_within_budget(workers, &jobs, TimeBudget::from_milliseconds(0.0), |_, job| Ok(job * 2));
             let expected: Vec<_> = jobs.iter().map(|job| (*job, job * 2)).collect();
             assert_eq!(done.unwrap(), expected);
         }
@@ -92,19 +92,19 @@ mod tests {
 
     #[test]
     fn one_job_runs_when_the_time_is_over() {
-        let allowance = Allowance::of_milliseconds(1e-6);
+        let allowance = TimeBudget::from_milliseconds(1e-6);
         thread::sleep(Duration::from_millis(1));
-        let done = look_side_by_side(1, &[7, 8, 9], allowance, |_, job| Ok(job)).unwrap();
+        let done = run_within_budget(1, &[7, 8, 9], allowance, |_, job| Ok(job)).unwrap();
         assert_eq!(done, [(7, 7)]);
-        assert!(look_side_by_side(2, &[], allowance, |_, job| Ok(job)).unwrap().is_empty());
+        assert!(run_within_budget(2, &[], allowance, |_, job| Ok(job)).unwrap().is_empty());
     }
 
     #[test]
     fn jobs_beyond_the_budget_are_not_started() {
         let begun = Instant::now();
         let (long, limit) = (Duration::from_millis(30), Duration::from_millis(75));
-        let allowance = Allowance { begun, limit: Some(limit) };
-        let done = look_side_by_side(1, &[1, 2, 3, 4, 5], allowance, |_, job| {
+        let allowance = TimeBudget { begun, limit: Some(limit) };
+        let done = run_within_budget(1, &[1, 2, 3, 4, 5], allowance, |_, job| {
             thread::sleep(long);
             Ok(job)
         });
@@ -119,7 +119,8 @@ mod tests {
         };
         for workers in [1, 2] {
             let jobs: Vec<usize> = (0..1000).collect();
-            let error = look_side_by_side(workers, &jobs, Allowance::of_milliseconds(0.0), work).unwrap_err();
+            let error =
+                run_within_budget(workers, &jobs, TimeBudget::from_milliseconds(0.0), work).unwrap_err();
             assert!(error.to_string().contains("three"));
         }
     }

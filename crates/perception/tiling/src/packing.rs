@@ -11,19 +11,19 @@ pub struct Slot {
     /// Region of the whole image.
     pub part: Region,
     /// Its left upper corner in the input image.
-    pub at: [usize; 2],
+    pub position: [usize; 2],
 }
 
 impl Slot {
     /// Returns whether a position in the input image is in this part.
-    pub fn shows(&self, [x, y]: [f32; 2]) -> bool {
-        let [left, top] = self.at.map(|at| at as f32);
-        Region { x: 0, y: 0, ..self.part }.holds([x - left, y - top])
+    pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
+        let [left, top] = self.position.map(|at| at as f32);
+        Region { x: 0, y: 0, ..self.part }.contains([x - left, y - top])
     }
 
     /// Converts a box of the input image to pixels of the part, clipped to it.
-    pub fn within(&self, mut found: BoundingBox) -> BoundingBox {
-        let [x, y] = self.at.map(|at| at as f32);
+    pub fn box_in_part(&self, mut found: BoundingBox) -> BoundingBox {
+        let [x, y] = self.position.map(|at| at as f32);
         let [left, top, right, bottom] = found.corners();
         let cut = |from: f32, to: f32, at: f32, side: usize| {
             let (from, to) = ((from - at).max(0.0), (to - at).min(side as f32));
@@ -38,7 +38,7 @@ impl Slot {
 
 /// The inferences for an image: each for one tile, or for small parts of several tiles side by side.
 #[derive(Debug, Default)]
-pub struct Looks {
+pub struct TileInferences {
     slots: Vec<Slot>,
     /// End of each inference in the slots.
     ends: Vec<usize>,
@@ -49,7 +49,7 @@ pub struct Looks {
 /// Pixels between parts in one inference.
 const GAP: usize = 8;
 
-impl Looks {
+impl TileInferences {
     /// Plans one inference per tile, in the order of the tiles.
     pub fn plan_whole(&mut self, tiles: &Tiles) {
         self.clear();
@@ -63,7 +63,7 @@ impl Looks {
         // The current row: position of the next part, and height of the row.
         let (mut x, mut y, mut high) = (0, 0, 0);
         for index in tiles.order() {
-            let Some(part) = tiles.tiles().get(*index).map(|tile| tile.due) else { continue };
+            let Some(part) = tiles.tiles().get(*index).map(|tile| tile.changed_part) else { continue };
             // A tile of the rotation has no such part.
             if part.is_empty() || 2 * part.width.max(part.height) > side {
                 self.add_tile(tiles, *index);
@@ -76,7 +76,7 @@ impl Looks {
                 self.close(tiles);
                 (x, y, high) = (0, 0, 0);
             }
-            self.open.push(Slot { tile: *index, part, at: [x, y] });
+            self.open.push(Slot { tile: *index, part, position: [x, y] });
             x += part.width + GAP;
             high = high.max(part.height);
         }
@@ -94,7 +94,7 @@ impl Looks {
     }
 
     /// Returns the parts of one inference.
-    pub fn look(&self, number: usize) -> &[Slot] {
+    pub fn slots(&self, number: usize) -> &[Slot] {
         let begin = number.checked_sub(1).map_or(Some(0), |before| self.ends.get(before).copied());
         let range = begin.zip(self.ends.get(number).copied());
         range.and_then(|(begin, end)| self.slots.get(begin..end)).unwrap_or_default()
@@ -108,7 +108,7 @@ impl Looks {
 
     fn add_tile(&mut self, tiles: &Tiles, index: usize) {
         if let Some(tile) = tiles.tiles().get(index) {
-            self.slots.push(Slot { tile: index, part: tile.region, at: [0, 0] });
+            self.slots.push(Slot { tile: index, part: tile.region, position: [0, 0] });
             self.ends.push(self.slots.len());
         }
     }
@@ -146,12 +146,12 @@ mod tests {
         Image::from_rgb8(samples, SIZE[0], SIZE[1]).unwrap()
     }
 
-    fn plan(squares: &[[usize; 2]]) -> (Tiles, Looks) {
+    fn plan(squares: &[[usize; 2]]) -> (Tiles, TileInferences) {
         plan_with(&TilingParams { whole: false, rotation: 0, ..TilingParams::default() }, squares)
     }
 
-    fn plan_with(params: &TilingParams, squares: &[[usize; 2]]) -> (Tiles, Looks) {
-        let (mut tiles, mut looks) = (Tiles::default(), Looks::default());
+    fn plan_with(params: &TilingParams, squares: &[[usize; 2]]) -> (Tiles, TileInferences) {
+        let (mut tiles, mut looks) = (Tiles::default(), TileInferences::default());
         tiles.plan(params, scene(squares).view(), |_, _| false).unwrap();
         looks.plan_packed(&tiles, params.tile);
         (tiles, looks)
@@ -164,9 +164,9 @@ mod tests {
         let (tiles, looks) = plan(&squares);
         assert!(looks.len() < tiles.order().len(), "{} for {}", looks.len(), tiles.order().len());
         let mut seen = Vec::new();
-        for look in (0..looks.len()).map(|number| looks.look(number)) {
+        for look in (0..looks.len()).map(|number| looks.slots(number)) {
             for (at, slot) in look.iter().enumerate() {
-                let place = |slot: &Slot| Region { x: slot.at[0], y: slot.at[1], ..slot.part };
+                let place = |slot: &Slot| Region { x: slot.position[0], y: slot.position[1], ..slot.part };
                 let own = place(slot);
                 assert!(own.x + own.width <= 256 && own.y + own.height <= 256, "{slot:?}");
                 assert!(look[at + 1..].iter().all(|other| !place(other).overlaps(&own)), "{look:?}");
@@ -179,20 +179,20 @@ mod tests {
         assert_eq!(seen, order);
         // The surroundings of a square belong to its part.
         let region = Region { x: 80, y: 70, width: 60, height: 60 };
-        let shown = (0..looks.len()).flat_map(|number| looks.look(number));
-        assert!(shown.clone().any(|slot| slot.part.joined(&region) == slot.part));
-        assert!(looks.look(looks.len()).is_empty());
+        let shown = (0..looks.len()).flat_map(|number| looks.slots(number));
+        assert!(shown.clone().any(|slot| slot.part.union(&region) == slot.part));
+        assert!(looks.slots(looks.len()).is_empty());
     }
 
     #[test]
     fn a_part_alone_is_its_tile() {
         let (tiles, looks) = plan(&[[130, 130]]);
         assert_eq!((looks.len(), tiles.order().len()), (1, 1));
-        assert_eq!(looks.look(0)[0].part, tiles.tiles()[tiles.order()[0]].region);
+        assert_eq!(looks.slots(0)[0].part, tiles.tiles()[tiles.order()[0]].region);
         // The tile is empty, but its turn has come.
         let turn = TilingParams { whole: false, rotation: 1, ..TilingParams::default() };
         let (tiles_in_turn, looks) = plan_with(&turn, &[]);
-        assert_eq!(looks.look(0)[0].part, tiles_in_turn.tiles()[0].region);
+        assert_eq!(looks.slots(0)[0].part, tiles_in_turn.tiles()[0].region);
         let (_, mut looks) = plan(&[]);
         assert!(looks.is_empty());
         looks.plan_whole(&tiles);

@@ -7,7 +7,7 @@ use opendr_engine::{Device, Error, Result};
 use opendr_inference::{default_threads, with_threads};
 
 /// A learner of one image with predictions `T` and without state, as a trait object.
-pub trait PictureLearner<T>: Send + Sync {
+pub trait ImageLearner<T>: Send + Sync {
     /// Writes the prediction for `image` into `target`.
     ///
     /// # Errors
@@ -18,7 +18,7 @@ pub trait PictureLearner<T>: Send + Sync {
     fn classes(&self) -> Classes;
 }
 
-impl<T, L> PictureLearner<T> for L
+impl<T, L> ImageLearner<T> for L
 where
     L: for<'a> Learner<Input<'a> = &'a Image, Target = T, State = ()>,
 {
@@ -33,7 +33,7 @@ where
 
 /// Function that opens a learner of a container. It sets those of the given parameters that the learner has; the others are
 /// the container's.
-pub type Open<T> = fn(&Model, &ParamMap, Device) -> Result<Box<dyn PictureLearner<T>>>;
+pub type Open<T> = fn(&Model, &ParamMap, Device) -> Result<Box<dyn ImageLearner<T>>>;
 
 /// Opens a container as the learner `L`; an [`Open`] function.
 ///
@@ -43,7 +43,7 @@ pub fn open_as<T: 'static, L>(
     model: &Model,
     overrides: &ParamMap,
     device: Device,
-) -> Result<Box<dyn PictureLearner<T>>>
+) -> Result<Box<dyn ImageLearner<T>>>
 where
     L: for<'a> Learner<Input<'a> = &'a Image, Target = T, State = ()>,
 {
@@ -59,12 +59,12 @@ where
 ///
 /// # Errors
 /// `Unsupported` when it belongs to another learner; else as [`Learner::load`].
-pub fn open_picture_learner<T>(
+pub fn open_image_learner<T>(
     model: &Model,
     known: &[(&str, Open<T>)],
     overrides: &ParamMap,
     device: Device,
-) -> Result<Box<dyn PictureLearner<T>>> {
+) -> Result<Box<dyn ImageLearner<T>>> {
     let learner = model.manifest().learner.as_str();
     let open = known.iter().find(|(known, _)| *known == learner).map(|(_, open)| open).ok_or_else(|| {
         let known: Vec<_> = known.iter().map(|(name, _)| *name).collect();
@@ -92,13 +92,13 @@ pub fn open_copies<T>(
     copies: usize,
     overrides: &ParamMap,
     device: Device,
-) -> Result<Vec<Box<dyn PictureLearner<T>>>> {
+) -> Result<Vec<Box<dyn ImageLearner<T>>>> {
     let part = model.part(name)?;
     let threads = default_threads()?;
     let copies = if copies == 0 { threads.clamp(1, MOST_COPIES) } else { copies };
     (0..copies)
         .map(|_| {
-            with_threads((threads / copies).max(1), || open_picture_learner(&part, known, overrides, device))
+            with_threads((threads / copies).max(1), || open_image_learner(&part, known, overrides, device))
         })
         .collect()
 }

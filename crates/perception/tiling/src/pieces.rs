@@ -9,7 +9,7 @@ pub type Cut = [bool; 4];
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piece {
     /// The box.
-    pub found: BoundingBox,
+    pub bounding_box: BoundingBox,
     /// Sides at which its tile cuts it.
     pub cut: Cut,
 }
@@ -27,9 +27,9 @@ const MOST: usize = 2000;
 
 impl Piece {
     /// Converts a box in pixels of a tile to a piece of an image of `size`.
-    pub fn new(mut found: BoundingBox, tile: &Region, [width, height]: [usize; 2]) -> Self {
+    pub fn new(mut bounding_box: BoundingBox, tile: &Region, [width, height]: [usize; 2]) -> Self {
         let near = 1.0 + NEAR * tile.width.max(tile.height) as f32;
-        let [left, top, right, bottom] = found.corners();
+        let [left, top, right, bottom] = bounding_box.corners();
         let cut = [
             tile.x > 0 && left < near,
             tile.y > 0 && top < near,
@@ -37,13 +37,13 @@ impl Piece {
             tile.y + tile.height < height && bottom > tile.height as f32 - near,
         ];
         let (x, y) = (tile.x as f32, tile.y as f32);
-        (found.left, found.top) = (found.left + x, found.top + y);
-        for point in &mut found.landmarks {
+        (bounding_box.left, bounding_box.top) = (bounding_box.left + x, bounding_box.top + y);
+        for point in &mut bounding_box.landmarks {
             *point = [point[0] + x, point[1] + y];
         }
         // Masks are in pixels of the tile and are dropped.
-        found.segment = None;
-        Self { found, cut }
+        bounding_box.segment = None;
+        Self { bounding_box, cut }
     }
 
     fn is_cut(&self) -> bool {
@@ -52,10 +52,10 @@ impl Piece {
 
     /// Merges two parts of one object at the border of two tiles; `None` when they are not.
     fn joined(&self, other: &Self) -> Option<Self> {
-        if self.found.name != other.found.name {
+        if self.bounding_box.name != other.bounding_box.name {
             return None;
         }
-        let (a, b) = (self.found.corners(), other.found.corners());
+        let (a, b) = (self.bounding_box.corners(), other.bounding_box.corners());
         let meet = (0..2).find(|axis| {
             let (first, second, a, b) =
                 if a[*axis] <= b[*axis] { (self, other, a, b) } else { (other, self, b, a) };
@@ -71,11 +71,11 @@ impl Piece {
             let own = (a[side] - corners[side]).abs() <= APART && self.cut[side];
             own || ((b[side] - corners[side]).abs() <= APART && other.cut[side])
         });
-        let best = if self.found.confidence >= other.found.confidence { self } else { other };
-        let mut found = best.found.clone();
+        let best = if self.bounding_box.confidence >= other.bounding_box.confidence { self } else { other };
+        let mut found = best.bounding_box.clone();
         [found.left, found.top] = [corners[0], corners[1]];
         [found.width, found.height] = [corners[2] - corners[0], corners[3] - corners[1]];
-        Some(Self { found, cut })
+        Some(Self { bounding_box: found, cut })
     }
 }
 
@@ -98,28 +98,33 @@ fn cover(a: &[f32; 4], b: &[f32; 4]) -> f32 {
 /// score is kept. The result is sorted by descending confidence.
 pub fn merge_pieces(pieces: &mut Vec<Piece>, overlap: f32) {
     pieces.retain(|piece| {
-        piece.found.corners().iter().all(|edge| edge.is_finite()) && piece.found.area() > 0.0
+        piece.bounding_box.corners().iter().all(|edge| edge.is_finite()) && piece.bounding_box.area() > 0.0
     });
     best_first(pieces);
     pieces.truncate(MOST);
     join(pieces);
     // Whole boxes first, then those with more of their object.
     pieces.sort_by(|a, b| {
-        let rank = |piece: &Piece| if piece.is_cut() { piece.found.area() } else { piece.found.confidence };
+        let rank = |piece: &Piece| {
+            if piece.is_cut() { piece.bounding_box.area() } else { piece.bounding_box.confidence }
+        };
         a.is_cut().cmp(&b.is_cut()).then(rank(b).total_cmp(&rank(a)))
     });
     let mut kept = 0;
     for at in 0..pieces.len() {
         let (before, rest) = pieces.split_at_mut(at);
         let Some(piece) = rest.first_mut() else { break };
-        let corners = piece.found.corners();
+        let corners = piece.bounding_box.corners();
         let same = before[..kept].iter_mut().find(|other| {
-            let whole = other.found.corners();
-            other.found.name == piece.found.name
+            let whole = other.bounding_box.corners();
+            other.bounding_box.name == piece.bounding_box.name
                 && (iou(&whole, &corners) > overlap || (piece.is_cut() && cover(&corners, &whole) > COVERED))
         });
         match same {
-            Some(other) => other.found.confidence = other.found.confidence.max(piece.found.confidence),
+            Some(other) => {
+                other.bounding_box.confidence =
+                    other.bounding_box.confidence.max(piece.bounding_box.confidence)
+            }
             None => {
                 pieces.swap(kept, at);
                 kept += 1;
@@ -132,10 +137,10 @@ pub fn merge_pieces(pieces: &mut Vec<Piece>, overlap: f32) {
 
 fn best_first(pieces: &mut [Piece]) {
     pieces.sort_by(|a, b| {
-        let place = |piece: &Piece| [piece.found.top, piece.found.left];
+        let place = |piece: &Piece| [piece.bounding_box.top, piece.bounding_box.left];
         let (one, other) = (place(a), place(b));
         let by_place = one[0].total_cmp(&other[0]).then(one[1].total_cmp(&other[1]));
-        b.found.confidence.total_cmp(&a.found.confidence).then(by_place)
+        b.bounding_box.confidence.total_cmp(&a.bounding_box.confidence).then(by_place)
     });
 }
 
@@ -192,7 +197,7 @@ mod tests {
     }
 
     fn boxes(pieces: &[Piece]) -> Vec<[f32; 4]> {
-        let mut boxes: Vec<_> = pieces.iter().map(|piece| piece.found.corners()).collect();
+        let mut boxes: Vec<_> = pieces.iter().map(|piece| piece.bounding_box.corners()).collect();
         boxes.sort_by(|a, b| a[0].total_cmp(&b[0]));
         boxes
     }
@@ -225,7 +230,7 @@ mod tests {
         let mut one = vec![left(1, 50.0), right(1, 50.0)];
         merge_pieces(&mut one, 0.5);
         assert_eq!(boxes(&one), [[150.0, 50.0, 230.0, 90.0]]);
-        assert_eq!(one[0].found.confidence, 0.8);
+        assert_eq!(one[0].bounding_box.confidence, 0.8);
         let mut classes = vec![left(1, 50.0), right(2, 50.0)];
         merge_pieces(&mut classes, 0.5);
         assert_eq!(classes.len(), 2);
@@ -236,21 +241,23 @@ mod tests {
 
     #[test]
     fn whole_boxes_replace_cut_ones() {
-        let whole =
-            Piece { found: BoundingBox::from_corners(1, [180.0, 50.0, 260.0, 130.0], 0.4), cut: [false; 4] };
+        let whole = Piece {
+            bounding_box: BoundingBox::from_corners(1, [180.0, 50.0, 260.0, 130.0], 0.4),
+            cut: [false; 4],
+        };
         let cut = BoundingBox::from_corners(1, [180.0, 50.0, 200.0, 130.0], 0.9);
         let cut = Piece::new(cut, &Region { x: 0, y: 0, width: 200, height: 200 }, SIZE);
         assert_eq!(cut.cut, [false, false, true, false]);
         let mut found = vec![cut, whole.clone()];
         merge_pieces(&mut found, 0.5);
-        assert_eq!(boxes(&found), [whole.found.corners()]);
-        assert_eq!(found[0].found.confidence, 0.9);
+        assert_eq!(boxes(&found), [whole.bounding_box.corners()]);
+        assert_eq!(found[0].bounding_box.confidence, 0.9);
     }
 
     #[test]
     fn invalid_boxes_are_dropped() {
         let odd = |left: f32, width: f32| Piece {
-            found: BoundingBox::new(0, left, 0.0, width, 5.0, 0.5),
+            bounding_box: BoundingBox::new(0, left, 0.0, width, 5.0, 0.5),
             cut: [true; 4],
         };
         let mut found = vec![odd(f32::NAN, 5.0), odd(0.0, f32::INFINITY), odd(0.0, -3.0), odd(0.0, 5.0)];
@@ -279,7 +286,7 @@ mod tests {
             merge_pieces(&mut found, 0.5);
             prop_assert_eq!(found.len(), objects.len());
             for object in &objects {
-                prop_assert!(found.iter().any(|piece| iou(&piece.found.corners(), object) > 0.85));
+                prop_assert!(found.iter().any(|piece| iou(&piece.bounding_box.corners(), object) > 0.85));
             }
         }
 
@@ -290,7 +297,7 @@ mod tests {
             let mut found: Vec<_> = boxes
                 .into_iter()
                 .map(|(x, y, width, height, cut)| Piece {
-                    found: BoundingBox::new(0, x, y, width, height, 0.5),
+                    bounding_box: BoundingBox::new(0, x, y, width, height, 0.5),
                     cut: std::array::from_fn(|side| cut >> side & 1 == 1),
                 })
                 .collect();

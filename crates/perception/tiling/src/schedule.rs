@@ -1,6 +1,6 @@
 use opendr_engine::Result;
 use opendr_engine::data::ImageView;
-use opendr_perception_common::regions::{CoarsePicture, Region};
+use opendr_perception_common::regions::{CellBrightness, Region};
 
 use super::TilingParams;
 
@@ -13,11 +13,11 @@ pub struct Tile {
     /// whole image.
     pub core: Region,
     /// Index of the image in which it was processed last, from 0.
-    pub seen: Option<u64>,
+    pub last_processed: Option<u64>,
     /// Index of the first image since then in which it had changed.
     pub changed: Option<u64>,
     /// The part to process, with its surroundings: where there is detail, or a change.
-    pub due: Region,
+    pub changed_part: Region,
     /// The brightness of its cells when it was processed.
     reference: Vec<u8>,
 }
@@ -29,7 +29,7 @@ pub struct Tiles {
     /// Side and overlap of the tiles, and whether one is the whole image.
     layout: (usize, usize, bool),
     tiles: Vec<Tile>,
-    coarse: CoarsePicture,
+    coarse: CellBrightness,
     /// The brightness of the cells of the last image.
     before: Vec<u8>,
     /// Number of images so far.
@@ -72,7 +72,7 @@ impl Tiles {
             self.cut();
         }
         let [columns, rows] = size.map(|side| side.div_ceil(CELL));
-        self.coarse.look(view, columns, rows, POINTS)?;
+        self.coarse.compute(view, columns, rows, POINTS)?;
         let is_other = self.is_other_scene();
         self.before.clear();
         self.before.extend_from_slice(self.coarse.means());
@@ -104,39 +104,40 @@ impl Tiles {
     }
 
     /// Records that a tile was processed in the image of the last plan: completely, or the part that was due.
-    pub fn saw(&mut self, index: usize, is_whole: bool) {
+    pub fn record(&mut self, index: usize, is_whole: bool) {
         let Some(tile) = self.tiles.get_mut(index) else { return };
         let [columns, rows] = self.coarse.size();
         let levels = cells_of(&tile.region, self.size, &self.coarse).map(|cell| self.coarse.means()[cell]);
         // Outside the part the change was small: its reference stays, so that slow changes accumulate.
-        let is_new = is_whole || tile.seen.is_none();
+        let is_new = is_whole || tile.last_processed.is_none();
         if is_new {
             tile.reference.clear();
             tile.reference.extend(levels);
         } else {
             let cells = cells_of(&tile.region, self.size, &self.coarse);
             for ((cell, level), reference) in cells.zip(levels).zip(&mut tile.reference) {
-                if cell_region(cell, [columns, rows], self.size).overlaps(&tile.due) {
+                if cell_region(cell, [columns, rows], self.size).overlaps(&tile.changed_part) {
                     *reference = level;
                 }
             }
         }
-        tile.seen = Some(self.pictures.saturating_sub(1));
+        tile.last_processed = Some(self.pictures.saturating_sub(1));
         tile.changed = None;
     }
 
     /// Returns whether the last result of a tile is valid: it is unchanged, or changed no more than `memory` images ago.
-    pub fn holds(&self, index: usize, memory: u32) -> bool {
+    pub fn is_valid(&self, index: usize, memory: u32) -> bool {
         self.tiles.get(index).is_some_and(|tile| {
             let age = |changed| self.pictures.saturating_sub(changed);
-            tile.seen.is_some() && tile.changed.is_none_or(|changed| age(changed) <= u64::from(memory))
+            tile.last_processed.is_some()
+                && tile.changed.is_none_or(|changed| age(changed) <= u64::from(memory))
         })
     }
 
     /// Returns whether a position in a changed tile was processed later, in another tile.
     pub fn is_superseded(&self, index: usize, place: [f32; 2]) -> bool {
         let Some(own) = self.tiles.get(index).filter(|tile| tile.changed.is_some()) else { return false };
-        self.tiles.iter().any(|tile| tile.seen > own.seen && tile.region.holds(place))
+        self.tiles.iter().any(|tile| tile.last_processed > own.last_processed && tile.region.contains(place))
     }
 
     fn cut(&mut self) {
@@ -147,9 +148,9 @@ impl Tiles {
         let tile = |region, core| Tile {
             region,
             core,
-            seen: None,
+            last_processed: None,
             changed: None,
-            due: Region::default(),
+            changed_part: Region::default(),
             reference: Vec::new(),
         };
         let is_small = width.max(height) <= side;
@@ -186,7 +187,7 @@ impl Tiles {
 
     fn put_in_order(&mut self, params: &TilingParams) {
         let tiles = &self.tiles;
-        let age = |index: &usize| (tiles[*index].seen.map_or(0, |seen| seen + 1), *index);
+        let age = |index: &usize| (tiles[*index].last_processed.map_or(0, |seen| seen + 1), *index);
         self.occupied.sort_unstable_by_key(age);
         self.rest.sort_unstable_by_key(age);
         self.order.clear();
@@ -210,34 +211,34 @@ impl Tiles {
 
 impl Tile {
     /// Returns whether the tile is to be processed; updates the part and the time of the first change.
-    fn is_due(&mut self, coarse: &CoarsePicture, size: [usize; 2], params: &TilingParams, now: u64) -> bool {
+    fn is_due(&mut self, coarse: &CellBrightness, size: [usize; 2], params: &TilingParams, now: u64) -> bool {
         let cells = cells_of(&self.region, size, coarse);
-        if self.seen.is_none() {
+        if self.last_processed.is_none() {
             let has_detail = |cell: &usize| f32::from(coarse.ranges()[*cell]) > params.detail_threshold;
-            self.due = match params.detail_threshold <= 0.0 || self.core.is_empty() {
+            self.changed_part = match params.detail_threshold <= 0.0 || self.core.is_empty() {
                 true => self.region,
                 false => self.around(cells.filter(has_detail), coarse.size(), size),
             };
-            return !self.due.is_empty();
+            return !self.changed_part.is_empty();
         }
         let differs = |(cell, then): &(usize, &u8)| {
             f32::from(coarse.means()[*cell].abs_diff(**then)) > params.change_threshold
         };
-        self.due = match params.change_threshold <= 0.0 {
+        self.changed_part = match params.change_threshold <= 0.0 {
             true => self.region,
             false => {
                 let changed = cells.zip(&self.reference).filter(differs).map(|(cell, _)| cell);
                 self.around(changed, coarse.size(), size)
             }
         };
-        self.changed = (!self.due.is_empty()).then(|| self.changed.unwrap_or(now));
+        self.changed = (!self.changed_part.is_empty()).then(|| self.changed.unwrap_or(now));
         self.changed.is_some()
     }
 
     /// Returns the smallest region with all `cells` and the margin, clipped to the tile; empty without cells.
     fn around(&self, cells: impl Iterator<Item = usize>, grid: [usize; 2], size: [usize; 2]) -> Region {
         let regions = cells.map(|cell| cell_region(cell, grid, size));
-        let Some(all) = regions.reduce(|all, region| all.joined(&region)) else { return Region::default() };
+        let Some(all) = regions.reduce(|all, region| all.union(&region)) else { return Region::default() };
         let (x, y) = (
             all.x.saturating_sub(AROUND).max(self.region.x),
             all.y.saturating_sub(AROUND).max(self.region.y),
@@ -262,7 +263,7 @@ fn cell_region(cell: usize, [columns, rows]: [usize; 2], [width, height]: [usize
 fn cells_of(
     region: &Region,
     [width, height]: [usize; 2],
-    coarse: &CoarsePicture,
+    coarse: &CellBrightness,
 ) -> impl Iterator<Item = usize> + use<> {
     let [columns, rows] = coarse.size();
     let touched = |begin: usize, long: usize, all: usize, cells: usize| {
@@ -316,7 +317,7 @@ mod tests {
     fn process(tiles: &mut Tiles, params: &TilingParams, image: &Image) -> Vec<usize> {
         tiles.plan(params, image.view(), |_, _| false).unwrap();
         let order = tiles.order().to_vec();
-        order.iter().for_each(|index| tiles.saw(*index, true));
+        order.iter().for_each(|index| tiles.record(*index, true));
         order
     }
 
@@ -330,7 +331,7 @@ mod tests {
         for (at, core) in cores.iter().enumerate() {
             assert!(cores[at + 1..].iter().all(|other| !core.overlaps(other)));
         }
-        assert!(tiles.tiles().iter().skip(1).all(|tile| tile.region.joined(&tile.core) == tile.region));
+        assert!(tiles.tiles().iter().skip(1).all(|tile| tile.region.union(&tile.core) == tile.region));
     }
 
     #[test]
@@ -382,7 +383,7 @@ mod tests {
         for picture in 1..200 {
             tiles.plan(&params, scene(&[]).view(), |index, _| index % 7 == 0).unwrap();
             for index in tiles.order().to_vec() {
-                tiles.saw(index, true);
+                tiles.record(index, true);
                 last[index] = picture;
             }
         }
@@ -396,13 +397,14 @@ mod tests {
         let few = params(&[("rotation", 0.0), ("max_tiles", 1.0)]);
         let all = params(&[("rotation", 0.0)]);
         process(&mut tiles, &all, &scene(&[[300, 200]]));
-        let index = (1..tiles.tiles().len()).find(|index| tiles.tiles()[*index].seen.is_some()).unwrap();
+        let index =
+            (1..tiles.tiles().len()).find(|index| tiles.tiles()[*index].last_processed.is_some()).unwrap();
         for picture in 0..5 {
             tiles.plan(&few, scene(&[[0, 400]]).view(), |_, _| false).unwrap();
-            assert_eq!(tiles.holds(index, 3), picture < 3, "{picture}");
+            assert_eq!(tiles.is_valid(index, 3), picture < 3, "{picture}");
         }
         tiles.plan(&few, scene(&[[300, 200]]).view(), |_, _| false).unwrap();
-        assert!(tiles.holds(index, 0), "it is as it was");
+        assert!(tiles.is_valid(index, 0), "it is as it was");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use opendr_engine::learner::Learner;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, TrackingAnnotationList};
 use opendr_tracking::object_tracking_2d::{ByteTrack, OcSort, Sort, TrackerInputs};
 use opendr_tracking::tracking::camera_motion::CameraMotion;
-use opendr_tracking::tracking::{AreaFilter, HeightFilter, Pairing};
+use opendr_tracking::tracking::{AreaFilter, HeightFilter, SparseAssignment};
 
 /// Returns frames of 25 persons who walk to the right, one in twenty undetected.
 fn frames() -> Vec<BoundingBoxList> {
@@ -66,10 +66,10 @@ fn parts(criterion: &mut Criterion) {
             height.update(black_box(observed));
         });
     });
-    let mut pairing = Pairing::default();
+    let mut pairing = SparseAssignment::default();
     criterion.bench_function("tracking/pairing_25_by_25_all_proposed", |bencher| {
         bencher.iter(|| {
-            pairing.begin();
+            pairing.clear();
             for at in 0..625 {
                 pairing.propose(at / 25, at % 25, ((at * 37) % 101 + 1) as f64);
             }
@@ -80,7 +80,7 @@ fn parts(criterion: &mut Criterion) {
     let samples = (0..1920 * 1080 * 3).map(|_| random.below(256) as u8).collect();
     let Ok(picture) = Image::from_rgb8(samples, 1920, 1080) else { return };
     criterion.bench_function("tracking/camera_motion_1080p", |bencher| {
-        bencher.iter(|| camera.next(black_box(&picture), &[]));
+        bencher.iter(|| camera.update(black_box(&picture), &[]));
     });
 }
 

@@ -18,7 +18,7 @@ use opendr_clouds::object_detection_3d::Scan;
 use opendr_engine::data::PointCloudWithCalibration;
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::learner::{FitJob, Handle};
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, TrackingAnnotation3DList};
 use opendr_engine::{Device, Error, Progress, Result, Unit, Value};
 use opendr_simulation::street::StreetDrives;
@@ -80,9 +80,9 @@ fn frame(drives: &StreetDrives, index: usize) -> Result<Frame> {
     }
 }
 
-fn standing(found: &BoundingBox3D) -> StandingBox {
+fn standing(found: &BoundingBox3D) -> UprightBox3D {
     let (size, place) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-    StandingBox::in_camera(size, place, f64::from(found.rotation_y))
+    UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))
 }
 
 /// Tracks each car and each pedestrian that is clearly visible in the first frame of a drive to its end, and prints success
@@ -116,7 +116,7 @@ fn measure(what: &str, params: VpitParams, job: &FitJob<'_>, frames: &[Frame]) -
                     let found = &found.bounding_box_3d;
                     let distance =
                         (0..3).map(|axis| (found.location[axis] - truth.location[axis]).powi(2)).sum::<f32>();
-                    success += standing(found).overlap(&standing(truth));
+                    success += standing(found).iou(&standing(truth));
                     precision += 1.0 - f64::from(distance.sqrt().min(2.0)) / 2.0;
                     count += 1;
                 }

@@ -9,7 +9,7 @@ use opendr_engine::environment::{
 /// A corridor environment with 8 to 10 obstacles in every second episode, regardless of its options. Policies trained in
 /// it also pass narrow gaps.
 #[derive(Debug, Clone)]
-pub struct DenseEpisodes<E> {
+pub struct DenseObstacles<E> {
     inner: E,
     episodes: u64,
 }
@@ -17,14 +17,14 @@ pub struct DenseEpisodes<E> {
 /// Reset options of the episodes with more obstacles.
 const DENSE: [(&str, i64); 2] = [("min_obstacles", 8), ("max_obstacles", 10)];
 
-impl<E: Environment> DenseEpisodes<E> {
+impl<E: Environment> DenseObstacles<E> {
     /// Wraps a corridor environment.
     pub fn new(inner: E) -> Self {
         Self { inner, episodes: 0 }
     }
 }
 
-impl<E: Environment> Environment for DenseEpisodes<E> {
+impl<E: Environment> Environment for DenseObstacles<E> {
     fn spec(&self) -> &EnvironmentSpec {
         self.inner.spec()
     }

@@ -8,7 +8,9 @@ use opendr_engine::params::Params as _;
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Statistics, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, POLICY, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation};
+use opendr_rl::{
+    ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation,
+};
 use opendr_simulation::uav_corridor::FlightMemory;
 
 use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
@@ -56,7 +58,7 @@ impl Learner for EndToEndPlanningRl {
                 "end-to-end planning runs on the CPU, not on {device}; give \"cpu\" or \"auto\""
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY)?)?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
         let axes = Space::symmetric(&[1.0; AXES]);
         if (policy.observation(), policy.action()) != (&FlightMemory::space()?, &axes) {
             return Err(Error::format(format!(
@@ -87,14 +89,14 @@ impl Learner for EndToEndPlanningRl {
         let FlightState { flight, memory, numbers, random } = state;
         numbers_from_observation(&self.space, observation, numbers)?;
         let (mut features, mut correction) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
-        flight.see(&self.space, numbers, &mut features)?;
+        flight.update(&self.space, numbers, &mut features)?;
         let acting = match self.params.deterministic {
-            true => Acting::Deterministic,
-            false => Acting::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
+            true => ActionMode::Deterministic,
+            false => ActionMode::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
         };
         self.policy.act(&self.compute, &features, acting, memory, &mut correction)?;
-        let action = flight.corrected(correction);
-        flight.acted(action);
+        let action = flight.corrected_action(correction);
+        flight.record_action(action);
         target.values.clear();
         target.values.extend_from_slice(&action);
         Ok(())

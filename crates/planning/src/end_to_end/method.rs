@@ -6,9 +6,9 @@ use opendr_engine::learner::{Learner as _, Spec};
 use opendr_engine::params::Params;
 use opendr_kernels::Compute;
 use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
-use opendr_simulation::uav_corridor::Remembered;
+use opendr_simulation::uav_corridor::FlightMemoryWrapper;
 
-use super::{DenseEpisodes, EndToEndPlanningRl, SternRewards};
+use super::{DenseObstacles, EndToEndPlanningRl, TrainingRewards};
 
 /// Parameters of the training, with OpenDR's names, and its defaults unless stated otherwise.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -48,14 +48,14 @@ impl Method for PpoInCorridors {
     type FitParams = EndToEndPlanningFitParams;
     type Algorithm = Ppo;
 
-    fn for_environment(params: &EndToEndPlanningFitParams, _: &str) -> EndToEndPlanningFitParams {
+    fn with_preset(params: &EndToEndPlanningFitParams, _: &str) -> EndToEndPlanningFitParams {
         params.clone()
     }
 
-    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+    fn wrap(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
         Ok(match in_training {
-            true => Box::new(SternRewards(Remembered::new(DenseEpisodes::new(environment))?)),
-            false => Box::new(Remembered::new(environment)?),
+            true => Box::new(TrainingRewards(FlightMemoryWrapper::new(DenseObstacles::new(environment))?)),
+            false => Box::new(FlightMemoryWrapper::new(environment)?),
         })
     }
 

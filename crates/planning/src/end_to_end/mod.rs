@@ -6,7 +6,7 @@ mod learner;
 mod method;
 mod stern_rewards;
 
-pub use dense_episodes::DenseEpisodes;
+pub use dense_episodes::DenseObstacles;
 pub use learner::{EndToEndPlanningRl, FlightState};
 pub use method::{EndToEndPlanningFitParams, PpoInCorridors};
-pub use stern_rewards::SternRewards;
+pub use stern_rewards::TrainingRewards;

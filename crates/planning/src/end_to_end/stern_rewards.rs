@@ -12,11 +12,11 @@ use opendr_engine::environment::{
 /// per step). Here every end without success has a reward of -60, and steps have no negative reward: proximity to an
 /// obstacle is not penalised, because policies trained with the penalty did not pass gaps of sufficient width.
 #[derive(Debug, Clone)]
-pub struct SternRewards<E>(pub E);
+pub struct TrainingRewards<E>(pub E);
 
 const FAILURE: f64 = -60.0;
 
-impl<E: Environment> Environment for SternRewards<E> {
+impl<E: Environment> Environment for TrainingRewards<E> {
     fn spec(&self) -> &EnvironmentSpec {
         self.0.spec()
     }

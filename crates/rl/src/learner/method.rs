@@ -21,13 +21,13 @@ pub trait Method: Send + Sync + 'static {
     type Algorithm: Algorithm;
 
     /// Returns the parameters with the preset of the environment `id` filled in, if `params` enables presets.
-    fn for_environment(params: &Self::FitParams, id: &str) -> Self::FitParams;
+    fn with_preset(params: &Self::FitParams, id: &str) -> Self::FitParams;
 
     /// Wraps an environment as the policy expects it: observations always, rewards only if `in_training`.
     ///
     /// # Errors
     /// `InvalidInput` for an environment that the learner does not support.
-    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+    fn wrap(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
         let _ = in_training;
         Ok(environment)
     }

@@ -13,8 +13,8 @@ use opendr_kernels::Compute;
 
 use super::method::Method;
 use super::observation::numbers_from_observation;
-use crate::policy::{Acting, Policy, PolicyMemory};
-use crate::training::{POLICY, fit_policy};
+use crate::policy::{ActionMode, Policy, PolicyMemory};
+use crate::training::{POLICY_FILE, fit_policy};
 
 /// Parameters of a policy at inference.
 #[derive(Debug, Clone, PartialEq, Params)]
@@ -64,7 +64,7 @@ impl<M: Method> Learner for PolicyLearner<M> {
                 M::SPEC.class
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY)?)?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
         Ok(Self { policy, params, compute: Compute::single(), method: PhantomData })
     }
 
@@ -86,8 +86,8 @@ impl<M: Method> Learner for PolicyLearner<M> {
         numbers_from_observation(self.policy.observation(), observation, numbers)?;
         target.values.resize(self.policy.head().action_len(), 0.0);
         let acting = match self.params.deterministic {
-            true => Acting::Deterministic,
-            false => Acting::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
+            true => ActionMode::Deterministic,
+            false => ActionMode::Sampled(random.get_or_insert_with(|| Random::new(self.params.seed))),
         };
         self.policy.act(&self.compute, numbers, acting, memory, &mut target.values)
     }

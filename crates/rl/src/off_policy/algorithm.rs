@@ -7,7 +7,7 @@ use opendr_simulation::vector::VecEnvironment;
 
 use super::{Experience, OffPolicyConfig};
 use crate::algorithm::{Algorithm, Report, not_begun, snapshot_of};
-use crate::policy::{Beginning, Head, NetworkConfig, Policy};
+use crate::policy::{Head, NetworkConfig, ParameterInit, Policy};
 use crate::saved_state::SavedState;
 
 /// What DQN, TD3 and SAC have in common: settings, policy, random numbers, collected steps and report.
@@ -67,8 +67,8 @@ impl OffPolicyBase {
         spec: &EnvironmentSpec,
     ) -> Result<Self> {
         let mut policy = Policy::new(spec, head, network, config.clip())?;
-        let mut random = Random::at([config.seed, 0]);
-        policy.initialise(Beginning::Uniform, 0.0, &mut random);
+        let mut random = Random::from_key([config.seed, 0]);
+        policy.initialise(ParameterInit::Uniform, 0.0, &mut random);
         Ok(Self {
             config: config.clone(),
             compute: Compute::single(),
@@ -167,7 +167,7 @@ impl<A: OffPolicyAlgorithm> Algorithm for A {
         Ok(())
     }
 
-    fn rows(&self) -> &'static [&'static str] {
+    fn array_names(&self) -> &'static [&'static str] {
         A::ROWS
     }
 }

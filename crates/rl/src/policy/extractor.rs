@@ -6,7 +6,7 @@ use opendr_engine::{Random, Result};
 use opendr_kernels::{Activation, Compute, Conv2d, Dense, Layer, Network, Tape};
 
 use super::observation_encoder::{ObservationEncoder, PartKind};
-use super::{Beginning, PictureNetwork};
+use super::{ImageNetwork, ParameterInit};
 
 /// Computes features from encoded observations: each image passes through a network of its own, other numbers are
 /// copied (`CombinedExtractor` of Stable-Baselines3). Without images, the features are the encoded observation.
@@ -36,7 +36,7 @@ pub(crate) struct ExtractorMemory {
 }
 
 impl Extractor {
-    pub fn new(encoder: &ObservationEncoder, picture_network: PictureNetwork) -> Result<Self> {
+    pub fn new(encoder: &ObservationEncoder, picture_network: ImageNetwork) -> Result<Self> {
         let mut extractor =
             Self { parts: Vec::new(), inputs: encoder.encoded_len(), outputs: 0, parameters: 0 };
         for part in encoder.parts() {
@@ -78,7 +78,7 @@ impl Extractor {
         })
     }
 
-    pub fn initialise(&self, beginning: Beginning, random: &mut Random, parameters: &mut [f32]) {
+    pub fn initialise(&self, beginning: ParameterInit, random: &mut Random, parameters: &mut [f32]) {
         for (network, range) in self.parts.iter().filter_map(|part| part.network.as_ref()) {
             network.initialise(beginning.of_hidden(), random, &mut parameters[range.clone()]);
         }
@@ -138,11 +138,11 @@ impl Extractor {
     }
 }
 
-fn image_network(shape: [usize; 3], kind: PictureNetwork) -> Result<Option<Network>> {
+fn image_network(shape: [usize; 3], kind: ImageNetwork) -> Result<Option<Network>> {
     let (convolutions, neurons): (&[[usize; 3]], _) = match kind {
-        PictureNetwork::Flat => return Ok(None),
-        PictureNetwork::Small => (&[[8, 8, 4], [16, 4, 2]], 64),
-        PictureNetwork::Nature => (&[[32, 8, 4], [64, 4, 2], [64, 3, 1]], 512),
+        ImageNetwork::Flat => return Ok(None),
+        ImageNetwork::Small => (&[[8, 8, 4], [16, 4, 2]], 64),
+        ImageNetwork::Nature => (&[[32, 8, 4], [64, 4, 2], [64, 3, 1]], 512),
     };
     let (mut layers, mut shape) = (Vec::new(), shape);
     for [kernels, side, stride] in convolutions {

@@ -221,7 +221,7 @@ mod tests {
     use opendr_engine::environment::Space;
 
     use super::*;
-    use crate::policy::Beginning;
+    use crate::policy::ParameterInit;
 
     fn policy() -> Policy {
         let parts = BTreeMap::from([
@@ -232,7 +232,7 @@ mod tests {
         let spec = EnvironmentSpec::new("test", Space::Dict(parts), Space::symmetric(&[0.5, 2.0]));
         let head = Head::stochastic(&spec.action).unwrap();
         let mut policy = Policy::new(&spec, head, &NetworkConfig::default(), Some(10.0)).unwrap();
-        policy.initialise(Beginning::Orthogonal(0.01), -0.5, &mut Random::new(1));
+        policy.initialise(ParameterInit::Orthogonal(0.01), -0.5, &mut Random::new(1));
         let mut observation = vec![1.0; 36 * 36 + 3];
         observation[36 * 36] = 0.0;
         policy.encoder.learn(&observation);

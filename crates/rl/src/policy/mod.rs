@@ -18,7 +18,7 @@ pub(crate) use extractor::{Extractor, ExtractorMemory};
 pub(crate) use head::LOG_STD_BOUNDS;
 pub use head::{Bounds, Head};
 pub(crate) use likelihood::Likelihood;
-pub use network_config::{Beginning, Hidden, NetworkConfig, PictureNetwork};
+pub use network_config::{ActivationFn, ImageNetwork, NetworkConfig, ParameterInit};
 pub use observation_encoder::ObservationEncoder;
 pub(crate) use observation_encoder::{Part, PartKind, check_finite};
 pub(crate) use observation_normaliser::EPSILON;
@@ -53,7 +53,7 @@ pub struct PolicyMemory {
 
 /// How an action is chosen from a distribution.
 #[derive(Debug)]
-pub enum Acting<'a> {
+pub enum ActionMode<'a> {
     /// The most likely action.
     Deterministic,
     /// A sampled action.
@@ -80,7 +80,7 @@ impl Policy {
     }
 
     /// Initialises the parameters; log standard deviations start at `log_std`.
-    pub fn initialise(&mut self, beginning: Beginning, log_std: f32, random: &mut Random) {
+    pub fn initialise(&mut self, beginning: ParameterInit, log_std: f32, random: &mut Random) {
         let (extractor, rest) = self.parameters.split_at_mut(self.extractor.parameters());
         let (trunk, deviations) = rest.split_at_mut(self.trunk.parameters());
         self.extractor.initialise(beginning, random, extractor);
@@ -158,7 +158,7 @@ impl Policy {
         &self,
         compute: &Compute,
         observations: &[f32],
-        acting: Acting<'_>,
+        acting: ActionMode<'_>,
         memory: &mut PolicyMemory,
         actions: &mut [f32],
     ) -> Result<()> {
@@ -179,8 +179,8 @@ impl Policy {
             let PolicyMemory { trunk, likelihood, .. } = memory;
             let outputs = trunk.output();
             match acting {
-                Acting::Deterministic => self.head.most_likely(outputs, actions),
-                Acting::Sampled(random) => {
+                ActionMode::Deterministic => self.head.most_likely(outputs, actions),
+                ActionMode::Sampled(random) => {
                     let isa = compute.isa();
                     self.head.sample(isa, outputs, self.log_std(), random, likelihood, actions);
                 }

@@ -8,7 +8,7 @@ use super::Trunk;
 
 opendr_engine::choices! {
     /// Activation function of the hidden layers.
-    pub enum Hidden {
+    pub enum ActivationFn {
         /// Hyperbolic tangent.
         Tanh = "tanh",
         /// Rectified linear unit.
@@ -18,7 +18,7 @@ opendr_engine::choices! {
 
 opendr_engine::choices! {
     /// Network for image observations.
-    pub enum PictureNetwork {
+    pub enum ImageNetwork {
         /// Two convolutions, 8 kernels of 8x8 with stride 4 and 16 of 4x4 with stride 2, then 64 units; fast on a CPU.
         Small = "small",
         /// Three convolutions, 32 kernels of 8x8, 64 of 4x4 and 64 of 3x3, then 512 units (Mnih et al., 2015).
@@ -35,15 +35,15 @@ pub struct NetworkConfig {
     #[param(default = vec![64, 64], range = 1..=4096)]
     pub net_arch: Vec<usize>,
     /// Activation function of the hidden layers.
-    pub activation_fn: Hidden,
+    pub activation_fn: ActivationFn,
     /// Network for image observations, before the hidden layers.
-    pub picture_network: PictureNetwork,
+    pub picture_network: ImageNetwork,
     /// Units of a gated recurrent unit before the hidden layers, for policies with memory; none means no recurrent unit.
     #[param(range = 1..=4096)]
     pub gru_size: Option<usize>,
 }
 
-impl Hidden {
+impl ActivationFn {
     pub(crate) fn activation(self) -> Activation {
         match self {
             Self::Tanh => Activation::Tanh,
@@ -78,14 +78,14 @@ impl NetworkConfig {
 
 /// Initialisation of a policy's parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Beginning {
+pub enum ParameterInit {
     /// Orthogonal, with gain sqrt(2) for hidden layers and this gain for the last; the default of PPO.
     Orthogonal(f32),
     /// PyTorch's default; that of the off-policy methods.
     Uniform,
 }
 
-impl Beginning {
+impl ParameterInit {
     /// Returns the initialisation of a network with an output layer.
     pub(crate) fn of_output(self) -> Initialisation {
         match self {

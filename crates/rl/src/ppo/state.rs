@@ -100,7 +100,7 @@ impl Algorithm for Ppo {
         Ok(())
     }
 
-    fn rows(&self) -> &'static [&'static str] {
+    fn array_names(&self) -> &'static [&'static str] {
         ROWS
     }
 }

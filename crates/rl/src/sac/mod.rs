@@ -24,7 +24,7 @@ pub struct SacConfig {
     #[param(flatten)]
     pub off_policy: OffPolicyConfig,
     /// Networks of policy and critics.
-    #[param(flatten, net_arch = vec![256, 256], activation_fn = crate::Hidden::Relu)]
+    #[param(flatten, net_arch = vec![256, 256], activation_fn = crate::ActivationFn::Relu)]
     pub network: NetworkConfig,
     /// Entropy coefficient; none means it is learned.
     #[param(range = 0.0..=1e6)]

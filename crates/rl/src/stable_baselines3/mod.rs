@@ -12,7 +12,7 @@ use serde::Deserialize;
 
 use archive::{Archive, Tensor};
 
-use crate::policy::{Bounds, Head, Hidden, NetworkConfig, PictureNetwork, Policy};
+use crate::policy::{ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, Policy};
 
 /// The parts of the JSON member `data` that are read; serialised objects are skipped.
 #[derive(Deserialize)]
@@ -32,7 +32,7 @@ struct Family {
     output: Option<&'static str>,
     /// Second output layer; its outputs follow those of the first.
     second: Option<&'static str>,
-    activation: Hidden,
+    activation: ActivationFn,
 }
 
 /// The known families, in the order in which they are tried.
@@ -42,17 +42,23 @@ const FAMILIES: &[Family] = &[
         hidden: "mlp_extractor.policy_net",
         output: Some("action_net"),
         second: None,
-        activation: Hidden::Tanh,
+        activation: ActivationFn::Tanh,
     },
     Family {
         name: "SAC",
         hidden: "actor.latent_pi",
         output: Some("actor.mu"),
         second: Some("actor.log_std"),
-        activation: Hidden::Relu,
+        activation: ActivationFn::Relu,
     },
-    Family { name: "TD3 or DDPG", hidden: "actor.mu", output: None, second: None, activation: Hidden::Relu },
-    Family { name: "DQN", hidden: "q_net.q_net", output: None, second: None, activation: Hidden::Relu },
+    Family {
+        name: "TD3 or DDPG",
+        hidden: "actor.mu",
+        output: None,
+        second: None,
+        activation: ActivationFn::Relu,
+    },
+    Family { name: "DQN", hidden: "q_net.q_net", output: None, second: None, activation: ActivationFn::Relu },
 ];
 
 /// Reads a policy from the bytes of a `.zip` written by Stable-Baselines3's `model.save`, for environments of this specification:
@@ -89,7 +95,7 @@ fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
     let config = NetworkConfig {
         net_arch: sizes.map(|layer| layer.outputs()).collect(),
         activation_fn: family.activation_of(&settings.policy_kwargs)?,
-        picture_network: PictureNetwork::Flat,
+        picture_network: ImageNetwork::Flat,
         gru_size: None,
     };
     let mut policy = Policy::new(spec, family.head(spec)?, &config, None)?;
@@ -141,11 +147,11 @@ impl Family {
         Ok(layers)
     }
 
-    fn activation_of(&self, policy_kwargs: &serde_json::Value) -> Result<Hidden> {
+    fn activation_of(&self, policy_kwargs: &serde_json::Value) -> Result<ActivationFn> {
         match policy_kwargs.get("activation_fn").map(serde_json::Value::to_string) {
             None => Ok(self.activation),
-            Some(name) if name.contains(".ReLU'") => Ok(Hidden::Relu),
-            Some(name) if name.contains(".Tanh'") => Ok(Hidden::Tanh),
+            Some(name) if name.contains(".ReLU'") => Ok(ActivationFn::Relu),
+            Some(name) if name.contains(".Tanh'") => Ok(ActivationFn::Tanh),
             Some(name) => Err(Error::unsupported(format!(
                 "the activation function {name:.80} is not supported; use tanh or ReLU"
             ))),
@@ -187,7 +193,7 @@ fn fill(policy: &mut Policy, layers: &[DenseLayer<'_>]) -> Result<()> {
             )));
         }
         let (to_weights, to_biases) =
-            policy.parameters[network.parameters_of(index)].split_at_mut(inputs * outputs);
+            policy.parameters[network.parameter_range(index)].split_at_mut(inputs * outputs);
         for (neuron, row) in weights.chunks_exact(inputs).enumerate() {
             for (input, weight) in row.iter().enumerate() {
                 to_weights[input * outputs + neuron] = *weight;

@@ -7,7 +7,8 @@ use opendr_engine::environment::{
 use opendr_engine::{Error, ErrorKind, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm, Dqn, DqnConfig, Policy, PolicyMemory, Ppo, PpoConfig, Sac, SacConfig, Td3, Td3Config,
+    ActionMode, Algorithm, Dqn, DqnConfig, Policy, PolicyMemory, Ppo, PpoConfig, Sac, SacConfig, Td3,
+    Td3Config,
 };
 use opendr_simulation::make;
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
@@ -149,7 +150,7 @@ fn invalid_actions_and_observations_are_refused() {
     let mut policy: Policy = ppo.policy().clone();
     let (mut memory, mut actions) = (PolicyMemory::default(), [0.0; 1]);
     let mut act = |policy: &Policy, observations: &[f32]| {
-        policy.act(&Compute::single(), observations, Acting::Deterministic, &mut memory, &mut actions)
+        policy.act(&Compute::single(), observations, ActionMode::Deterministic, &mut memory, &mut actions)
     };
     act(&policy, &[1.0, 0.0, 0.5]).unwrap();
     for wrong in [&[1.0, f32::NAN, 0.0][..], &[1.0, 0.0, f32::NEG_INFINITY], &[1.0, 0.0], &[1.0; 4], &[]] {

@@ -13,4 +13,4 @@ mod stable_baselines3;
 mod support;
 
 #[global_allocator]
-static ALLOCATOR: opendr_test_allocator::Counting = opendr_test_allocator::Counting;
+static ALLOCATOR: opendr_test_allocator::CountingAllocator = opendr_test_allocator::CountingAllocator;

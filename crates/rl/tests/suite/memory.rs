@@ -4,7 +4,7 @@ use opendr_engine::environment::{Environment, EnvironmentSpec, Info, ResetOption
 use opendr_engine::{Random, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm as _, Dqn, DqnConfig, EvaluationProtocol, Policy, PolicyMemory, Ppo, PpoConfig,
+    ActionMode, Algorithm as _, Dqn, DqnConfig, EvaluationProtocol, Policy, PolicyMemory, Ppo, PpoConfig,
     evaluate, onnx_from_policy,
 };
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment as _};
@@ -95,7 +95,7 @@ fn rows_have_independent_states() {
             {
                 memory.reset(row);
             }
-            policy.act(&compute, observations, Acting::Deterministic, &mut memory, &mut actions).unwrap();
+            policy.act(&compute, observations, ActionMode::Deterministic, &mut memory, &mut actions).unwrap();
         }
         memory.states().to_vec()
     };

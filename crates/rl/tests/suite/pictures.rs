@@ -4,8 +4,8 @@ use crate::support::assert_resumes;
 use crate::support::dots::dots;
 use opendr_kernels::Compute;
 use opendr_rl::{
-    Acting, Algorithm, NetworkConfig, OffPolicyConfig, Policy, PolicyMemory, Sac, SacConfig, Td3, Td3Config,
-    onnx_from_policy,
+    ActionMode, Algorithm, NetworkConfig, OffPolicyConfig, Policy, PolicyMemory, Sac, SacConfig, Td3,
+    Td3Config, onnx_from_policy,
 };
 
 fn small(config: OffPolicyConfig, learning_starts: u64) -> OffPolicyConfig {
@@ -51,7 +51,7 @@ fn actions_of(policy: &Policy) -> [f32; 2] {
     };
     let both: Vec<f32> = image(3..6).chain(image(14..17)).collect();
     let (mut memory, mut actions) = (PolicyMemory::default(), [0.0; 2]);
-    policy.act(&Compute::single(), &both, Acting::Deterministic, &mut memory, &mut actions).unwrap();
+    policy.act(&Compute::single(), &both, ActionMode::Deterministic, &mut memory, &mut actions).unwrap();
     actions
 }
 

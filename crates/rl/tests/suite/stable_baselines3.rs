@@ -3,7 +3,7 @@
 //! `tests/rl/write_stable_baselines3.py` wrote the files in `data`.
 
 use opendr_kernels::Compute;
-use opendr_rl::{Acting, PolicyMemory, policy_from_stable_baselines3};
+use opendr_rl::{ActionMode, PolicyMemory, policy_from_stable_baselines3};
 use opendr_simulation::make;
 
 const POLICIES: [(&str, &str, &[u8]); 5] = [
@@ -25,7 +25,7 @@ fn actions_are_those_of_stable_baselines3() {
         let policy = policy_from_stable_baselines3(bytes, make(id).unwrap().spec()).unwrap();
         let (wanted, mut actions) = (numbers("actions"), vec![9.0; 8]);
         let (compute, mut memory) = (Compute::single(), PolicyMemory::default());
-        let acting = Acting::Deterministic;
+        let acting = ActionMode::Deterministic;
         policy.act(&compute, &numbers("observations"), acting, &mut memory, &mut actions).unwrap();
         for (action, wanted) in actions.iter().zip(&wanted) {
             assert!((action - wanted).abs() < 1e-6, "{name}: {actions:?} {wanted:?}");

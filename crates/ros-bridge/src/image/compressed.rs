@@ -6,11 +6,11 @@ use opendr_messages::sensor_msgs;
 use opendr_vision::{Encoder, decode, encode_depth_png};
 
 use super::depth_compressed;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// The format (JPEG, PNG, WebP, BMP) is detected from the content, since drivers write `format` in many ways. 8-bit images are
 /// written as JPEG, 16-bit images losslessly as PNG; floating-point images are refused.
-impl Bridged<sensor_msgs::CompressedImage> for Image {
+impl FromToMessage<sensor_msgs::CompressedImage> for Image {
     fn from_message(message: sensor_msgs::CompressedImage, _: &RosBridge) -> Result<Self> {
         let image = if message.format.contains("compressedDepth") {
             depth_compressed::read(&message.format, &message.data)?

@@ -6,10 +6,10 @@ use opendr_messages::sensor_msgs;
 use opendr_vision::{rgb_from_bayer, rgb_from_yuv422};
 
 use super::encoding::Encoding;
-use crate::{Bridged, RosBridge, header_from_message, message_from_header};
+use crate::{FromToMessage, RosBridge, header_from_message, message_from_header};
 
 /// Samples keep type and order; padding of rows is removed. Bayer mosaics and YUV become 8-bit RGB.
-impl Bridged<sensor_msgs::Image> for Image {
+impl FromToMessage<sensor_msgs::Image> for Image {
     fn from_message(message: sensor_msgs::Image, _: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
         let encoding = Encoding::parse(&message.encoding)?;

@@ -11,7 +11,7 @@ use opendr_engine::target::{
     WhisperSegment, WhisperTranscription,
 };
 use opendr_engine::{Header, Value, ValueType};
-use opendr_messages::{Message, MessageType, Wire};
+use opendr_messages::{Message, MessageType, WireFormat};
 use opendr_ros_bridge::{RosBridge, message_types};
 
 fn header() -> Header {
@@ -180,7 +180,7 @@ fn every_type_survives_its_first_message() {
         let message_type = message_types(value_type).next().unwrap();
         for value in values(value_type) {
             let message = bridge.message_from_value(value.as_value_ref(), message_type).unwrap();
-            for wire in [Wire::Cdr, Wire::Ros1] {
+            for wire in [WireFormat::Cdr, WireFormat::Ros1] {
                 let bytes = message.to_bytes(wire).unwrap();
                 let read = Message::from_bytes(message_type, wire, &bytes).unwrap();
                 assert_eq!(read.to_bytes(wire).unwrap(), bytes, "{} {wire:?}", value_type.name());

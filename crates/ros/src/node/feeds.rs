@@ -14,11 +14,11 @@ type Listeners = Arc<Mutex<Vec<(Arc<Inbox>, usize)>>>;
 
 /// Shared subscriptions of a process, by absolute name, message type and value type.
 #[derive(Default)]
-pub struct Feeds {
+pub struct SharedSubscriptions {
     feeds: Vec<((String, MessageType, ValueType), Listeners)>,
 }
 
-impl Feeds {
+impl SharedSubscriptions {
     /// Delivers the messages of a topic also to the port `port` of `inbox`.
     pub(super) fn subscribe(
         &mut self,

@@ -11,7 +11,7 @@ mod params;
 mod topics;
 mod worker;
 
-pub use feeds::Feeds;
+pub use feeds::SharedSubscriptions;
 pub use params::NodeParams;
 pub use topics::{NodeOptions, TopicOptions, default_topics};
 
@@ -44,7 +44,7 @@ impl LearnerNode {
         entry: &'static Entry,
         learner: Box<dyn AnyLearner>,
         options: NodeOptions,
-        feeds: &mut Feeds,
+        feeds: &mut SharedSubscriptions,
     ) -> Result<Self> {
         options.check(entry)?;
         let inbox = Arc::new(Inbox::new(entry));

@@ -7,7 +7,7 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
@@ -67,7 +67,7 @@ impl Dynamics for AcrobotDynamics {
         Ok([(); 4].map(|()| f64::from(random.uniform(low, high) as f32)))
     }
 
-    fn advance(&self, state: &mut [f64; 4], action: &[f32], random: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 4], action: &[f32], random: &mut NumpyRandom) -> Transition {
         let mut torque = f64::from(action[0]) - 1.0;
         let noise = self.params.torque_noise;
         if noise > 0.0 {
@@ -82,7 +82,7 @@ impl Dynamics for AcrobotDynamics {
         ];
         let height = -cosine(state[0]) - cosine(state[1] + state[0]);
         let terminated = height > 1.0;
-        Outcome { reward: if terminated { 0.0 } else { -1.0 }, terminated }
+        Transition { reward: if terminated { 0.0 } else { -1.0 }, terminated }
     }
 
     fn observe(&self, state: &[f64; 4], observation: &mut [f32]) {
@@ -93,7 +93,7 @@ impl Dynamics for AcrobotDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 4]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 4]) -> Result<Option<Image>> {
         pictures::acrobot(*state).map(Some)
     }
 }

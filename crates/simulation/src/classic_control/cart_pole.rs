@@ -5,7 +5,7 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
@@ -64,11 +64,11 @@ impl Dynamics for CartPoleDynamics {
     }
 
     #[inline]
-    fn advance(&self, state: &mut [f64; 4], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 4], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let push = if action[0] == 1.0 { FORCE } else { -FORCE };
         *state = moved(*state, push, self.params.semi_implicit);
         let terminated = has_fallen(*state);
-        Outcome { reward: reward(self.params.sutton_barto_reward, terminated), terminated }
+        Transition { reward: reward(self.params.sutton_barto_reward, terminated), terminated }
     }
 
     fn observe(&self, state: &[f64; 4], observation: &mut [f32]) {
@@ -77,7 +77,7 @@ impl Dynamics for CartPoleDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 4]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 4]) -> Result<Option<Image>> {
         pictures::cart_pole(*state).map(Some)
     }
 }

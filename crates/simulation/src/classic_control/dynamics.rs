@@ -7,11 +7,11 @@ use opendr_engine::environment::{
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result};
 
-use crate::{NumpyRandom, Registered};
+use crate::{NumpyRandom, RegisteredEnvironment};
 
 /// Result of a step, besides the next state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct Transition {
     /// Reward.
     pub reward: f64,
     /// Whether the episode terminated.
@@ -40,7 +40,7 @@ pub trait Dynamics: Clone + Send + Sized + 'static {
     fn initial(&self, random: &mut NumpyRandom, options: &ResetOptions) -> Result<Self::State>;
 
     /// Advances the state by one step. `action` is in the action space, except that box actions may exceed the bounds and are clipped.
-    fn advance(&self, state: &mut Self::State, action: &[f32], random: &mut NumpyRandom) -> Outcome;
+    fn advance(&self, state: &mut Self::State, action: &[f32], random: &mut NumpyRandom) -> Transition;
 
     /// Writes the observation of a state.
     fn observe(&self, state: &Self::State, observation: &mut [f32]);
@@ -49,7 +49,7 @@ pub trait Dynamics: Clone + Send + Sized + 'static {
     ///
     /// # Errors
     /// None for states of the environment.
-    fn picture(&self, _state: &Self::State) -> Result<Option<Image>> {
+    fn render(&self, _state: &Self::State) -> Result<Option<Image>> {
         Ok(None)
     }
 }
@@ -105,7 +105,7 @@ impl<D: Dynamics> Classic<D> {
     }
 }
 
-impl<D: Dynamics> Registered for Classic<D> {
+impl<D: Dynamics> RegisteredEnvironment for Classic<D> {
     const ID: &'static str = D::ID;
     type Params = D::Params;
 
@@ -125,7 +125,7 @@ impl<D: Dynamics> Environment for Classic<D> {
         if let Some(seed) = seed {
             self.random = Some(NumpyRandom::new(seed));
         }
-        let random = self.random.get_or_insert_with(NumpyRandom::from_chance);
+        let random = self.random.get_or_insert_with(NumpyRandom::from_entropy);
         let state = self.dynamics.initial(random, options)?;
         self.state = Some(state);
         self.observe(&state, observation)?;
@@ -135,8 +135,8 @@ impl<D: Dynamics> Environment for Classic<D> {
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         self.check_action(action)?;
         let mut state = self.state.ok_or_else(|| not_begun(&self.spec))?;
-        let random = self.random.get_or_insert_with(NumpyRandom::from_chance);
-        let Outcome { reward, terminated } = self.dynamics.advance(&mut state, action, random);
+        let random = self.random.get_or_insert_with(NumpyRandom::from_entropy);
+        let Transition { reward, terminated } = self.dynamics.advance(&mut state, action, random);
         self.state = Some(state);
         self.observe(&state, observation)?;
         Ok(Step { reward, terminated, ..Step::default() })
@@ -144,13 +144,13 @@ impl<D: Dynamics> Environment for Classic<D> {
 
     fn render(&mut self) -> Result<Option<Image>> {
         let state = self.state.as_ref().ok_or_else(|| not_begun(&self.spec))?;
-        self.dynamics.picture(state)
+        self.dynamics.render(state)
     }
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
         let state = self.state.as_ref().ok_or_else(|| not_begun(&self.spec))?;
         snapshot.extend_numbers(state.as_ref().iter().copied());
-        self.random.clone().unwrap_or_else(NumpyRandom::from_chance).save(snapshot);
+        self.random.clone().unwrap_or_else(NumpyRandom::from_entropy).save(snapshot);
         Ok(())
     }
 

@@ -12,7 +12,7 @@ mod tests;
 
 pub use acrobot::{Acrobot, AcrobotParams};
 pub use cart_pole::{CartPole, CartPoleParams};
-pub use dynamics::{Classic, Dynamics, Outcome};
+pub use dynamics::{Classic, Dynamics, Transition};
 pub(crate) use dynamics::{check_length, not_begun};
 pub use mountain_car::{MountainCar, MountainCarParams};
 pub use mountain_car_continuous::MountainCarContinuous;

@@ -5,7 +5,7 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{Dtype, EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
@@ -65,14 +65,14 @@ impl Dynamics for MountainCarDynamics {
         Ok([random.uniform(low, high), 0.0])
     }
 
-    fn advance(&self, state: &mut [f64; 2], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 2], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let [position, speed] = *state;
         let pull = sine_cosine(3.0 * position).1 * -GRAVITY;
         let speed = (speed + ((f64::from(action[0]) - 1.0) * FORCE + pull)).clamp(-MAX_SPEED, MAX_SPEED);
         let position = (position + speed).clamp(POSITIONS.0, POSITIONS.1);
         let speed = if position == POSITIONS.0 && speed < 0.0 { 0.0 } else { speed };
         *state = [position, speed];
-        Outcome { reward: -1.0, terminated: position >= GOAL && speed >= self.goal_velocity }
+        Transition { reward: -1.0, terminated: position >= GOAL && speed >= self.goal_velocity }
     }
 
     fn observe(&self, state: &[f64; 2], observation: &mut [f32]) {
@@ -81,7 +81,7 @@ impl Dynamics for MountainCarDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 2]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 2]) -> Result<Option<Image>> {
         pictures::mountain_car(state[0], GOAL).map(Some)
     }
 }

@@ -4,8 +4,8 @@ use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_bounds};
-use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, seen};
+use super::dynamics::{Classic, Dynamics, Transition, reset_bounds};
+use super::mountain_car::{MAX_SPEED, MountainCarParams, POSITIONS, observation_space};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
@@ -46,7 +46,7 @@ impl Dynamics for MountainCarContinuousDynamics {
         Ok([random.uniform(low, high), 0.0, 1.0])
     }
 
-    fn advance(&self, state: &mut [f64; 3], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 3], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let [position, speed, first] = *state;
         let own = |number: f64| if first == 1.0 { number } else { single(number) };
         let asked = f64::from(action[0]);
@@ -64,7 +64,7 @@ impl Dynamics for MountainCarContinuousDynamics {
 
         let terminated = position >= own(GOAL) && speed >= self.goal_velocity;
         *state = [single(position), single(speed), 0.0];
-        Outcome { reward: if terminated { 100.0 } else { 0.0 } - asked * asked * 0.1, terminated }
+        Transition { reward: if terminated { 100.0 } else { 0.0 } - asked * asked * 0.1, terminated }
     }
 
     fn observe(&self, state: &[f64; 3], observation: &mut [f32]) {
@@ -73,7 +73,7 @@ impl Dynamics for MountainCarContinuousDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 3]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 3]) -> Result<Option<Image>> {
         pictures::mountain_car(state[0], GOAL).map(Some)
     }
 }

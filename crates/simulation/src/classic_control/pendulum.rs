@@ -7,7 +7,7 @@ use opendr_engine::data::Image;
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Space};
 use opendr_engine::params::Params;
 
-use super::dynamics::{Classic, Dynamics, Outcome, reset_number};
+use super::dynamics::{Classic, Dynamics, Transition, reset_number};
 use super::pictures;
 use crate::NumpyRandom;
 use crate::sine_cosine::sine_cosine;
@@ -55,7 +55,7 @@ impl Dynamics for PendulumDynamics {
         Ok(high.map(|high| random.uniform(-high, high)))
     }
 
-    fn advance(&self, state: &mut [f64; 2], action: &[f32], _: &mut NumpyRandom) -> Outcome {
+    fn advance(&self, state: &mut [f64; 2], action: &[f32], _: &mut NumpyRandom) -> Transition {
         let [angle, speed] = *state;
         // NumPy computes terms of the torque alone in single precision.
         let torque = action[0].clamp(-MAX_TORQUE, MAX_TORQUE);
@@ -66,7 +66,7 @@ impl Dynamics for PendulumDynamics {
         let speed = speed + (weight + f64::from(3.0 * torque)) * TIME_STEP;
         let speed = speed.clamp(-MAX_SPEED, MAX_SPEED);
         *state = [angle + speed * TIME_STEP, speed];
-        Outcome { reward: -cost, terminated: false }
+        Transition { reward: -cost, terminated: false }
     }
 
     fn observe(&self, [angle, speed]: &[f64; 2], observation: &mut [f32]) {
@@ -76,7 +76,7 @@ impl Dynamics for PendulumDynamics {
         }
     }
 
-    fn picture(&self, state: &[f64; 2]) -> Result<Option<Image>> {
+    fn render(&self, state: &[f64; 2]) -> Result<Option<Image>> {
         pictures::pendulum(*state).map(Some)
     }
 }

@@ -2,7 +2,7 @@ use opendr_engine::environment::Environment;
 use opendr_engine::params::{ParamMap, ParamValue};
 
 use super::*;
-use crate::{Registered, make};
+use crate::{RegisteredEnvironment, make};
 
 /// Gymnasium 1.4: `make(id).reset(seed=42)`.
 #[test]

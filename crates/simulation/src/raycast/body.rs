@@ -48,7 +48,7 @@ impl Body {
     ///
     /// # Errors
     /// `InvalidInput` when a number is not finite.
-    pub fn carried(&self, position: Vector, yaw: f32) -> Result<Self> {
+    pub fn moved(&self, position: Vector, yaw: f32) -> Result<Self> {
         if !yaw.is_finite() || !position.iter().all(|part| part.is_finite()) {
             return Err(Error::invalid_input(format!(
                 "the pose of a body is {position:?} with yaw {yaw}; give finite numbers"

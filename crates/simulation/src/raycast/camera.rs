@@ -83,7 +83,7 @@ impl Camera {
     /// Renders depth and bodies of a scene, up to `range` metres ahead (along the optical axis, as depth cameras measure).
     ///
     /// Bodies are drawn one by one into the pixels that they may cover; the nearest is kept.
-    pub fn look(&self, scene: &Scene, pose: &Pose, range: f32, buffer: &mut DepthBuffer) {
+    pub fn render_depth(&self, scene: &Scene, pose: &Pose, range: f32, buffer: &mut DepthBuffer) {
         let packets = self.columns.len() * self.height;
         buffer.width = self.width;
         buffer.packets.clear();

@@ -18,7 +18,7 @@ impl Pose {
     }
 
     /// Creates a pose at `position` that looks at `target`, with the image as upright as possible.
-    pub fn looking(position: Vector, target: Vector) -> Self {
+    pub fn looking_at(position: Vector, target: Vector) -> Self {
         let ahead = unit(std::array::from_fn(|axis| target[axis] - position[axis]));
         let left = cross([0.0, 0.0, 1.0], ahead);
         // Straight up or down, left is undefined; the world's y axis is used.
@@ -27,7 +27,7 @@ impl Pose {
     }
 
     /// Rotates a direction from this frame into the world.
-    pub fn turned(&self, [ahead, left, up]: Vector) -> Vector {
+    pub fn to_world(&self, [ahead, left, up]: Vector) -> Vector {
         let [x, y, z] = self.axes;
         std::array::from_fn(|axis| ahead * x[axis] + left * y[axis] + up * z[axis])
     }
@@ -42,8 +42,8 @@ mod tests {
     fn axes_are_orthonormal() {
         for pose in [
             Pose::level([1.0; 3], (0.6, 0.8)),
-            Pose::looking([0.0; 3], [3.0, -2.0, 1.0]),
-            Pose::looking([0.0; 3], [0.0, 0.0, -4.0]),
+            Pose::looking_at([0.0; 3], [3.0, -2.0, 1.0]),
+            Pose::looking_at([0.0; 3], [0.0, 0.0, -4.0]),
         ] {
             let [ahead, left, up] = pose.axes;
             for axis in pose.axes {
@@ -51,6 +51,6 @@ mod tests {
             }
             assert!(dot(cross(ahead, left), up) > 0.999_99, "{pose:?}");
         }
-        assert!(Pose::looking([0.0; 3], [3.0, -2.0, 1.0]).axes[2][2] > 0.9);
+        assert!(Pose::looking_at([0.0; 3], [3.0, -2.0, 1.0]).axes[2][2] > 0.9);
     }
 }

@@ -37,12 +37,12 @@ impl Shading {
     ///
     /// # Errors
     /// None for a valid [`Camera`].
-    pub fn picture(&self, camera: &Camera, scene: &Scene, pose: &Pose, range: f32) -> Result<Image> {
+    pub fn render(&self, camera: &Camera, scene: &Scene, pose: &Pose, range: f32) -> Result<Image> {
         let mut buffer = DepthBuffer::default();
-        camera.look(scene, pose, range, &mut buffer);
+        camera.render_depth(scene, pose, range, &mut buffer);
         let mut pixels = Vec::with_capacity(3 * camera.width() * camera.height());
         for (at, (depth, body)) in buffer.depths().zip(buffer.bodies()).enumerate() {
-            let direction = pose.turned(camera.direction(at % camera.width(), at / camera.width()));
+            let direction = pose.to_world(camera.direction(at % camera.width(), at / camera.width()));
             let point = along(pose.position, direction, depth);
             let colour = match body {
                 None => self.sky(unit(direction)),

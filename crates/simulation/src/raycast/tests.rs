@@ -265,14 +265,14 @@ fn camera_images_match_single_rays() {
             scene.add(Body::new(shape, place, turned, 0).unwrap());
         }
         let place = [(); 3].map(|()| random.uniform(-4.0, 4.0));
-        let pose = Pose::looking(place, [(); 3].map(|()| random.uniform(-2.0, 2.0)));
-        camera.look(&scene, &pose, 1e4, &mut buffer);
+        let pose = Pose::looking_at(place, [(); 3].map(|()| random.uniform(-2.0, 2.0)));
+        camera.render_depth(&scene, &pose, 1e4, &mut buffer);
         let mut differing = 0;
         for (at, (depth, body)) in buffer.depths().zip(buffer.bodies()).enumerate() {
             let direction = camera.direction(at % 37, at / 37);
             let size = length(direction);
             let mut hits = [None];
-            let unit = pose.turned(direction).map(|part| part / size);
+            let unit = pose.to_world(direction).map(|part| part / size);
             scene.hits(pose.position, &[unit], 1e4 * size, &mut hits).unwrap();
             let expected = hits[0].map_or(1e4, |hit| hit.distance / size);
             nothing += usize::from(body.is_none());
@@ -291,8 +291,8 @@ fn shading_distinguishes_sides_and_sky() {
     scene.add(Body::upright(Shape::HalfSpace, [0.0; 3], 0).unwrap());
     scene.add(Body::upright(Shape::Sphere { radius: 1.0 }, [4.0, 0.0, 1.5], 1).unwrap());
     let camera = Camera::new(64, 64, 0.5).unwrap();
-    let pose = Pose::looking([0.0, 0.0, 1.5], [4.0, 0.0, 1.5]);
-    let picture = Shading::default().picture(&camera, &scene, &pose, 50.0).unwrap();
+    let pose = Pose::looking_at([0.0, 0.0, 1.5], [4.0, 0.0, 1.5]);
+    let picture = Shading::default().render(&camera, &scene, &pose, 50.0).unwrap();
     let pixels = picture.hwc_u8(opendr_engine::data::PixelFormat::Rgb);
     let pixel = |column: usize, row: usize| &pixels[3 * (64 * row + column)..][..3];
     let brightness = |column, row| pixel(column, row).iter().map(|part| i32::from(*part)).sum::<i32>();

@@ -47,13 +47,13 @@ impl DatasetIterator for StreetDrives {
             return Err(Error::not_found(format!("no frame {index}; the data set has {}", self.len())));
         }
         let (drive, frame) = (index / self.frames, index % self.frames);
-        let mut random = Random::at([self.scans.seed(), drive as u64]);
+        let mut random = Random::from_key([self.scans.seed(), drive as u64]);
         let street = Street::new(&mut random)?;
         let motion = Motion::new(&street, self.frames as f64 / FRAMES_PER_SECOND, &mut random);
         let time = frame as f64 / FRAMES_PER_SECOND;
         let street = motion.street_at(&street, time)?;
         let header = Header::new((time * 1e9) as i64, "lidar");
-        let mut random = Random::at([self.scans.seed(), drive as u64, frame as u64]);
+        let mut random = Random::from_key([self.scans.seed(), drive as u64, frame as u64]);
         let (returns, cloud) = self.scans.look(&street, header.clone(), &mut random)?;
         let boxes = self.scans.boxes(&street, &returns)?.into_iter();
         let annotations: Vec<_> = boxes

@@ -20,9 +20,9 @@ pub enum StreetKind {
     /// A truck: a box on wheels.
     Truck,
     /// Walls, poles and tree trunks.
-    Solid,
+    Structure,
     /// Crowns, hedges and bushes, which rays enter.
-    Leaves,
+    Vegetation,
     /// The ground.
     Ground,
 }
@@ -33,7 +33,7 @@ pub struct StreetObject {
     /// Kind of the object.
     pub kind: StreetKind,
     /// Box of the object, in the lidar's frame.
-    pub place: LidarBox,
+    pub bounding_box: LidarBox,
     /// Reflectance of its surface, 0 to 1.
     pub reflectance: f32,
 }
@@ -123,7 +123,7 @@ impl Street {
             StreetKind::Ground => random.uniform(0.1, 0.4),
             _ => random.uniform(0.05, 0.6),
         };
-        self.objects.push(StreetObject { kind, place, reflectance });
+        self.objects.push(StreetObject { kind, bounding_box: place, reflectance });
         u16::try_from(self.objects.len() - 1).unwrap_or(u16::MAX)
     }
 
@@ -140,7 +140,7 @@ impl Street {
             let around = [size[0] + margin, size[1] + margin].map(f64::from);
             let center = [x, y].map(f64::from);
             let floor = RotatedRectangle { center, size: around, angle: f64::from(yaw) };
-            if self.floors.iter().all(|other| floor.shared_area(other) == 0.0) {
+            if self.floors.iter().all(|other| floor.intersection_area(other) == 0.0) {
                 self.floors.push(floor);
                 let z = f64::from(self.ground.at(x, y));
                 let yaw = f64::from(yaw);
@@ -218,14 +218,14 @@ impl Street {
             let aside = random.uniform(6.0, 22.0) * if random.chance(0.5) { 1.0 } else { -1.0 };
             [random.uniform(2.0, AHEAD), aside, road + across]
         });
-        self.add_box(place, StreetKind::Solid, random)
+        self.add_box(place, StreetKind::Structure, random)
     }
 
     fn add_pole(&mut self, random: &mut Random) -> Result<()> {
         let (radius, height) = (random.uniform(0.04, 0.2), random.uniform(2.0, 7.0));
         let place = self.place([2.0 * radius, 2.0 * radius, height], 0.2, random, anywhere);
         let Some(place) = place else { return Ok(()) };
-        let label = self.push(StreetKind::Solid, place, random);
+        let label = self.push(StreetKind::Structure, place, random);
         let [x, y, z] = place.center;
         let shape = Shape::Cylinder { radius, half_height: height / 2.0 };
         self.add(shape, [x, y, z + f64::from(height) / 2.0], 0.0, label)
@@ -237,10 +237,10 @@ impl Street {
         let place = self.place([2.0 * radius, 2.0 * radius, trunk + 2.0 * crown], 0.3, random, anywhere);
         let Some(place) = place else { return Ok(()) };
         let [x, y, z] = place.center;
-        let label = self.push(StreetKind::Solid, place, random);
+        let label = self.push(StreetKind::Structure, place, random);
         let shape = Shape::Cylinder { radius, half_height: trunk };
         self.add(shape, [x, y, z + f64::from(trunk)], 0.0, label)?;
-        let label = self.push(StreetKind::Leaves, place, random);
+        let label = self.push(StreetKind::Vegetation, place, random);
         self.add(Shape::Sphere { radius: crown }, [x, y, z + f64::from(trunk + crown)], 0.0, label)
     }
 
@@ -251,12 +251,12 @@ impl Street {
                 let [x, y, _] = anywhere(random);
                 [x, y, road]
             });
-            return self.add_box(place, StreetKind::Leaves, random);
+            return self.add_box(place, StreetKind::Vegetation, random);
         }
         let radius = random.uniform(0.4, 1.4);
         let size = [2.0 * radius, 2.0 * radius, radius];
         let Some(place) = self.place(size, 0.2, random, anywhere) else { return Ok(()) };
-        let label = self.push(StreetKind::Leaves, place, random);
+        let label = self.push(StreetKind::Vegetation, place, random);
         self.add(Shape::Sphere { radius }, place.center, 0.0, label)
     }
 

@@ -64,7 +64,7 @@ impl Motion {
                 StreetKind::Car => (0.6, [1.0, 12.0]),
                 StreetKind::Truck => (0.4, [1.0, 9.0]),
                 StreetKind::Pedestrian => (0.7, [0.5, 1.8]),
-                StreetKind::Solid | StreetKind::Leaves | StreetKind::Ground => continue,
+                StreetKind::Structure | StreetKind::Vegetation | StreetKind::Ground => continue,
             };
             if random.chance(share) {
                 motion.speeds[number] = f64::from(random.uniform(low, high));
@@ -77,7 +77,7 @@ impl Motion {
     }
 
     fn floor(&self, object: &StreetObject, number: usize, time: f64) -> RotatedRectangle {
-        moved(&object.place, self.speeds[number], time).standing_box().floor
+        moved(&object.bounding_box, self.speeds[number], time).upright_box().base
     }
 
     fn is_own_way_free(&self, street: &Street, seconds: f64) -> bool {
@@ -86,7 +86,7 @@ impl Motion {
 
     fn is_way_free(&self, street: &Street, number: usize, seconds: f64) -> bool {
         let own = |time| self.floor(&street.objects[number], number, time);
-        times(seconds).all(|time| own(time).shared_area(&self.own.floor(time)) == 0.0)
+        times(seconds).all(|time| own(time).intersection_area(&self.own.floor(time)) == 0.0)
             && self.is_free(street, seconds, Some(number), own)
     }
 
@@ -101,7 +101,7 @@ impl Motion {
         let others = street.objects.iter().enumerate();
         let mut others = others.filter(|(at, other)| Some(*at) != own && other.kind != StreetKind::Ground);
         others.all(|(at, other)| {
-            times(seconds).all(|time| floor(time).shared_area(&self.floor(other, at, time)) == 0.0)
+            times(seconds).all(|time| floor(time).intersection_area(&self.floor(other, at, time)) == 0.0)
         })
     }
 
@@ -120,9 +120,9 @@ impl Motion {
         later.scene = Scene::default();
         for (object, speed) in later.objects.iter_mut().zip(&self.speeds) {
             if object.kind != StreetKind::Ground {
-                object.place = moved(&object.place, *speed, time);
-                object.place.center = in_new_frame(object.place.center);
-                object.place.yaw -= own_yaw;
+                object.bounding_box = moved(&object.bounding_box, *speed, time);
+                object.bounding_box.center = in_new_frame(object.bounding_box.center);
+                object.bounding_box.yaw -= own_yaw;
             }
         }
         for body in street.scene.bodies() {
@@ -135,9 +135,9 @@ impl Motion {
                 continue;
             }
             let center = body.position().map(f64::from);
-            let place = LidarBox { center, ..object.place };
+            let place = LidarBox { center, ..object.bounding_box };
             let position = in_new_frame(moved(&place, *speed, time).center);
-            later.scene.add(body.carried(position.map(|part| part as f32), -own_yaw as f32)?);
+            later.scene.add(body.moved(position.map(|part| part as f32), -own_yaw as f32)?);
         }
         Ok(later)
     }

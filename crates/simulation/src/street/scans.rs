@@ -6,7 +6,7 @@ use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Classes};
 use opendr_engine::{Error, Header, Random, Result};
 
 use super::{Street, StreetKind, StreetObject};
-use crate::lidar::{Echo, Return, SpinningLidar};
+use crate::lidar::{LidarReturn, SpinningLidar, SurfaceResponse};
 use crate::raycast::{Hit, Scene, Vector};
 
 /// Scans of random streets, each with the boxes of its cars, pedestrians and trucks.
@@ -34,7 +34,7 @@ impl StreetScans {
         let mut calibration = Calibration::nominal();
         // The offsets of KITTI's sensor rig.
         calibration.tr_velo_to_cam = [[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, -0.08], [1.0, 0.0, 0.0, -0.27]];
-        Self { seed, count, lidar: SpinningLidar::hdl64e().facing(HALF_VIEW), calibration }
+        Self { seed, count, lidar: SpinningLidar::hdl64e().with_half_view(HALF_VIEW), calibration }
     }
 
     /// Scans with another lidar.
@@ -45,11 +45,11 @@ impl StreetScans {
     }
 
     /// Returns a street, its returns, and the returns as a point cloud.
-    pub(super) fn scan(&self, index: usize) -> Result<(Street, Vec<Return>, PointCloudWithCalibration)> {
+    pub(super) fn scan(&self, index: usize) -> Result<(Street, Vec<LidarReturn>, PointCloudWithCalibration)> {
         if index >= self.count {
             return Err(Error::not_found(format!("no street {index}; the data set has {}", self.count)));
         }
-        let mut random = Random::at([self.seed, index as u64]);
+        let mut random = Random::from_key([self.seed, index as u64]);
         let street = Street::new(&mut random)?;
         let header = Header::new(index as i64 + 1, "lidar");
         let (returns, cloud) = self.look(&street, header, &mut random)?;
@@ -62,12 +62,12 @@ impl StreetScans {
         street: &Street,
         header: Header,
         random: &mut Random,
-    ) -> Result<(Vec<Return>, PointCloudWithCalibration)> {
+    ) -> Result<(Vec<LidarReturn>, PointCloudWithCalibration)> {
         let lost = random.uniform(0.0, 0.15);
         let returns = self.lidar.scan(&street.scene, random, |hit, place| {
             match street.objects.get(usize::from(hit.label)) {
                 Some(object) => echo(object, hit, place, lost),
-                None => Echo { noise: 0.0, lost: 1.0, reflectance: 0.0 },
+                None => SurfaceResponse { noise: 0.0, lost: 1.0, reflectance: 0.0 },
             }
         })?;
         let points: Vec<f32> = returns.iter().flat_map(|hit| hit.point).collect();
@@ -82,7 +82,11 @@ impl StreetScans {
     }
 
     /// Returns the boxes of the visible objects, each with the index of its object in the street.
-    pub(super) fn boxes(&self, street: &Street, returns: &[Return]) -> Result<Vec<(usize, BoundingBox3D)>> {
+    pub(super) fn boxes(
+        &self,
+        street: &Street,
+        returns: &[LidarReturn],
+    ) -> Result<Vec<(usize, BoundingBox3D)>> {
         let mut counts = vec![0_usize; street.objects.len()];
         for label in returns.iter().map(|hit| usize::from(hit.label)) {
             counts.get_mut(label).into_iter().for_each(|count| *count += 1);
@@ -91,7 +95,7 @@ impl StreetScans {
         let mut boxes = Vec::new();
         for (label, object) in street.objects.iter().enumerate() {
             let Some(name) = name_of(object.kind) else { continue };
-            let mut annotation = object.place.to_camera(&self.calibration, Some(IMAGE_SHAPE));
+            let mut annotation = object.bounding_box.to_camera(&self.calibration, Some(IMAGE_SHAPE));
             // The object is outside the image or has no returns.
             if annotation.truncated >= 0.9 || counts[label] == 0 {
                 continue;
@@ -109,7 +113,7 @@ impl StreetScans {
         let mut alone = Scene::default();
         let own = street.scene.bodies().iter().filter(|body| usize::from(body.label()) == label);
         own.for_each(|body| alone.add(body.clone()));
-        let place = &street.objects[label].place;
+        let place = &street.objects[label].bounding_box;
         let [x, y] = [place.center[0], place.center[1]].map(|part| part as f32);
         let distance = x.hypot(y).max(0.1);
         // Tangent of half the angle it subtends, at most 45 degrees for near objects.
@@ -138,23 +142,23 @@ fn name_of(kind: StreetKind) -> Option<&'static str> {
         StreetKind::Car => Some("Car"),
         StreetKind::Pedestrian => Some("Pedestrian"),
         StreetKind::Truck => Some("Truck"),
-        StreetKind::Solid | StreetKind::Leaves | StreetKind::Ground => None,
+        StreetKind::Structure | StreetKind::Vegetation | StreetKind::Ground => None,
     }
 }
 
 /// Returns the response of an object's surface.
-fn echo(object: &StreetObject, hit: &Hit, [.., z]: Vector, lost: f32) -> Echo {
-    let [.., floor] = object.place.center;
-    let height = (z - floor as f32) / object.place.size[2].max(0.1) as f32;
+fn echo(object: &StreetObject, hit: &Hit, [.., z]: Vector, lost: f32) -> SurfaceResponse {
+    let [.., floor] = object.bounding_box.center;
+    let height = (z - floor as f32) / object.bounding_box.size[2].max(0.1) as f32;
     // The upper part of a car, except its roof, is glass.
     let is_glass = object.kind == StreetKind::Car && height > 0.66 && hit.normal[2].abs() < 0.9;
     let noise = match object.kind {
-        StreetKind::Leaves => 0.2,
+        StreetKind::Vegetation => 0.2,
         _ => 0.02,
     };
     let far = hit.distance / 120.0;
     let lost = lost + if is_glass { 0.5 } else { 0.3 * far * far };
-    Echo { noise, lost, reflectance: object.reflectance }
+    SurfaceResponse { noise, lost, reflectance: object.reflectance }
 }
 
 impl Dataset for StreetScans {}

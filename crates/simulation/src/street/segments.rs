@@ -38,8 +38,8 @@ fn class_of(kind: StreetKind) -> usize {
         StreetKind::Car => 0,
         StreetKind::Pedestrian => 1,
         StreetKind::Truck => 2,
-        StreetKind::Solid => 3,
-        StreetKind::Leaves => 4,
+        StreetKind::Structure => 3,
+        StreetKind::Vegetation => 4,
         StreetKind::Ground => 5,
     }
 }

@@ -3,7 +3,7 @@
 use opendr_engine::environment::{Controller, Space};
 use opendr_engine::{Error, Result};
 
-use super::{CorridorSight, SIDE, TURN};
+use super::{CorridorObservation, SIDE, TURN};
 
 /// A controller that acts on the current observation and on its own state.
 pub trait CorridorController {
@@ -11,25 +11,25 @@ pub trait CorridorController {
     fn begin(&mut self);
 
     /// Returns heading and change of yaw, each in [-1, 1] as in `UavDepthCorridor-v1`.
-    fn act(&mut self, sight: &CorridorSight) -> [f32; 2];
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2];
 }
 
 /// Adapts a [`CorridorController`] to raw observations, as a [`Controller`].
 #[derive(Debug, Clone)]
-pub struct BySight<C> {
+pub struct ObservationController<C> {
     controller: C,
     space: Space,
-    sight: CorridorSight,
+    sight: CorridorObservation,
 }
 
-impl<C: CorridorController> BySight<C> {
+impl<C: CorridorController> ObservationController<C> {
     /// Wraps a controller for observations of `space`.
     pub fn new(controller: C, space: Space) -> Self {
-        Self { controller, space, sight: CorridorSight::default() }
+        Self { controller, space, sight: CorridorObservation::default() }
     }
 }
 
-impl<C: CorridorController> Controller for BySight<C> {
+impl<C: CorridorController> Controller for ObservationController<C> {
     fn reset(&mut self) {
         self.controller.begin();
     }
@@ -49,11 +49,11 @@ impl<C: CorridorController> Controller for BySight<C> {
 
 /// Flies straight ahead.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Straight;
+pub struct StraightController;
 
 /// Flies towards the free columns of the depth image nearest to the target's bearing.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Reactive {
+pub struct ReactiveController {
     yaw: f32,
 }
 
@@ -71,20 +71,20 @@ const COLUMNS: usize = SIDE / BLOCK;
 const ROWS: std::ops::Range<usize> = 20..44;
 const LARGEST: f32 = TURN as f32;
 
-impl CorridorController for Straight {
+impl CorridorController for StraightController {
     fn begin(&mut self) {}
 
-    fn act(&mut self, _: &CorridorSight) -> [f32; 2] {
+    fn act(&mut self, _: &CorridorObservation) -> [f32; 2] {
         [0.0; 2]
     }
 }
 
-impl CorridorController for Reactive {
+impl CorridorController for ReactiveController {
     fn begin(&mut self) {
         self.yaw = 0.0;
     }
 
-    fn act(&mut self, sight: &CorridorSight) -> [f32; 2] {
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
         let (columns, wanted) = (columns(sight), bearing_of_target(sight));
         let (mut best, mut heading) = (f32::NEG_INFINITY, 0.0);
         for at in 0..COLUMNS {
@@ -109,7 +109,7 @@ impl CorridorController for PotentialField {
         self.yaw = 0.0;
     }
 
-    fn act(&mut self, sight: &CorridorSight) -> [f32; 2] {
+    fn act(&mut self, sight: &CorridorObservation) -> [f32; 2] {
         const REACH: f32 = 5.0;
         const PUSH: f32 = 1.2;
         let (sine, cosine) = bearing_of_target(sight).sin_cos();
@@ -136,7 +136,7 @@ fn action(yaw: &mut f32, heading: f32, turn: f32) -> [f32; 2] {
 }
 
 /// Returns the smallest depth in each block of columns.
-fn columns(sight: &CorridorSight) -> [f32; COLUMNS] {
+fn columns(sight: &CorridorObservation) -> [f32; COLUMNS] {
     let mut columns = [f32::INFINITY; COLUMNS];
     for row in ROWS {
         for (at, depth) in sight.depths[row * SIDE..(row + 1) * SIDE].iter().enumerate() {
@@ -158,12 +158,12 @@ fn free_width(columns: &[f32; COLUMNS], heading: f32) -> f32 {
     nearest.fold(super::RANGE, f32::min)
 }
 
-fn bearing_of_target(sight: &CorridorSight) -> f32 {
+fn bearing_of_target(sight: &CorridorObservation) -> f32 {
     sight.target[1].atan2(sight.target[0])
 }
 
 /// Returns the offset of the drone from the middle of the corridor, to the left.
-fn offset(sight: &CorridorSight, yaw: f32) -> f32 {
+fn offset(sight: &CorridorObservation, yaw: f32) -> f32 {
     let (sine, cosine) = yaw.sin_cos();
     -(sine * sight.target[0] + cosine * sight.target[1])
 }

@@ -16,7 +16,7 @@ use super::{
 };
 use crate::classic_control::{check_length, not_begun};
 use crate::raycast::{Pose, Vector};
-use crate::{NumpyRandom, Registered};
+use crate::{NumpyRandom, RegisteredEnvironment};
 
 /// `UavDepthCorridor-v1`: fly 30 m through obstacles, with a depth camera and the direction to a target 5 m ahead.
 ///
@@ -61,7 +61,7 @@ const CHOICES: [[f32; 2]; 7] =
 const SAFETY: [(f32, f32, f64); 2] = [(1.0, 1.5, 2.0), (0.5, 1.0, 10.0)];
 const LIMIT: u32 = 100;
 
-impl Registered for UavDepthCorridor {
+impl RegisteredEnvironment for UavDepthCorridor {
     const ID: &'static str = "UavDepthCorridor-v1";
     type Params = UavDepthCorridorParams;
 
@@ -120,7 +120,7 @@ impl UavDepthCorridor {
     }
 
     fn random(&self, place: Place, purpose: Purpose) -> Random {
-        Random::at([place.stream, place.episode, place.step, purpose as u64])
+        Random::from_key([place.stream, place.episode, place.step, purpose as u64])
     }
 
     /// Generates the world of an episode and puts the drone at its start.
@@ -247,7 +247,7 @@ impl Environment for UavDepthCorridor {
         let place = match (seed, self.place) {
             (None, Some(place)) => Place { episode: place.episode.wrapping_add(1), step: 0, ..place },
             (seed, _) => {
-                let stream = seed.unwrap_or_else(|| NumpyRandom::from_chance().bits());
+                let stream = seed.unwrap_or_else(|| NumpyRandom::from_entropy().bits());
                 Place { stream, episode: 0, step: 0 }
             }
         };

@@ -6,7 +6,8 @@ use opendr_engine::environment::{Snapshot, Space, StateReader};
 use super::lookahead::Lookahead;
 use super::way_costs::WayCosts;
 use super::{
-    CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
+    CAMERA_HEIGHT, CorridorObservation, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET,
+    TURN,
 };
 use crate::sine_cosine::sine_cosine;
 
@@ -22,7 +23,7 @@ use crate::sine_cosine::sine_cosine;
 /// proposal by [`corrected`](Self::corrected) (residual reinforcement learning; Silver et al., 2018, Johannink et al., 2019).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightMemory {
-    sight: CorridorSight,
+    sight: CorridorObservation,
     place: Option<Place>,
     action: [f32; 2],
     proposal: [f32; 2],
@@ -70,7 +71,7 @@ impl Default for FlightMemory {
             [cosine as f32, sine as f32]
         };
         Self {
-            sight: CorridorSight::default(),
+            sight: CorridorObservation::default(),
             place: None,
             action: [0.0; 2],
             proposal: [0.0; 2],
@@ -114,13 +115,13 @@ impl FlightMemory {
     }
 
     /// Returns the action for a policy's correction: the last proposal plus the correction.
-    pub fn corrected(&self, correction: [f32; 2]) -> [f32; 2] {
+    pub fn corrected_action(&self, correction: [f32; 2]) -> [f32; 2] {
         let [heading, turn] = self.proposal;
         [heading + correction[0], turn + correction[1]].map(|part| part.clamp(-1.0, 1.0))
     }
 
     /// Records the action taken: heading and change of yaw, each in [-1, 1].
-    pub fn acted(&mut self, action: [f32; 2]) {
+    pub fn record_action(&mut self, action: [f32; 2]) {
         self.action = action.map(|part| part.clamp(-1.0, 1.0));
         if let Some(place) = &mut self.place {
             *place = place.moved(self.action);
@@ -131,7 +132,7 @@ impl FlightMemory {
     ///
     /// # Errors
     /// `InvalidInput` for an observation that is not of the corridor.
-    pub fn see(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
+    pub fn update(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
         self.sight.read(space, observation)?;
         let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
         let place = expected.corrected(self.sight.target);

@@ -21,12 +21,14 @@ mod variants;
 mod way_costs;
 mod world;
 
-pub use controllers::{BySight, CorridorController, PotentialField, Reactive, Straight};
+pub use controllers::{
+    CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
+};
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
-pub use remembered::Remembered;
-pub use sight::CorridorSight;
+pub use remembered::FlightMemoryWrapper;
+pub use sight::CorridorObservation;
 pub(crate) use variants::registrations;
 pub use variants::{Dense, Discrete, Dynamic, Noisy};
 pub use world::CorridorWorld;

@@ -24,7 +24,7 @@ pub(super) fn picture(corridor: &UavDepthCorridor) -> Result<Image> {
     let eye = Pose { position: along(pose.position, pose.axes[2], CAMERA_HEIGHT), ..pose };
     let shading = Shading::default();
     let wide = Camera::new(COLOUR, HALF_HEIGHT, HALF_WIDTH * COLOUR as f32 / HALF_HEIGHT as f32)?;
-    let ahead = shading.picture(&wide, scene, &eye, FAR)?;
+    let ahead = shading.render(&wide, scene, &eye, FAR)?;
     let mut canvas = vec![255; 3 * WIDTH * 2 * HALF_HEIGHT];
     paste(&mut canvas, &ahead, [0, 0]);
     paste(&mut canvas, &depth_picture(scene, &eye)?, [COLOUR, 0]);
@@ -35,7 +35,7 @@ pub(super) fn picture(corridor: &UavDepthCorridor) -> Result<Image> {
 /// Renders the depth image in grey, dark for near, at the drone's resolution.
 fn depth_picture(scene: &Scene, eye: &Pose) -> Result<Image> {
     let mut buffer = DepthBuffer::default();
-    Camera::new(SIDE, SIDE, HALF_WIDTH)?.look(scene, eye, RANGE, &mut buffer);
+    Camera::new(SIDE, SIDE, HALF_WIDTH)?.render_depth(scene, eye, RANGE, &mut buffer);
     let depths: Vec<_> = buffer.depths().map(|depth| (255.0 * depth / RANGE) as u8).collect();
     let at = |pixel: usize| pixel * SIDE / DEPTH;
     let pixels =
@@ -48,7 +48,7 @@ fn map(corridor: &UavDepthCorridor, shading: &Shading) -> Result<Image> {
     // Seen from above, with the corridor from left to right.
     let axes = [[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let pose = Pose { position: [(START + FINISH) / 2.0, 0.0, ABOVE], axes };
-    let mut image = shading.picture(&camera, corridor.world().scene(), &pose, 2.0 * ABOVE)?;
+    let mut image = shading.render(&camera, corridor.world().scene(), &pose, 2.0 * ABOVE)?;
     let points: Vec<Point> =
         corridor.path().iter().filter_map(|point| camera.project(&pose, *point)).collect();
     let mut canvas = Canvas::over(&mut image);

@@ -27,7 +27,7 @@ impl RangeCamera {
         shares: &mut [f32],
     ) {
         let position = along(drone.position, drone.axes[2], CAMERA_HEIGHT);
-        self.camera.look(scene, &Pose { position, ..*drone }, RANGE, &mut self.buffer);
+        self.camera.render_depth(scene, &Pose { position, ..*drone }, RANGE, &mut self.buffer);
         for (share, depth) in shares.iter_mut().zip(self.buffer.depths()) {
             *share = depth * (1.0 / RANGE);
         }

@@ -11,14 +11,14 @@ use super::FlightMemory;
 /// A wrapper whose observations are the features of a [`FlightMemory`], and whose actions correct its proposals. Policies are
 /// trained in it; the action zero follows the proposals.
 #[derive(Debug, Clone)]
-pub struct Remembered<E> {
+pub struct FlightMemoryWrapper<E> {
     inner: E,
     spec: EnvironmentSpec,
     memory: FlightMemory,
     observation: Vec<f32>,
 }
 
-impl<E: Environment> Remembered<E> {
+impl<E: Environment> FlightMemoryWrapper<E> {
     /// Wraps a corridor whose action is two numbers.
     ///
     /// # Errors
@@ -44,11 +44,11 @@ impl<E: Environment> Remembered<E> {
                 FlightMemory::LEN
             ))
         })?;
-        self.memory.see(&self.inner.spec().observation, &self.observation, known)
+        self.memory.update(&self.inner.spec().observation, &self.observation, known)
     }
 }
 
-impl<E: Environment> Environment for Remembered<E> {
+impl<E: Environment> Environment for FlightMemoryWrapper<E> {
     fn spec(&self) -> &EnvironmentSpec {
         &self.spec
     }
@@ -67,9 +67,9 @@ impl<E: Environment> Environment for Remembered<E> {
                 action.len()
             )));
         };
-        let action = self.memory.corrected([heading, turn]);
+        let action = self.memory.corrected_action([heading, turn]);
         let step = self.inner.step(&action, &mut self.observation)?;
-        self.memory.acted(action);
+        self.memory.record_action(action);
         self.write_features(observation)?;
         Ok(step)
     }

@@ -8,20 +8,20 @@ use crate::raycast::Vector;
 
 /// A decoded observation of the corridor.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CorridorSight {
+pub struct CorridorObservation {
     /// Depth of [`SIDE`] x [`SIDE`] pixels in metres, from the upper row.
     pub depths: Vec<f32>,
     /// Vector to the target in metres: ahead, left, up.
     pub target: Vector,
 }
 
-impl Default for CorridorSight {
+impl Default for CorridorObservation {
     fn default() -> Self {
         Self { depths: vec![RANGE; SIDE * SIDE], target: [0.0; 3] }
     }
 }
 
-impl CorridorSight {
+impl CorridorObservation {
     /// Decodes an observation of a corridor's space.
     ///
     /// # Errors

@@ -2,7 +2,7 @@ use opendr_engine::environment::{Environment, ResetOptions, Space, Step};
 use opendr_engine::params::{ParamMap, ParamValue, Params as _};
 
 use super::*;
-use crate::{Registered, make};
+use crate::{RegisteredEnvironment, make};
 
 fn corridor(options: CorridorOptions, form: CorridorForm) -> (UavDepthCorridor, Vec<f32>) {
     let environment = UavDepthCorridor::new(&UavDepthCorridorParams { options, form }).unwrap();
@@ -32,7 +32,7 @@ fn options(pairs: &[(&str, ParamValue)]) -> ParamMap {
 fn successes(controller: &mut dyn CorridorController) -> u32 {
     let mut environment = make("UavDepthCorridor-v1").unwrap();
     let space = environment.spec().observation.clone();
-    let (mut observation, mut sight) = (vec![0.0; space.len()], CorridorSight::default());
+    let (mut observation, mut sight) = (vec![0.0; space.len()], CorridorObservation::default());
     let mut successes = 0;
     for seed in 0..500 {
         environment.reset(Some(1_000_000 + seed), &ResetOptions::new(), &mut observation).unwrap();
@@ -53,8 +53,8 @@ fn successes(controller: &mut dyn CorridorController) -> u32 {
 /// 71.1 %, that of the prototype in 71.9 % of its own worlds.
 #[test]
 fn controllers_succeed_as_often_as_measured() {
-    assert!((92..=100).contains(&successes(&mut Straight)));
-    assert!((345..=355).contains(&successes(&mut Reactive::default())));
+    assert!((92..=100).contains(&successes(&mut StraightController)));
+    assert!((345..=355).contains(&successes(&mut ReactiveController::default())));
     assert!((363..=373).contains(&successes(&mut PotentialField::default())));
 }
 
@@ -185,7 +185,7 @@ fn forms_change_spaces_only() {
     let shares = empty(CorridorForm { pose: true, ..shares });
     assert!(matches!(shares.0.spec().observation, Space::Box { .. }));
     assert_eq!(shares.1.len(), SIDE * SIDE + 5);
-    let [mut one, mut other] = [CorridorSight::default(), CorridorSight::default()];
+    let [mut one, mut other] = [CorridorObservation::default(), CorridorObservation::default()];
     one.read(&bytes.0.spec().observation, &bytes.1).unwrap();
     other.read(&shares.0.spec().observation, &shares.1).unwrap();
     assert!(one.depths.iter().zip(&other.depths).all(|(a, b)| (a - b).abs() <= RANGE / 255.0));
@@ -239,12 +239,12 @@ fn the_memory_estimates_the_position() {
     let (mut environment, mut observation) = empty(CorridorForm::default());
     let (mut memory, mut known) = (FlightMemory::default(), [0.0; FlightMemory::LEN]);
     let space = environment.spec().observation.clone();
-    memory.see(&space, &observation, &mut known).unwrap();
+    memory.update(&space, &observation, &mut known).unwrap();
     for step in 0..20 {
         let action = [0.7 * ((step % 3) as f32 - 1.0), if step % 8 < 4 { 0.5 } else { -0.5 }];
         environment.step(&action, &mut observation).unwrap();
-        memory.acted(action);
-        memory.see(&space, &observation, &mut known).unwrap();
+        memory.record_action(action);
+        memory.update(&space, &observation, &mut known).unwrap();
         let [_, offset, sine, _, advance, _, heading, _] = *known.last_chunk().unwrap();
         let [x, y, _] = environment.position();
         assert!((offset * HALF_TRACK - y).abs() < 5e-3, "{step}: {offset} {y}");
@@ -254,7 +254,7 @@ fn the_memory_estimates_the_position() {
     }
     assert!(known[..FlightMemory::WAYS].iter().all(|way| *way == 1.0), "the corridor is empty");
     assert!(FlightMemory::space().unwrap().contains(&known));
-    assert!(memory.see(&space, &observation[1..], &mut known).is_err());
+    assert!(memory.update(&space, &observation[1..], &mut known).is_err());
 }
 
 /// An obstacle that was ahead and is now beside the drone is outside the image, but in the memory.
@@ -265,14 +265,14 @@ fn the_memory_contains_obstacles_outside_the_image() {
     let space = environment.spec().observation.clone();
     let (mut memory, mut known) = (FlightMemory::default(), [0.0; FlightMemory::LEN]);
     for _ in 0..9 {
-        memory.see(&space, &observation, &mut known).unwrap();
+        memory.update(&space, &observation, &mut known).unwrap();
         environment.step(&[0.0, 0.0], &mut observation).unwrap();
-        memory.acted([0.0, 0.0]);
+        memory.record_action([0.0, 0.0]);
     }
-    memory.see(&space, &observation, &mut known).unwrap();
+    memory.update(&space, &observation, &mut known).unwrap();
     let mut fresh = FlightMemory::default();
     let mut ahead = [0.0; FlightMemory::LEN];
-    fresh.see(&space, &observation, &mut ahead).unwrap();
+    fresh.update(&space, &observation, &mut ahead).unwrap();
     // 67.5 degrees to the left, three times half the field of view.
     let sideways = FlightMemory::WAYS / 2 - 8 - 8;
     let wall = environment.world().walls().unwrap() - environment.position()[1] - RADIUS;
@@ -280,13 +280,13 @@ fn the_memory_contains_obstacles_outside_the_image() {
     assert!((known[sideways] * 10.0 - wall).abs() < 0.3, "{} {wall}", known[sideways] * 10.0);
     assert_eq!(ahead[sideways], 1.0);
     memory.reset();
-    memory.see(&space, &observation, &mut known).unwrap();
+    memory.update(&space, &observation, &mut known).unwrap();
     assert_eq!(known[sideways], 1.0);
 }
 
 #[test]
 fn snapshots_restore_the_flight_memory() {
-    let mut corridor = Remembered::new(make("UavDepthCorridor-v1").unwrap()).unwrap();
+    let mut corridor = FlightMemoryWrapper::new(make("UavDepthCorridor-v1").unwrap()).unwrap();
     let mut observation = [0.0; FlightMemory::LEN];
     corridor.reset(Some(5), &ResetOptions::new(), &mut observation).unwrap();
     for _ in 0..3 {
@@ -297,7 +297,7 @@ fn snapshots_restore_the_flight_memory() {
     let (there, mut again) = (observation, observation);
     corridor.restore(&snapshot).unwrap();
     assert_eq!((corridor.step(&[-0.3, 0.4], &mut again).unwrap(), again), (first, there));
-    assert!(Remembered::new(make("UavDepthCorridor-discrete-v1").unwrap()).is_err());
+    assert!(FlightMemoryWrapper::new(make("UavDepthCorridor-discrete-v1").unwrap()).is_err());
     assert!(corridor.step(&[0.0; 3], &mut observation).is_err());
     assert!(corridor.step(&[0.0; 2], &mut observation[1..]).is_err());
 }
@@ -305,7 +305,7 @@ fn snapshots_restore_the_flight_memory() {
 /// Out of 100 worlds with 8 to 10 obstacles, without a policy.
 #[test]
 fn proposals_succeed_in_dense_corridors() {
-    let mut corridor = Remembered::new(make("UavDepthCorridor-dense-v1").unwrap()).unwrap();
+    let mut corridor = FlightMemoryWrapper::new(make("UavDepthCorridor-dense-v1").unwrap()).unwrap();
     let mut observation = [0.0; FlightMemory::LEN];
     let mut flies = |seed: u64, corrections: &dyn Fn(&[f32]) -> [f32; 2]| {
         corridor.reset(Some(seed), &ResetOptions::new(), &mut observation).unwrap();

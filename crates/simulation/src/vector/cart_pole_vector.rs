@@ -68,7 +68,7 @@ impl CartPoleVector {
         if let Some(seed) = seed {
             self.randoms[index] = Some(NumpyRandom::new(seed));
         }
-        let random = self.randoms[index].get_or_insert_with(NumpyRandom::from_chance);
+        let random = self.randoms[index].get_or_insert_with(NumpyRandom::from_entropy);
         let state = self.dynamics.initial(random, options)?;
         let states = &mut self.states;
         [states.x[index], states.speed[index], states.angle[index], states.turning[index]] = state;

@@ -32,7 +32,7 @@ pub enum Autoreset {
 pub enum Seeds<'a> {
     /// Each environment continues its random numbers, or starts with a random seed.
     #[default]
-    Chance,
+    Random,
     /// Environment `i` has the seed `seed + i`.
     From(u64),
     /// One seed per environment.
@@ -52,7 +52,7 @@ impl Seeds<'_> {
 
     fn at(&self, index: usize) -> Option<u64> {
         match self {
-            Self::Chance => None,
+            Self::Random => None,
             Self::From(seed) => Some(seed.wrapping_add(index as u64)),
             Self::Each(seeds) => seeds.get(index).copied().flatten(),
         }

@@ -27,7 +27,7 @@ fn played(vector: &mut dyn VecEnvironment, steps: usize) -> Vec<Batch> {
         batches.push(batch.clone());
         let over: Vec<_> = batch.terminated.iter().zip(&batch.truncated).map(|(a, b)| a | b).collect();
         if vector.autoreset() == Autoreset::Disabled && over.contains(&true) {
-            vector.reset(Seeds::Chance, &ResetOptions::new(), Some(&over), &mut batch).unwrap();
+            vector.reset(Seeds::Random, &ResetOptions::new(), Some(&over), &mut batch).unwrap();
         }
     }
     batches
@@ -140,9 +140,9 @@ fn wrong_sizes_and_actions_are_reported() {
         assert!(vector.step(&[0.0; 3], &mut batch).is_err());
         let none = ResetOptions::new();
         assert!(vector.reset(Seeds::Each(&[None; 2]), &none, None, &mut batch).is_err());
-        assert!(vector.reset(Seeds::Chance, &none, Some(&[false; 3]), &mut batch).is_err());
+        assert!(vector.reset(Seeds::Random, &none, Some(&[false; 3]), &mut batch).is_err());
         let mut small = Batch::new(vector.spec(), 2);
-        assert!(vector.reset(Seeds::Chance, &none, None, &mut small).is_err());
+        assert!(vector.reset(Seeds::Random, &none, None, &mut small).is_err());
         vector.reset(Seeds::From(0), &none, None, &mut batch).unwrap();
         assert!(vector.step(&[0.0; 2], &mut batch).is_err());
         let error = vector.step(&[0.0, 1.0, f32::NAN], &mut batch).unwrap_err().to_string();

@@ -16,7 +16,7 @@ pub struct NormaliseObservation<E> {
     /// Running statistics of the observations; save them with a policy.
     pub moments: RunningMoments,
     /// Whether observations update the statistics; disable it for evaluations.
-    pub learning: bool,
+    pub update_statistics: bool,
 }
 
 impl<E: Environment> NormaliseObservation<E> {
@@ -33,11 +33,16 @@ impl<E: Environment> NormaliseObservation<E> {
             )));
         };
         spec.observation = Space::uniform(f32::NEG_INFINITY, f32::INFINITY, shape)?;
-        Ok(Self { inner, moments: RunningMoments::new(spec.observation.len()), spec, learning: true })
+        Ok(Self {
+            inner,
+            moments: RunningMoments::new(spec.observation.len()),
+            spec,
+            update_statistics: true,
+        })
     }
 
     fn normalise(&mut self, observation: &mut [f32]) {
-        if self.learning {
+        if self.update_statistics {
             self.moments.add(observation.iter().copied().map(f64::from));
         }
         self.moments.normalise(observation);

@@ -19,7 +19,7 @@ pub struct NormaliseReward<E> {
     /// Running statistics of the discounted return; save them with a policy.
     pub moments: RunningMoments,
     /// Whether rewards update the statistics.
-    pub learning: bool,
+    pub update_statistics: bool,
 }
 
 impl<E: Environment> NormaliseReward<E> {
@@ -36,7 +36,14 @@ impl<E: Environment> NormaliseReward<E> {
             reward_threshold: None,
             ..inner.spec().clone()
         };
-        Ok(Self { inner, spec, discount, discounted: 0.0, moments: RunningMoments::new(1), learning: true })
+        Ok(Self {
+            inner,
+            spec,
+            discount,
+            discounted: 0.0,
+            moments: RunningMoments::new(1),
+            update_statistics: true,
+        })
     }
 }
 
@@ -54,7 +61,7 @@ impl<E: Environment> Environment for NormaliseReward<E> {
         // As in Gymnasium, the return continues after a truncated episode.
         let carried = if step.terminated { 0.0 } else { self.discounted * self.discount };
         self.discounted = carried + step.reward;
-        if self.learning {
+        if self.update_statistics {
             self.moments.add([self.discounted]);
         }
         step.reward /= (self.moments.variance()[0] + EPSILON).sqrt();

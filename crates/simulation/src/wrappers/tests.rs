@@ -4,7 +4,7 @@ use opendr_engine::params::ParamMap;
 
 use super::*;
 use crate::classic_control::{CartPole, CartPoleParams, Pendulum, PendulumParams};
-use crate::{Registered, Registry, make};
+use crate::{RegisteredEnvironment, Registry, make};
 
 #[test]
 fn a_time_limit_truncates_only() {

@@ -6,7 +6,7 @@ use burn::backend::capture::{CaptureBackend, TensorId};
 use burn::tensor::kind::Basic;
 use burn::tensor::{Bool, Device, Float, Int, Tensor};
 use opendr_engine::{Error, Result};
-use opendr_onnx::Kind;
+use opendr_onnx::ElementType;
 
 /// Input of a model: `Input::new("image", [1, 3, 300, 300])`.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ impl<const D: usize, K> Input<D, K> {
 #[derive(Debug)]
 pub struct Declared {
     pub(super) name: String,
-    pub(super) kind: Kind,
+    pub(super) kind: ElementType,
     pub(super) shape: Vec<usize>,
     pub(super) open: Option<usize>,
 }
@@ -53,7 +53,7 @@ pub struct Declared {
 /// Element types of inputs and outputs: floats, integers, booleans.
 pub trait ElementKind: Basic + Sized {
     /// The element type in ONNX.
-    const ONNX: Kind;
+    const ONNX: ElementType;
 
     /// Returns the id of the tensor in the recording.
     #[doc(hidden)]

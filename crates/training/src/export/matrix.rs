@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{FloatOperationIr, ModuleOperationIr};
 use opendr_engine::Result;
-use opendr_onnx::{Kind, Operator};
+use opendr_onnx::{ElementType, Operator};
 
 use super::lowering::Lowering;
 
@@ -23,7 +23,7 @@ pub(super) fn lower_module(graph: &mut Lowering<'_>, operation: &ModuleOperation
     };
     let (x, weight, bias) = (graph.wire(&op.x)?, graph.wire(&op.weight)?, graph.wire(bias)?);
     let dims = graph.dims(&op.out);
-    let product = graph.step(Operator::new("MatMul"), &[&x, &weight], Kind::Float, dims)?;
+    let product = graph.step(Operator::new("MatMul"), &[&x, &weight], ElementType::Float, dims)?;
     graph.write(Operator::new("Add"), &[&product, &bias], &op.out)?;
     Ok(true)
 }

@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{BaseOperationIr, NumericOperationIr, ReduceDimOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, Operator, Value};
 
 use super::lowering::Lowering;
 
@@ -41,7 +41,8 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &NumericOperationIr) ->
             reduce(graph, "ReduceMin", &x, &[op.dim], &op.out)?;
         }
         Op::CumSum(op) => {
-            let (x, axis) = (graph.wire(&op.input)?, Wire::constant(opendr_onnx::Array::int(op.axis as i64)));
+            let (x, axis) =
+                (graph.wire(&op.input)?, Value::constant(opendr_onnx::Array::int(op.axis as i64)));
             graph.write(Operator::new("CumSum"), &[&x, &axis], &op.out)?;
         }
         _ => return Ok(false),
@@ -60,11 +61,11 @@ pub(super) fn lower_base(graph: &mut Lowering<'_>, operation: &BaseOperationIr) 
         _ => return Ok(false),
     };
     let x = graph.wire(input)?;
-    let to_float = Operator::new("Cast").int("to", Kind::Float.data_type() as i64);
-    let numbers = graph.step(to_float, &[&x], Kind::Float, x.dims().to_vec())?;
+    let to_float = Operator::new("Cast").int("to", ElementType::Float.data_type() as i64);
+    let numbers = graph.step(to_float, &[&x], ElementType::Float, x.dims().to_vec())?;
     let one = reduced(graph, name, &numbers, &axes)?;
     let one = reshaped_as(graph, one, out)?;
-    graph.write(Operator::new("Cast").int("to", Kind::Bool.data_type() as i64), &[&one], out)?;
+    graph.write(Operator::new("Cast").int("to", ElementType::Bool.data_type() as i64), &[&one], out)?;
     Ok(true)
 }
 
@@ -85,7 +86,7 @@ fn whole(graph: &mut Lowering<'_>, name: &'static str, input: &TensorIr, out: &T
 fn reduce(
     graph: &mut Lowering<'_>,
     name: &'static str,
-    x: &Wire,
+    x: &Value,
     axes: &[usize],
     out: &TensorIr,
 ) -> Result<()> {
@@ -96,25 +97,25 @@ fn reduce(
 }
 
 /// Returns the reduction with size one along the axes.
-fn reduced(graph: &mut Lowering<'_>, name: &'static str, x: &Wire, axes: &[usize]) -> Result<Wire> {
+fn reduced(graph: &mut Lowering<'_>, name: &'static str, x: &Value, axes: &[usize]) -> Result<Value> {
     let mut dims = x.dims().to_vec();
     axes.iter().for_each(|&axis| dims[axis] = Some(1));
     let axes = axes.iter().map(|&axis| axis as i64);
     let operator = Operator::new(name).int("keepdims", 1);
     match name {
         // The axes are an input of the sum from opset 13 on, of the others from 18 on.
-        "ReduceSum" => graph.step(operator, &[x, &Wire::ints(axes)], x.kind(), dims),
+        "ReduceSum" => graph.step(operator, &[x, &Value::ints(axes)], x.kind(), dims),
         _ => graph.step(operator.ints("axes", axes), &[x], x.kind(), dims),
     }
 }
 
 /// Burn's reductions keep the axis, or return `[1]`.
-fn reshaped_as(graph: &mut Lowering<'_>, x: Wire, out: &TensorIr) -> Result<Wire> {
+fn reshaped_as(graph: &mut Lowering<'_>, x: Value, out: &TensorIr) -> Result<Value> {
     if x.rank() == out.shape.num_dims() {
         return Ok(x);
     }
     let dims = graph.dims(out);
-    let shape = Wire::ints(out.shape.iter().map(|&dim| dim as i64));
+    let shape = Value::ints(out.shape.iter().map(|&dim| dim as i64));
     graph.step(Operator::new("Reshape"), &[&x, &shape], x.kind(), dims)
 }
 

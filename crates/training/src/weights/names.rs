@@ -29,17 +29,17 @@ pub(super) fn plan(slots: &[Slot], table: &WeightTable, rules: &Rules) -> Result
         };
         if slot.file_shape() == weight.shape() {
             plan.insert(slot.path.clone(), slot.values_from_file(weight.values()));
-            report.taken.push(slot.path.clone());
+            report.loaded.push(slot.path.clone());
         } else {
             report.mismatched.push(Mismatch {
                 parameter: slot.path.clone(),
-                wanted: slot.file_shape(),
-                given: weight.shape().to_vec(),
+                expected: slot.file_shape(),
+                actual: weight.shape().to_vec(),
             });
         }
     }
     let left = table.weights().iter().filter(|weight| by_name.contains_key(&rules.renamed(weight.name())));
-    report.left = left.map(|weight| weight.name().to_owned()).collect();
+    report.unexpected = left.map(|weight| weight.name().to_owned()).collect();
     Ok((plan, report))
 }
 

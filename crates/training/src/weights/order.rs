@@ -33,11 +33,11 @@ pub(super) fn plan(slots: &[Slot], table: &WeightTable, rules: &Rules) -> Result
     }
     let mut report = Report::default();
     for slot in slots.iter().filter(|slot| slot.covered) {
-        let list = if plan.contains_key(&slot.path) { &mut report.taken } else { &mut report.missing };
+        let list = if plan.contains_key(&slot.path) { &mut report.loaded } else { &mut report.missing };
         list.push(slot.path.clone());
     }
     let left = table.weights().iter().map(Weight::name).filter(|name| !used.contains(name));
-    report.left = left.map(str::to_owned).collect();
+    report.unexpected = left.map(str::to_owned).collect();
     Ok((plan, report))
 }
 

@@ -10,22 +10,22 @@ pub struct Mismatch {
     /// Name of the parameter in the module.
     pub parameter: String,
     /// Shape in the module.
-    pub wanted: Vec<usize>,
+    pub expected: Vec<usize>,
     /// Shape in the file.
-    pub given: Vec<usize>,
+    pub actual: Vec<usize>,
 }
 
 /// Result of an import: loaded, missing, mismatched and unused weights.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Report {
     /// Parameters with values from the file, by the module's names.
-    pub taken: Vec<String>,
+    pub loaded: Vec<String>,
     /// Parameters without a weight in the file, by the module's names; they are unchanged.
     pub missing: Vec<String>,
     /// Parameters for which the file has another shape; they are unchanged.
     pub mismatched: Vec<Mismatch>,
     /// Unused weights, by the file's names.
-    pub left: Vec<String>,
+    pub unexpected: Vec<String>,
 }
 
 /// Maximum number of names in a message.
@@ -37,7 +37,7 @@ impl Report {
     /// # Errors
     /// `InvalidInput` with the names of the first parameters that have none.
     pub fn complete(&self) -> Result<()> {
-        if let Some(Mismatch { parameter, wanted, given }) = self.mismatched.first() {
+        if let Some(Mismatch { parameter, expected: wanted, actual: given }) = self.mismatched.first() {
             return Err(Error::invalid_input(format!(
                 "{} weights do not fit: {parameter} is {wanted:?} in the network and {given:?} in the file",
                 self.mismatched.len()
@@ -47,10 +47,10 @@ impl Report {
             0 => Ok(()),
             count => Err(Error::invalid_input(format!(
                 "the file has no weights for {count} of {} parameters: {}; {} of its weights are unused: {}",
-                count + self.taken.len(),
+                count + self.loaded.len(),
                 first(&self.missing),
-                self.left.len(),
-                first(&self.left),
+                self.unexpected.len(),
+                first(&self.unexpected),
             ))),
         }
     }
@@ -66,13 +66,13 @@ fn first(names: &[String]) -> String {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { taken, missing, mismatched, left } = self;
+        let Self { loaded: taken, missing, mismatched, unexpected: left } = self;
         let all = taken.len() + missing.len() + mismatched.len();
         write!(f, "{} of {all} parameters loaded", taken.len())?;
         if !missing.is_empty() {
             write!(f, "; missing: {}", first(missing))?;
         }
-        if let [Mismatch { parameter, wanted, given }, ..] = &mismatched[..] {
+        if let [Mismatch { parameter, expected: wanted, actual: given }, ..] = &mismatched[..] {
             write!(f, "; {} of another shape: {parameter} ({given:?} for {wanted:?})", mismatched.len())?;
         }
         if !left.is_empty() {

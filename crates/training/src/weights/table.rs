@@ -128,7 +128,7 @@ impl WeightTable {
         bytes: &[u8],
     ) -> Result<()> {
         Self::checked_numbers(self.numbers, bytes.len() / element.bytes(), &name)?;
-        self.add(name, shape, element.numbers(bytes))
+        self.add(name, shape, element.decode(bytes))
     }
 
     /// Returns the new total when `more` values fit beside `numbers`; to be called before they are read.

@@ -172,7 +172,7 @@ fn weights_are_assigned_by_name() {
     let rules = Rules::by_name().rename("0.*", "conv.*").rename("1.*", "norm.*").rename("2.*", "dense.*");
     let (module, report) = table(true, true).apply(normed(true), &rules).unwrap();
     report.complete().unwrap();
-    assert_eq!((report.taken.len(), report.left.len()), (8, 0));
+    assert_eq!((report.loaded.len(), report.unexpected.len()), (8, 0));
     let dense: Vec<f32> = module.dense.weight.val().into_data().try_to_vec().unwrap();
     let [a, b, c, d, e, f] = numbers(6, 6)[..] else { panic!() };
     assert_eq!(dense, [a, c, e, b, d, f]);
@@ -186,17 +186,17 @@ fn mismatches_are_reported() {
     let mut table = table(true, false);
     table.add("dense.bias", vec![5], vec![0.0; 5]).unwrap();
     let (_, report) = table.apply(plain(true), &rules).unwrap();
-    assert_eq!(report.taken, ["conv.weight", "conv.bias"]);
+    assert_eq!(report.loaded, ["conv.weight", "conv.bias"]);
     assert_eq!(report.missing, ["dense.weight"]);
-    assert_eq!(report.mismatched[0].given, [5]);
-    assert_eq!(report.left, ["2.weight", "2.bias"]);
+    assert_eq!(report.mismatched[0].actual, [5]);
+    assert_eq!(report.unexpected, ["2.weight", "2.bias"]);
     let error = report.complete().unwrap_err();
     assert!(error.kind() == ErrorKind::InvalidInput && error.to_string().contains("dense.bias"), "{error}");
 
     let (_, report) = table.apply(plain(true), &rules.clone().skip("dense")).unwrap();
     report.complete().unwrap();
     let (_, report) = table.apply(plain(true), &rules.only("dense.weight")).unwrap();
-    assert_eq!((report.taken.len(), report.missing.len()), (0, 1));
+    assert_eq!((report.loaded.len(), report.missing.len()), (0, 1));
     let clash = Rules::by_name().rename("0.*", "2.*");
     assert_eq!(table.apply(plain(true), &clash).unwrap_err().kind(), ErrorKind::InvalidParam);
 }
@@ -240,7 +240,7 @@ fn layers_out_of_order_are_refused_by_number() {
 
     let (_, report) = table(true, false).apply(conv(true), &Rules::by_order()).unwrap();
     report.complete().unwrap();
-    assert_eq!(report.left, ["2.weight", "2.bias"]);
+    assert_eq!(report.unexpected, ["2.weight", "2.bias"]);
 }
 
 #[test]

@@ -12,7 +12,7 @@ use crate::turn;
 use opendr_engine::learner::FitJob;
 use opendr_engine::model::Model;
 use opendr_engine::{Device, ErrorKind, Progress, Random, Result, Statistics, Unit};
-use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, begin, fit_network};
+use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, fit_network, seeded_device};
 
 /// Environment variable with the output folder of the process that is killed.
 const CHILD: &str = "OPENDR_TEST_TRAINS_INTO";
@@ -40,7 +40,7 @@ fn params() -> TrainingParams {
 
 fn train(params: &TrainingParams, dataset: &Spirals, job: &FitJob<'_>) -> Result<Statistics> {
     let _turn = turn();
-    let network = Network::new(&begin(job, params)?);
+    let network = Network::new(&seeded_device(job, params)?);
     fit_network(&ClassifyPoints::default(), network, params, dataset, None, job)
 }
 
@@ -193,11 +193,11 @@ fn the_best_by_metric_is_kept_and_early_stopping_stops() {
         seen.push(Model::open(candidate)?.file("weights.bin")?);
         let value = values[seen.len() - 1];
         let numbers = [("score".to_owned(), value)].into();
-        Ok(Score { name: "score".to_owned(), value, is_error: false, numbers, picture: None })
+        Ok(Score { name: "score".to_owned(), value, is_error: false, numbers, image: None })
     };
     let _turn = turn();
     let job = job(&output);
-    let network = Network::new(&begin(&job, &params).unwrap());
+    let network = Network::new(&seeded_device(&job, &params).unwrap());
     let statistics =
         fit_network(&ClassifyPoints::default(), network, &params, &dataset, Some(&mut validate), &job)
             .unwrap();
@@ -215,7 +215,7 @@ fn a_batch_too_large_for_memory_is_refused() {
     let params = TrainingParams { batch_size: 65_536, accumulate: 1, ..params() };
     let _turn = turn();
     let job = job(&output);
-    let network = Network::new(&begin(&job, &params).unwrap());
+    let network = Network::new(&seeded_device(&job, &params).unwrap());
     let objective = ClassifyPoints { ballast: 8 << 20 };
     let dataset = Spirals { count: 65_536, broken: None };
     let error = fit_network(&objective, network, &params, &dataset, None, &job).unwrap_err();

@@ -40,7 +40,7 @@ impl Hyperband {
 
     /// Returns the bracket of a trial.
     pub fn bracket(&self, number: usize) -> usize {
-        let mut at = Random::at([number as u64]).below(self.shares.iter().sum());
+        let mut at = Random::from_key([number as u64]).below(self.shares.iter().sum());
         let bracket = self.shares.iter().position(|share| {
             let here = at < *share;
             at = at.saturating_sub(*share);

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use crate::records::{StudyRecord, TrialRecord};
 use crate::sampler::axis::Axis;
 use crate::sampler::symmetric_eigen::eigen_from_symmetric;
-use crate::sampler::{Drawn, Sampler, stream};
+use crate::sampler::{DrawnParameters, Sampler, stream};
 use crate::space::Parameter;
 
 /// System attribute with a trial's generation and its position before rounding.
@@ -35,7 +35,7 @@ impl CmaEs {
 }
 
 impl Sampler for CmaEs {
-    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<Drawn> {
+    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
         let mut random = stream(self.seed, number, parameters);
         let axes: Vec<Axis> = parameters.iter().map(|parameter| Axis::new(&parameter.distribution)).collect();
         let size = axes.iter().filter(|axis| matches!(axis, Axis::Line(_))).count();
@@ -54,7 +54,7 @@ impl Sampler for CmaEs {
         } else {
             Vec::new()
         };
-        Ok(Drawn { numbers, notes })
+        Ok(DrawnParameters { numbers, system_attributes: notes })
     }
 }
 

@@ -20,11 +20,11 @@ pub use tpe::Tpe;
 
 /// Parameters drawn for a trial.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Drawn {
+pub struct DrawnParameters {
     /// One number per parameter, in the representation of its distribution.
     pub numbers: Vec<f64>,
     /// System attributes of the trial that the sampler needs later.
-    pub notes: Vec<(String, Value)>,
+    pub system_attributes: Vec<(String, Value)>,
 }
 
 /// Chooses parameters of trials.
@@ -36,13 +36,13 @@ pub trait Sampler: Send + Sync {
     ///
     /// # Errors
     /// When the sampler cannot search such parameters.
-    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<Drawn>;
+    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters>;
 }
 
 /// Returns the random numbers of a sampler for a trial and a group of parameters.
 fn stream(seed: u64, number: usize, parameters: &[&Parameter]) -> opendr_engine::Random {
     let group = parameters.first().map_or(0, |parameter| parameter.position);
-    opendr_engine::Random::at([seed, number as u64, group as u64])
+    opendr_engine::Random::from_key([seed, number as u64, group as u64])
 }
 
 #[cfg(test)]

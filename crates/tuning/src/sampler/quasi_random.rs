@@ -4,7 +4,7 @@ use opendr_engine::{Random, Result};
 
 use crate::records::StudyRecord;
 use crate::sampler::axis::Axis;
-use crate::sampler::{Drawn, Sampler};
+use crate::sampler::{DrawnParameters, Sampler};
 use crate::space::Parameter;
 
 /// Low-discrepancy points: Halton's sequence with randomly permuted digits (Owen 2017, "A
@@ -22,11 +22,11 @@ impl QuasiRandom {
 }
 
 impl Sampler for QuasiRandom {
-    fn draw(&self, _: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<Drawn> {
+    fn draw(&self, _: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
         let unit = |it: &&Parameter| scrambled_halton(self.seed, number, it.position);
         let numbers =
             parameters.iter().map(|it| Axis::new(&it.distribution).number_from_unit(unit(it))).collect();
-        Ok(Drawn { numbers, notes: Vec::new() })
+        Ok(DrawnParameters { numbers, system_attributes: Vec::new() })
     }
 }
 
@@ -43,7 +43,7 @@ fn scrambled_halton(seed: u64, index: usize, dimension: usize) -> f64 {
         }
         digits.clear();
         digits.extend(0..base);
-        Random::at([seed, dimension as u64, digit]).shuffle(&mut digits);
+        Random::from_key([seed, dimension as u64, digit]).shuffle(&mut digits);
         unit += weight * digits[rest % base] as f64;
         rest /= base;
     }

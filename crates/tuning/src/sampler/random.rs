@@ -4,7 +4,7 @@ use opendr_engine::Result;
 
 use crate::records::StudyRecord;
 use crate::sampler::axis::Axis;
-use crate::sampler::{Drawn, Sampler, stream};
+use crate::sampler::{DrawnParameters, Sampler, stream};
 use crate::space::Parameter;
 
 /// Samples uniformly (Bergstra and Bengio 2012).
@@ -21,10 +21,10 @@ impl RandomSearch {
 }
 
 impl Sampler for RandomSearch {
-    fn draw(&self, _: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<Drawn> {
+    fn draw(&self, _: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
         let mut random = stream(self.seed, number, parameters);
         let numbers =
             parameters.iter().map(|it| Axis::new(&it.distribution).number_from_unit(random.unit())).collect();
-        Ok(Drawn { numbers, notes: Vec::new() })
+        Ok(DrawnParameters { numbers, system_attributes: Vec::new() })
     }
 }

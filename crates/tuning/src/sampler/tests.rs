@@ -66,7 +66,7 @@ impl Sampler for Boxed {
         study: &crate::StudyRecord,
         number: usize,
         parameters: &[&crate::Parameter],
-    ) -> opendr_engine::Result<crate::Drawn> {
+    ) -> opendr_engine::Result<crate::DrawnParameters> {
         self.0.draw(study, number, parameters)
     }
 }

@@ -27,10 +27,10 @@ fn filled(path: &Path) -> StudyRecord {
             space.with("net", Distribution::categorical([json!("a"), json!(null), json!([1, 2])])?)
         })
         .unwrap();
-    study.note_of_study("why \"NaN\"", json!({"a": [1, 2.5, null]})).unwrap();
+    study.set_study_attribute("why \"NaN\"", json!({"a": [1, 2.5, null]})).unwrap();
     let trial = study.ask(&space).unwrap();
     assert_eq!(trial.report(1, f64::INFINITY).unwrap(), Advice::Continue);
-    trial.note("path", "out/é").unwrap();
+    trial.set_user_attribute("path", "out/é").unwrap();
     trial.tell(Outcome::from(f64::INFINITY)).unwrap();
     let trial = study.ask(&space).unwrap();
     assert_eq!(trial.report(1, f64::NAN).unwrap(), Advice::Continue, "an infinite median stops no trial");
@@ -82,7 +82,7 @@ fn a_torn_last_line_is_left_out_and_cut_off() {
     drop(journal);
     let study = Study::open(Storage::journal(&path).unwrap(), "all", &[Direction::Maximize]).unwrap();
     assert_eq!(text(&study.snapshot()), text(&written));
-    study.note_of_study("after", json!(1)).unwrap();
+    study.set_study_attribute("after", json!(1)).unwrap();
     assert!(!fs::read_to_string(&path).unwrap().contains("\"x{"));
     assert_eq!(Storage::journal(&path).unwrap().studies().next().unwrap().user_attributes["after"], json!(1));
     fs::remove_dir_all(path.parent().unwrap()).unwrap();

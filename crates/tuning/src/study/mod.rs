@@ -155,7 +155,7 @@ impl Study {
     ///
     /// # Errors
     /// `InvalidParam` when the trial is not running here; `Io` and `Format` of the storage.
-    pub fn note(&self, number: usize, key: &str, value: Value) -> Result<()> {
+    pub fn set_user_attribute(&self, number: usize, key: &str, value: Value) -> Result<()> {
         self.write_of(number, |_, trial| {
             Ok(vec![Operation::NoteOfTrial {
                 trial: trial.id,
@@ -178,7 +178,7 @@ impl Study {
     ///
     /// # Errors
     /// `Io` and `Format` of the storage.
-    pub fn note_of_study(&self, key: &str, value: Value) -> Result<()> {
+    pub fn set_study_attribute(&self, key: &str, value: Value) -> Result<()> {
         let key = key.to_owned();
         self.write(|_| Ok(vec![Operation::NoteOfStudy { study: self.id, notes: Notes::User, key, value }]))
     }

@@ -54,7 +54,7 @@ impl Budget {
 
     /// Sets the number of consecutive failures that end the study; 3 by default.
     #[must_use]
-    pub fn failures(self, failures: usize) -> Self {
+    pub fn max_failures(self, failures: usize) -> Self {
         Self { failures: failures.max(1), ..self }
     }
 

@@ -24,7 +24,7 @@ pub fn fresh_seeds(seed: u64, count: usize) -> Vec<u64> {
 
 /// Seeds of 31 bits, which every library accepts.
 fn seeds(seed: u64, family: u64, count: usize) -> Vec<u64> {
-    (0..count).map(|at| Random::at([seed, family, at as u64]).bits() >> 33).collect()
+    (0..count).map(|at| Random::from_key([seed, family, at as u64]).bits() >> 33).collect()
 }
 
 /// Result of the best trial on seeds that did not select it.
@@ -45,7 +45,7 @@ impl Reevaluation {
     }
 
     /// Returns the standard deviation of the fresh values; 0 for one value.
-    pub fn deviation(&self) -> f64 {
+    pub fn std(&self) -> f64 {
         let mean = self.mean();
         let square: f64 = self.values.iter().map(|value| (value - mean).powi(2)).sum();
         (square / (self.values.len().max(2) - 1) as f64).sqrt()
@@ -74,7 +74,7 @@ impl Trial<'_> {
                 return Ok(Outcome::Failed(format!("the value of seed {seed} is {value}")));
             }
             values.push(value);
-            self.note(VALUES, json!(values))?;
+            self.set_user_attribute(VALUES, json!(values))?;
             match self.report(values.len() as i64, mean(&values))? {
                 Advice::Continue => {}
                 _ if values.len() == seeds.len() => {}
@@ -107,7 +107,7 @@ impl Study {
         let values = seeds.iter().map(|seed| measure(&best, *seed)).collect::<Result<Option<Vec<_>>>>()?;
         let Some(values) = values else { return Ok(None) };
         let reevaluation = Reevaluation { number: best.number, chosen_by, values };
-        self.note_of_study(
+        self.set_study_attribute(
             REEVALUATION,
             json!({"trial": reevaluation.number, "chosen_by": chosen_by, "seeds": seeds, "values": reevaluation.values, "mean": reevaluation.mean()}),
         )?;

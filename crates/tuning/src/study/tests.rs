@@ -179,7 +179,7 @@ fn a_configuration_is_complete_after_all_its_seeds() {
         .unwrap()
         .unwrap();
     assert_eq!((again.number, again.values.len()), (best.number, 5));
-    assert!((again.mean() - again.chosen_by).abs() < 0.2 && again.deviation() > 0.0);
+    assert!((again.mean() - again.chosen_by).abs() < 0.2 && again.std() > 0.0);
     assert_eq!(study.snapshot().user_attributes["reevaluation"]["trial"], json!(best.number));
 }
 

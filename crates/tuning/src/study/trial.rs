@@ -101,8 +101,8 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// As [`Study::note`].
-    pub fn note(&self, key: &str, value: impl Into<Value>) -> Result<()> {
-        self.study.note(self.number, key, value.into())
+    pub fn set_user_attribute(&self, key: &str, value: impl Into<Value>) -> Result<()> {
+        self.study.set_user_attribute(self.number, key, value.into())
     }
 
     /// Saves the state from which the trial resumes if this process dies; without it the trial would be lost.

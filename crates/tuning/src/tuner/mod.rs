@@ -26,7 +26,7 @@ type Begin<'a> = Box<dyn Fn(&ParamMap, u64) -> Result<Box<dyn Training + 'a>> + 
 
 /// Whether a tuning is complete.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Tuning {
+pub enum TuningStatus {
     /// The budget of trials is used up.
     Finished,
     /// It was stopped, or its time is over. The running trials wait and are resumed first.
@@ -121,7 +121,7 @@ impl<'a> Tuner<'a> {
         &self,
         budget: &Budget,
         watch: impl Fn(&StudyRecord, usize) -> Progress + Sync,
-    ) -> Result<Tuning> {
+    ) -> Result<TuningStatus> {
         let watch = Watch { watch: &watch, end: budget.end(), stopped: AtomicBool::new(false) };
         let objective = |trial: &Trial<'_>| self.carry_out(trial, &watch);
         self.study.optimize(&self.space, budget, objective, |study, number| {
@@ -130,7 +130,7 @@ impl<'a> Tuner<'a> {
             let stop = if failed { watch.look(study, number) } else { watch.stopped() };
             if stop { Progress::Stop } else { Progress::Continue }
         })?;
-        Ok(if watch.stopped() { Tuning::Interrupted } else { Tuning::Finished })
+        Ok(if watch.stopped() { TuningStatus::Interrupted } else { TuningStatus::Finished })
     }
 
     /// Trains the best configuration again, with seeds that did not select it, and stores the result in the

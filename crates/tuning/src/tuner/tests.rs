@@ -71,7 +71,7 @@ fn summaries(study: &StudyRecord) -> Vec<TrialSummary> {
 fn promoted_trials_resume_and_complete_after_all_seeds() {
     let (folder, spent) = (folder("seeds"), AtomicU64::new(0));
     let tuner = tuner(study(), &folder, &spent);
-    assert_eq!(tuner.run(&Budget::total(60), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
+    assert_eq!(tuner.run(&Budget::total(60), |_, _| Progress::Continue).unwrap(), TuningStatus::Finished);
     let record = tuner.study().snapshot();
     assert_eq!(units(&record), spent.load(Ordering::Relaxed), "a unit was repeated");
     assert!(units(&record) < 60 * 27 / 5, "{}", units(&record));
@@ -107,7 +107,7 @@ fn an_interrupted_study_gives_the_result_of_an_uninterrupted_one() {
             _ => Progress::Continue,
         };
         runs += 1;
-        if tuner.run(&Budget::total(20), three).unwrap() == Tuning::Finished {
+        if tuner.run(&Budget::total(20), three).unwrap() == TuningStatus::Finished {
             assert_eq!(summaries(&tuner.study().snapshot()), summaries(&whole.study().snapshot()));
             break;
         }
@@ -129,7 +129,7 @@ fn an_interrupted_study_gives_the_result_of_an_uninterrupted_one() {
 fn a_study_without_a_complete_trial_finishes_the_best() {
     let (folder, spent) = (folder("finish"), AtomicU64::new(0));
     let tuner = tuner(study(), &folder, &spent);
-    assert_eq!(tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap(), Tuning::Finished);
+    assert_eq!(tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap(), TuningStatus::Finished);
     let record = tuner.study().snapshot();
     let worth = |number: usize| record.trials[number].params["x"].number;
     let (best, other) = if worth(0) < worth(1) { (0, 1) } else { (1, 0) };
@@ -165,12 +165,12 @@ fn a_stopped_training_resumes_from_its_last_point() {
     let plan = Plan::at(vec![1, 3, 9]).unwrap().with_seeds(0, 1);
     let tuner = Tuner::new(study, space, plan, &folder, begin).unwrap();
     let run = || tuner.run(&Budget::total(2), |_, _| Progress::Continue).unwrap();
-    assert_eq!(run(), Tuning::Interrupted);
+    assert_eq!(run(), TuningStatus::Interrupted);
     let record = tuner.study().snapshot();
     assert!(record.trials.len() == 1 && record.trials[0].is_interrupted());
     assert_eq!(record.trials[0].last_report().unwrap().0, 3);
     on.store(true, Ordering::Relaxed);
-    assert_eq!(run(), Tuning::Finished);
+    assert_eq!(run(), TuningStatus::Finished);
     assert_eq!((tuner.study().snapshot().complete().count(), spent.load(Ordering::Relaxed)), (2, 18));
     on.store(false, Ordering::Relaxed);
     assert_eq!(tuner.reevaluate().unwrap(), None);
@@ -186,7 +186,7 @@ fn trials_of_dead_workers_resume_from_their_checkpoints() {
     let mut training = (tuner.begin)(&trial.param_map().unwrap(), tuner.plan.seeds()[0]).unwrap();
     trial.report(3, training.advance(3).unwrap().unwrap()).unwrap();
     training.save(&tuner.folder_of(0).join("seed_0")).unwrap();
-    trial.checkpoint(json!(Stand { values: Vec::new(), done: 3 })).unwrap();
+    trial.checkpoint(json!(TrialProgress { values: Vec::new(), done: 3 })).unwrap();
     std::thread::sleep(Duration::from_millis(60));
     tuner.run(&Budget::total(1), |_, _| Progress::Continue).unwrap();
     let record = tuner.study().snapshot();
@@ -201,7 +201,7 @@ fn stopped_trials_leave_no_checkpoints() {
     let study = study().with_pruner(Median { startup_trials: 3, warmup_steps: 0 });
     let tuner = tuner(study, &folder, &spent);
     let late = Budget::total(20).timeout(Duration::ZERO);
-    assert_eq!(tuner.run(&late, |_, _| Progress::Continue).unwrap(), Tuning::Interrupted);
+    assert_eq!(tuner.run(&late, |_, _| Progress::Continue).unwrap(), TuningStatus::Interrupted);
     tuner.run(&Budget::total(20).threads(2), |_, _| Progress::Continue).unwrap();
     let record = tuner.study().snapshot();
     let left = |state| {

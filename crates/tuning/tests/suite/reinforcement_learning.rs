@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use opendr_engine::params::ParamMap;
 use opendr_tuning::{
     Asha, Budget, Direction, Plan, Progress, RandomSearch, Storage, Study, Training, TrialRecord, TrialState,
-    Tuner, Tuning,
+    Tuner, TuningStatus,
 };
 
 #[path = "../../examples/cart_pole_search/training.rs"]
@@ -25,8 +25,8 @@ fn a_promoted_training_gives_the_result_of_an_uninterrupted_one() {
     let plan = Plan::at(points.to_vec()).unwrap().with_seeds(0, 2);
     let seeds = plan.seeds().to_vec();
     let tuner = Tuner::new(study, space().unwrap(), plan, &folder, begin).unwrap();
-    let done = tuner.run(&Budget::total(9).failures(9), |_, _| Progress::Continue).unwrap();
-    assert_eq!(done, Tuning::Finished);
+    let done = tuner.run(&Budget::total(9).max_failures(9), |_, _| Progress::Continue).unwrap();
+    assert_eq!(done, TuningStatus::Finished);
     let record = tuner.study().snapshot();
     let paused = record.trials.iter().filter(|trial| trial.is_paused()).count();
     assert!(paused >= 6, "{paused}");

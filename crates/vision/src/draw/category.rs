@@ -17,7 +17,7 @@ pub fn draw_category(image: &mut Image, category: &Category, style: &Style) {
         Some(description) => description.to_string(),
         None => format!("class {}", category.class),
     };
-    if let Some(confidence) = category.confidence.filter(|_| style.confidences) {
+    if let Some(confidence) = category.confidence.filter(|_| style.show_confidences) {
         text += &format!(" {confidence:.2}");
     }
     let colour = style.colour.unwrap_or_else(|| colour_of_index(category.class));

@@ -35,7 +35,7 @@ pub fn draw_poses(image: &mut Image, poses: &PoseList, style: &Style) {
 
 fn draw_skeleton(canvas: &mut Canvas<'_>, pose: &Pose, thickness: f32, style: &Style) {
     let found = |index: usize| {
-        let shown = |joint: &&Keypoint| joint.is_found() && joint.confidence >= style.min_joint_confidence;
+        let shown = |joint: &&Keypoint| joint.is_detected() && joint.confidence >= style.min_joint_confidence;
         pose.keypoints.get(index).filter(shown).map(|joint| [joint.x, joint.y])
     };
     let side = |index: usize| {

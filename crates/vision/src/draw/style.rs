@@ -13,7 +13,7 @@ pub struct Style {
     /// Whether boxes and tracks have a label.
     pub labels: bool,
     /// Whether labels include the score.
-    pub confidences: bool,
+    pub show_confidences: bool,
     /// Opacity of masks and heatmaps, 0..=1.
     pub opacity: f32,
     /// Joints below this score are not drawn.
@@ -26,7 +26,7 @@ impl Default for Style {
             scale: 1.0,
             colour: None,
             labels: true,
-            confidences: true,
+            show_confidences: true,
             opacity: 0.5,
             min_joint_confidence: 0.0,
         }

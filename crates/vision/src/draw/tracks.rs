@@ -74,7 +74,7 @@ pub fn draw_tracks(image: &mut Image, tracks: &TrackingAnnotationList, trails: &
         let number = format!("#{}", track.id);
         let name = tracks.classes.label(&track.bounding_box.name).unwrap_or_default();
         let mut text = format!("{number} {name}");
-        if style.confidences {
+        if style.show_confidences {
             text += &format!(" {:.2}", track.bounding_box.confidence);
         }
         labels.draw(&mut canvas, [&text, &number], corners, [unit, thickness], colour(track));

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Border {
     /// A level, 0..=255, normalised like the image (OpenCV's `BORDER_CONSTANT`).
-    Level(f32),
+    Constant(f32),
     /// The image's outermost pixels (OpenCV's `BORDER_REPLICATE`).
-    Repeat,
+    Replicate,
 }

@@ -2,7 +2,7 @@
 
 /// Alignment of a letterboxed image in the input; the rest is padding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Anchor {
+pub enum LetterboxAlign {
     /// Equal padding on opposite sides; an odd pixel is added on the right and at the bottom.
     Centre,
     /// Padding on the right and at the bottom only.
@@ -58,13 +58,13 @@ impl Placement {
     }
 
     /// Returns the placement that keeps the aspect ratio and fills the input along one axis.
-    pub(super) fn letterbox(source: [usize; 2], target: [usize; 2], anchor: Anchor) -> Self {
+    pub(super) fn letterbox(source: [usize; 2], target: [usize; 2], anchor: LetterboxAlign) -> Self {
         let scale = (target[0] as f64 / source[0] as f64).min(target[1] as f64 / source[1] as f64);
         let side = |axis: usize| ((source[axis] as f64 * scale).round() as usize).clamp(1, target[axis]);
         let (width, height) = (side(0), side(1));
         let (x, y) = match anchor {
-            Anchor::Centre => ((target[0] - width) / 2, (target[1] - height) / 2),
-            Anchor::TopLeft => (0, 0),
+            LetterboxAlign::Centre => ((target[0] - width) / 2, (target[1] - height) / 2),
+            LetterboxAlign::TopLeft => (0, 0),
         };
         Self { x, y, width, height }
     }
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn letterbox_keeps_the_ratio_and_maps_back() {
-        let placement = Placement::letterbox([1920, 1080], [416, 416], Anchor::Centre);
+        let placement = Placement::letterbox([1920, 1080], [416, 416], LetterboxAlign::Centre);
         assert_eq!(placement, Placement { x: 0, y: 91, width: 416, height: 234 });
         let geometry = placement.geometry([1920, 1080]);
         assert_eq!(geometry.image_from_input([208.0, 208.0]), [960.0, 540.0]);
@@ -97,7 +97,7 @@ mod tests {
 
     #[test]
     fn slivers_keep_a_pixel() {
-        let placement = Placement::letterbox([10_000, 1], [64, 64], Anchor::TopLeft);
+        let placement = Placement::letterbox([10_000, 1], [64, 64], LetterboxAlign::TopLeft);
         assert_eq!(placement, Placement { x: 0, y: 0, width: 64, height: 1 });
     }
 }

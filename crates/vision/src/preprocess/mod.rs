@@ -28,7 +28,7 @@ use crate::workers;
 use band::{Band, MAX_BANDS, Row};
 pub use border::Border;
 use geometry::Placement;
-pub use geometry::{Anchor, InputGeometry};
+pub use geometry::{InputGeometry, LetterboxAlign};
 use plan::{Plan, Plans, Sizes};
 pub use sample::InputSample;
 use source::Source;
@@ -84,7 +84,7 @@ impl ChannelOrder {
 pub struct Preprocess {
     size: [usize; 2],
     /// Anchor and level of the padding; `None` stretches.
-    letterbox: Option<(Anchor, f32)>,
+    letterbox: Option<(LetterboxAlign, f32)>,
     border: Border,
     order: ChannelOrder,
     scale: [f32; 3],
@@ -100,7 +100,7 @@ impl Preprocess {
         Self {
             size: [width, height],
             letterbox: None,
-            border: Border::Level(0.0),
+            border: Border::Constant(0.0),
             order: ChannelOrder::Rgb,
             scale: [1.0; 3],
             bias: [0.0; 3],
@@ -112,7 +112,7 @@ impl Preprocess {
 
     /// Keeps the image's aspect ratio; the padding has the level `pad` (0..=255, then normalised).
     #[must_use]
-    pub fn letterbox(self, anchor: Anchor, pad: f32) -> Self {
+    pub fn letterbox(self, anchor: LetterboxAlign, pad: f32) -> Self {
         Self { letterbox: Some((anchor, pad)), ..self }
     }
 

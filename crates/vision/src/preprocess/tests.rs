@@ -124,8 +124,11 @@ fn every_combination_is_the_reference() {
                 let stretched = Preprocess::new(19, 31).order(order).layout(layout);
                 check(&stretched, image.view());
                 let normalised = stretched.normalise([103.5, 116.3, 123.7], [57.4, 57.1, 58.4]);
-                check(&normalised.clone().letterbox(Anchor::Centre, 114.0), image.view());
-                check(&normalised.letterbox(Anchor::TopLeft, 0.0), image.view().crop(5, 3, 21, 30).unwrap());
+                check(&normalised.clone().letterbox(LetterboxAlign::Centre, 114.0), image.view());
+                check(
+                    &normalised.letterbox(LetterboxAlign::TopLeft, 0.0),
+                    image.view().crop(5, 3, 21, 30).unwrap(),
+                );
             }
         }
     }
@@ -137,7 +140,7 @@ fn large_inputs_are_cut_into_bands() {
     for threads in [1, 2, 3, 16] {
         let preprocess = Preprocess::new(131, 127).threads(threads);
         check(&preprocess, image.view());
-        check(&preprocess.layout(Layout::Hwc).letterbox(Anchor::Centre, 7.0), image.view());
+        check(&preprocess.layout(Layout::Hwc).letterbox(LetterboxAlign::Centre, 7.0), image.view());
     }
 }
 
@@ -177,7 +180,9 @@ fn smallest_pictures_and_inputs() {
             for target in [[1, 1], [1, 9], [7, 2], [8, 8], [9, 1], [33, 2]] {
                 check(&Preprocess::new(target[0], target[1]), image.view());
                 check(
-                    &Preprocess::new(target[0], target[1]).letterbox(Anchor::Centre, 1.0).layout(Layout::Hwc),
+                    &Preprocess::new(target[0], target[1])
+                        .letterbox(LetterboxAlign::Centre, 1.0)
+                        .layout(Layout::Hwc),
                     image.view(),
                 );
             }
@@ -254,6 +259,6 @@ proptest! {
         let layout = if interleaved { Layout::Hwc } else { Layout::Chw };
         let preprocess = Preprocess::new(target[0], target[1]).order(order).layout(layout);
         let preprocess = preprocess.normalise([1.0, 2.0, 3.0], [2.0, 0.5, 1.0]);
-        check(&if letterbox { preprocess.letterbox(Anchor::Centre, 9.0) } else { preprocess }, view);
+        check(&if letterbox { preprocess.letterbox(LetterboxAlign::Centre, 9.0) } else { preprocess }, view);
     }
 }

@@ -35,7 +35,7 @@ impl Grid {
     /// Returns the offset of a pixel; `None` outside the image.
     fn pixel(&self, x: i64, y: i64) -> Option<usize> {
         let [nearest_x, nearest_y] = [x.clamp(0, self.size[0] - 1), y.clamp(0, self.size[1] - 1)];
-        (self.border == Border::Repeat || (nearest_x, nearest_y) == (x, y))
+        (self.border == Border::Replicate || (nearest_x, nearest_y) == (x, y))
             .then(|| self.offset(nearest_x, nearest_y))
     }
 }
@@ -58,7 +58,7 @@ pub(super) fn warp_row<S: Level, W: Written>(
 ) {
     let [down, right, _] = view.strides();
     let grid = Grid { size: [view.width() as i64, view.height() as i64], strides: [down, right], border };
-    let outside = if let Border::Level(level) = border { level } else { 0.0 };
+    let outside = if let Border::Constant(level) = border { level } else { 0.0 };
     let Finish { channels, scale, bias, luminance } = *finish;
     let level = |at: usize| samples.get(at).map_or(outside, |sample| sample.level());
     let mut position = line.start;

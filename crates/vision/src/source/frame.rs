@@ -9,7 +9,7 @@ use opendr_engine::data::Image;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct VideoInfo {
     /// Average frames per second.
-    pub rate: f64,
+    pub frame_rate: f64,
     /// Number of frames, where the file states it.
     pub frames: Option<u64>,
     /// Duration in seconds, where the file states it.
@@ -25,9 +25,9 @@ pub struct Frame {
     /// The file or device of the frame.
     pub path: Arc<Path>,
     /// Index among the items of the source, from 0; files that could not be read count too.
-    pub index: u64,
+    pub item_index: u64,
     /// Index in its video or camera, from 0, dropped frames included; 0 for an image file.
-    pub number: u64,
+    pub frame_index: u64,
     /// The video or camera of the frame; `None` for an image file.
     pub video: Option<Arc<VideoInfo>>,
 }
@@ -38,7 +38,7 @@ impl Frame {
     pub fn name(&self) -> String {
         let stem = self.path.file_stem().unwrap_or(self.path.as_os_str()).to_string_lossy();
         match self.video {
-            Some(_) => format!("{stem}_{:06}", self.number),
+            Some(_) => format!("{stem}_{:06}", self.frame_index),
             None => stem.into_owned(),
         }
     }

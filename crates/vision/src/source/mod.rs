@@ -111,7 +111,7 @@ impl Source {
     pub fn from_frames(frames: impl Iterator<Item = Result<Frame>> + Send + 'static, live: bool) -> Self {
         let options = SourceOptions::default();
         let length = frames.size_hint().1.filter(|_| !live).map(|length| length as u64);
-        let reading = Some(Reading::Threaded(Threaded::detached(frames, live, options.ahead)));
+        let reading = Some(Reading::Threaded(Threaded::detached(frames, live, options.prefetch)));
         Self { waiting: VecDeque::new(), reading, video: None, options, live, length, given: 0, dropped: 0 }
     }
 
@@ -126,7 +126,7 @@ impl Source {
     }
 
     /// Returns whether only image files remain, no videos and no cameras.
-    pub fn is_pictures(&self) -> bool {
+    pub fn is_images(&self) -> bool {
         matches!(self.reading, None | Some(Reading::Pictures(_)))
             && self.waiting.iter().all(|segment| matches!(segment, Segment::Pictures(_)))
     }
@@ -142,7 +142,7 @@ impl Source {
 
     /// Returns the file of the last item, also when that was an error. `None` before the first item, after the last,
     /// and for cameras and [`Source::from_frames`].
-    pub fn last_path(&self) -> Option<&Path> {
+    pub fn current_path(&self) -> Option<&Path> {
         match &self.reading {
             Some(Reading::Pictures(pictures)) => pictures.last_path(),
             Some(Reading::Threaded(_) | Reading::Failed(_)) => self.video.as_deref(),
@@ -163,7 +163,7 @@ impl Source {
                 let reader =
                     info.and_then(|info| VideoReader::start(&Ffmpeg::default(), path, info, max_samples));
                 match reader {
-                    Ok(reader) => Reading::Threaded(Threaded::new(reader, false, self.options.ahead)),
+                    Ok(reader) => Reading::Threaded(Threaded::new(reader, false, self.options.prefetch)),
                     Err(error) => Reading::Failed(Some(error)),
                 }
             }
@@ -188,7 +188,7 @@ impl Iterator for Source {
             };
             let index = self.given;
             self.given += 1;
-            return Some(frame.map(|frame| Frame { index, ..frame }));
+            return Some(frame.map(|frame| Frame { item_index: index, ..frame }));
         }
     }
 }

@@ -48,7 +48,7 @@ impl Pictures {
     pub(super) fn new(paths: Vec<PathBuf>, options: &SourceOptions) -> Self {
         let shared = Arc::new(Shared {
             decoder: options.decoder,
-            ahead: options.ahead.max(1),
+            ahead: options.prefetch.max(1),
             state: Mutex::default(),
             changed: Condvar::new(),
             paths: paths.into_iter().map(Arc::from).collect(),
@@ -93,7 +93,13 @@ impl Iterator for Pictures {
         state.waiting_bytes -= bytes_of(&image);
         drop(state);
         self.shared.changed.notify_all();
-        Some(image.map(|image| Frame { image, path: Arc::clone(path), index: 0, number: 0, video: None }))
+        Some(image.map(|image| Frame {
+            image,
+            path: Arc::clone(path),
+            item_index: 0,
+            frame_index: 0,
+            video: None,
+        }))
     }
 }
 

@@ -7,27 +7,28 @@ use opendr_engine::{Error, Result};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StereoCamera {
     /// Focal length, in pixels.
-    pub focal: f32,
+    pub focal_length: f32,
     /// Distance between the two cameras, in metres.
     pub baseline: f32,
     /// Principal point of the left camera, in pixels.
-    pub centre: [f32; 2],
+    pub principal_point: [f32; 2],
     /// Offset of the right camera's principal point to the right, in pixels; added to disparities (Middlebury's
     /// `doffs`).
-    pub offset: f32,
+    pub principal_point_offset: f32,
 }
 
 impl StereoCamera {
     /// Returns the depth of a pixel in metres; 0 where the disparity is 0 (unknown) or the depth would be negative.
     pub fn depth(&self, disparity: f32) -> f32 {
-        let shift = disparity + self.offset;
+        let shift = disparity + self.principal_point_offset;
         let is_known = disparity > 0.0 && shift > 0.0;
-        if is_known { self.focal * self.baseline / shift } else { 0.0 }
+        if is_known { self.focal_length * self.baseline / shift } else { 0.0 }
     }
 
     /// Returns the 3D position of the pixel with its centre at `[x, y]`, `depth` metres in front of the camera.
     pub fn point(&self, [x, y]: [f32; 2], depth: f32) -> [f32; 3] {
-        let [right, down] = [x - self.centre[0], y - self.centre[1]].map(|off| off * depth / self.focal);
+        let [right, down] = [x - self.principal_point[0], y - self.principal_point[1]]
+            .map(|off| off * depth / self.focal_length);
         [right, down, depth]
     }
 

@@ -38,13 +38,13 @@ pub struct StereoOptions {
     /// Number of disparities to search; rounded up to a multiple of 16.
     pub disparities: usize,
     /// Penalty P1 for a disparity change of one pixel, in differing bits of 62.
-    pub small_penalty: u8,
+    pub p1: u8,
     /// Penalty P2 for a larger change; at least P1, at most 193.
-    pub large_penalty: u8,
+    pub p2: u8,
     /// Margin in percent by which the second best disparity must be worse, 0..=99.
     pub uniqueness: u8,
     /// Maximum difference to the right image's disparity, in pixels; `None` skips the check.
-    pub left_right: Option<u16>,
+    pub max_left_right_difference: Option<u16>,
     /// Maximum size in pixels of speckles that are removed; 0 keeps all.
     pub speckle_size: u32,
     /// Maximum difference between neighbours of one speckle, in pixels.
@@ -52,7 +52,7 @@ pub struct StereoOptions {
     /// Whether unknown disparities are filled from the row's background.
     pub fill: bool,
     /// Side of the blocks of pixels that are matched as one; the time falls with its third power; at least 1.
-    pub shrink: usize,
+    pub downscale: usize,
 }
 
 impl Default for StereoOptions {
@@ -60,14 +60,14 @@ impl Default for StereoOptions {
         Self {
             min_disparity: 0,
             disparities: 64,
-            small_penalty: 8,
-            large_penalty: 40,
+            p1: 8,
+            p2: 40,
             uniqueness: 5,
-            left_right: Some(1),
+            max_left_right_difference: Some(1),
             speckle_size: 100,
             speckle_range: 1.0,
             fill: false,
-            shrink: 1,
+            downscale: 1,
         }
     }
 }
@@ -125,7 +125,7 @@ impl StereoMatcher {
                 disparities.len()
             )));
         }
-        let shrink = options.shrink.clamp(1, width.min(height).max(1));
+        let shrink = options.downscale.clamp(1, width.min(height).max(1));
         if shrink == 1 {
             return self.match_pair([left, right], options, disparities);
         }
@@ -146,7 +146,7 @@ impl StereoMatcher {
         options: &StereoOptions,
         disparities: &mut [f32],
     ) -> Result<()> {
-        let shrink = options.shrink.clamp(1, left.width().min(left.height()).max(1));
+        let shrink = options.downscale.clamp(1, left.width().min(left.height()).max(1));
         let size @ [width, height] = [left.width(), left.height()].map(|side| side / shrink);
         let count = options.disparities.clamp(1, 1 << 12).div_ceil(shrink).next_multiple_of(16);
         let total = width.checked_mul(height).and_then(|pixels| pixels.checked_mul(count));
@@ -164,15 +164,15 @@ impl StereoMatcher {
         self.sums.resize(total, 0);
         self.down.begin(width, count);
         self.up.begin(width, count);
-        let large = options.large_penalty.min(MOST_PENALTY);
+        let large = options.p2.min(MOST_PENALTY);
         let plan = Plan {
             width,
             count,
             from: options.min_disparity / shrink,
-            penalties: Penalties { small: options.small_penalty.min(large), large },
+            penalties: Penalties { small: options.p1.min(large), large },
             checks: ConfidenceChecks {
                 uniqueness: options.uniqueness.into(),
-                disagreement: options.left_right,
+                disagreement: options.max_left_right_difference,
             },
         };
         let middle = height / 2;

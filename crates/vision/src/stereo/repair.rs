@@ -1,6 +1,6 @@
 //! Removal of speckles, and filling of holes.
 
-use crate::components::{Components, Touching};
+use crate::components::{Components, Connectivity};
 
 use super::winner::UNKNOWN;
 
@@ -13,7 +13,7 @@ pub(super) fn remove_speckles(
     step: f32,
     components: &mut Components,
 ) {
-    components.label(size, Touching::Sides, |at| map[at] >= 0.0, |a, b| (map[a] - map[b]).abs() <= step);
+    components.label(size, Connectivity::Four, |at| map[at] >= 0.0, |a, b| (map[a] - map[b]).abs() <= step);
     for (disparity, label) in map.iter_mut().zip(components.labels()) {
         if components.areas()[*label as usize] <= most {
             *disparity = UNKNOWN;

@@ -99,11 +99,11 @@ fn extreme_options_do_no_harm() {
     for (uniqueness, penalty, range) in [(99, 255, f32::NAN), (0, 0, -1.0)] {
         let options = StereoOptions {
             uniqueness,
-            small_penalty: penalty,
-            large_penalty: penalty,
+            p1: penalty,
+            p2: penalty,
             speckle_range: range,
             min_disparity: 1000,
-            left_right: None,
+            max_left_right_difference: None,
             ..StereoOptions::default()
         };
         assert!(disparities(&pair, &options).iter().all(|d| *d == 0.0));
@@ -130,7 +130,12 @@ fn pairs_of_two_sizes_and_too_large_ones_are_refused() {
 
 #[test]
 fn metres_follow_from_disparities() {
-    let camera = StereoCamera { focal: 1000.0, baseline: 0.2, centre: [80.0, 40.0], offset: 10.0 };
+    let camera = StereoCamera {
+        focal_length: 1000.0,
+        baseline: 0.2,
+        principal_point: [80.0, 40.0],
+        principal_point_offset: 10.0,
+    };
     assert_eq!([0.0, 10.0, 30.0, f32::NAN].map(|d| camera.depth(d)), [0.0, 10.0, 5.0, 0.0]);
     let depths = [0.0, 10.0, 5.0, 400.0];
     let image = grey(2, 2, |x, y| (10 * y + x) as u8);
@@ -156,12 +161,12 @@ fn shrink_equals_matching_a_reduced_pair() {
         StereoOptions { disparities: 32, speckle_size: 25, speckle_range: 0.5, ..Default::default() };
     let wanted = disparities(&small, &options);
     let shrunk =
-        StereoOptions { disparities: 64, speckle_size: 100, speckle_range: 1.0, shrink: 2, ..options };
+        StereoOptions { disparities: 64, speckle_size: 100, speckle_range: 1.0, downscale: 2, ..options };
     let map = disparities(&large, &shrunk);
     for (at, found) in map.iter().enumerate() {
         let (x, y) = (at % (2 * width + 1), at / (2 * width + 1));
         assert_eq!(*found, 2.0 * wanted[y / 2 * width + (x / 2).min(width - 1)], "{x} {y}");
     }
-    let whole = StereoOptions { shrink: 1000, ..options };
+    let whole = StereoOptions { downscale: 1000, ..options };
     assert!(disparities(&small, &whole).iter().all(|found| *found == 0.0));
 }

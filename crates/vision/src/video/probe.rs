@@ -70,7 +70,7 @@ fn info_of_report(json: &[u8]) -> Result<VideoInfo> {
     let duration_s = number(&stream.duration).or_else(|| number(&report.format.duration));
     let counted = stream.nb_frames.as_deref().and_then(|text| text.parse().ok()).filter(|frames| *frames > 0);
     let frames = counted.or_else(|| Some((duration_s? * rate).round() as u64));
-    Ok(VideoInfo { rate, frames, duration_s })
+    Ok(VideoInfo { frame_rate: rate, frames, duration_s })
 }
 
 /// Parses a rate such as `"30000/1001"`.
@@ -90,11 +90,11 @@ mod tests {
             br#"{"streams":[{"avg_frame_rate":"30000/1001","nb_frames":"90"}],"format":{"duration":"3.0"}}"#,
         )
         .unwrap();
-        assert!((info.rate - 29.97).abs() < 0.01);
+        assert!((info.frame_rate - 29.97).abs() < 0.01);
         assert_eq!((info.frames, info.duration_s), (Some(90), Some(3.0)));
         let info = info_of_report(br#"{"streams":[{"avg_frame_rate":"0/0","duration":"N/A"}],"format":{}}"#)
             .unwrap();
-        assert_eq!((info.rate, info.frames, info.duration_s), (25.0, None, None));
+        assert_eq!((info.frame_rate, info.frames, info.duration_s), (25.0, None, None));
         let info = info_of_report(br#"{"streams":[{"avg_frame_rate":"10/1"}],"format":{"duration":"2.04"}}"#)
             .unwrap();
         assert_eq!(info.frames, Some(20));

@@ -96,11 +96,11 @@ impl VideoReader {
             return Err(self.broken_off());
         }
         let mut image = Image::from_rgb8(data, width, height)?;
-        let time_s = time_s.unwrap_or(self.given as f64 / self.info.rate);
+        let time_s = time_s.unwrap_or(self.given as f64 / self.info.frame_rate);
         image.header.stamp_ns = Some((time_s * 1e9).round() as i64);
         let path = Arc::clone(&self.path);
         let video = Some(Arc::clone(&self.info));
-        Ok(Frame { image, path, index: 0, number: self.given, video })
+        Ok(Frame { image, path, item_index: 0, frame_index: self.given, video })
     }
 
     /// Returns an error unless the video ended normally.

@@ -51,11 +51,11 @@ fn every_frame_comes_once_with_its_time() {
     assert_eq!(frames.len(), 20);
     for (number, frame) in frames.iter().enumerate() {
         assert_eq!((frame.image.width(), frame.image.height()), (160, 120));
-        assert_eq!((frame.number, frame.index), (number as u64, number as u64));
+        assert_eq!((frame.frame_index, frame.item_index), (number as u64, number as u64));
         assert_eq!(frame.image.header.stamp_ns, Some(number as i64 * 100_000_000));
         assert_eq!(frame.name(), format!("-y clip[1]_{number:06}"));
         let info = frame.video.as_ref().unwrap();
-        assert_eq!((info.rate, info.frames, info.duration_s), (10.0, Some(20), Some(2.0)));
+        assert_eq!((info.frame_rate, info.frames, info.duration_s), (10.0, Some(20), Some(2.0)));
     }
     assert_ne!(frames[0].image, frames[19].image);
 }
@@ -161,12 +161,12 @@ fn slow_consumers_of_files_lose_nothing() {
     let Some(folder) = Folder::new("slow") else { return };
     let path = folder.video("clip.mp4", &[]);
     let mut source =
-        Source::open_all([path], SourceOptions { ahead: 1, ..SourceOptions::default() }).unwrap();
+        Source::open_all([path], SourceOptions { prefetch: 1, ..SourceOptions::default() }).unwrap();
     let numbers: Vec<_> = source
         .by_ref()
         .map(|frame| {
             std::thread::sleep(std::time::Duration::from_millis(2));
-            frame.unwrap().number
+            frame.unwrap().frame_index
         })
         .collect();
     assert_eq!((numbers, source.dropped()), ((0..20).collect(), 0));
@@ -185,7 +185,7 @@ fn videos_and_pictures_follow_each_other() {
     let items: Vec<_> = source.collect();
     let good: Vec<_> = items.iter().map(Result::is_ok).collect();
     assert_eq!(good, (0..23).map(|index| index != 21).collect::<Vec<_>>());
-    assert_eq!(items[20].as_ref().unwrap().index, 20);
+    assert_eq!(items[20].as_ref().unwrap().item_index, 20);
 }
 
 #[cfg(target_os = "linux")]
@@ -205,7 +205,7 @@ fn dropping_early_ends_the_child() {
     let Some(folder) = Folder::new("early") else { return };
     let path = folder.video("clip.mp4", &["-t", "2"]);
     let mut source =
-        Source::open_all([&path], SourceOptions { ahead: 1, ..SourceOptions::default() }).unwrap();
+        Source::open_all([&path], SourceOptions { prefetch: 1, ..SourceOptions::default() }).unwrap();
     source.next().unwrap().unwrap();
     assert_eq!(children(&path), 1);
     drop(source);
@@ -230,7 +230,7 @@ fn written_videos_are_read_back() {
     for (frame, level) in frames.iter().zip([0u8, 80, 160, 240, 120]) {
         assert_eq!((frame.image.width(), frame.image.height()), (34, 22));
         assert!(frame.image.chw_u8()[100].abs_diff(level) < 6);
-        assert_eq!(frame.image.header.stamp_ns, Some(frame.number as i64 * 80_000_000));
+        assert_eq!(frame.image.header.stamp_ns, Some(frame.frame_index as i64 * 80_000_000));
     }
     assert_eq!(fs::read_dir(&folder.0).unwrap().count(), 1);
 }

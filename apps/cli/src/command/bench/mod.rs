@@ -9,13 +9,13 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, ResetOptions};
 use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Entry, Ports};
-use opendr::{ActingStream, Error, Progress, Result, Unit};
+use opendr::{Error, PolicyController, Progress, Result, Unit};
 use serde::Serialize;
 
 use self::workload::{Input, Workload};
 use crate::exit::Outcome;
 use crate::peak_memory::peak_memory_mb;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::timings::Timings;
 use crate::{environment_flags, learner_flags, loading, stdout};
 
@@ -72,7 +72,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
     let options = SessionOptions::from(loading::device(matches)?);
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let mut learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, &bar)?;
     let (workload, timings) = match environment_flags::is_policy(entry) {
         true => measure_policy(learner.as_ref(), entry, matches, &bar)?,
@@ -109,7 +109,7 @@ fn measure_inference(
     spec: &str,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
+    bar: &ProgressBar,
 ) -> Result<(Workload, Vec<Timings>)> {
     let (workload, inputs) = workload::inputs(spec, entry, matches, bar)?;
     let in_chunks = matches!(workload, Workload::Sound { .. }) && entry.capabilities.streaming;
@@ -137,11 +137,11 @@ fn measure_policy(
     learner: &dyn AnyLearner,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
+    bar: &ProgressBar,
 ) -> Result<(Workload, Vec<Timings>)> {
     let source = environment_flags::source(matches, Some(learner))?;
     let mut environment = source.make()?;
-    let mut stream = ActingStream::new(learner.stream()?, entry, environment.spec())?;
+    let mut stream = PolicyController::new(learner.stream()?, entry, environment.spec())?;
     let mut observation = vec![0.0; environment.spec().observation.len()];
     let mut action = vec![0.0; environment.spec().action.len()];
     let begin = |environment: &mut dyn Environment, seed, observation: &mut [f32]| {
@@ -162,7 +162,7 @@ fn measure_policy(
 /// Returns the timings of `--frames` calls after `--warmup` calls.
 fn measure(
     matches: &ArgMatches,
-    bar: &Bar,
+    bar: &ProgressBar,
     mut call: impl FnMut() -> Result<Timings>,
 ) -> Result<Vec<Timings>> {
     let [frames, warmup] =

@@ -14,7 +14,7 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
 use super::synthetic;
-use crate::progress_bar::Bar;
+use crate::progress_bar::ProgressBar;
 use crate::{learner_flags, loading};
 
 /// Size of sample and synthetic images, in pixels.
@@ -52,7 +52,7 @@ pub fn inputs(
     spec: &str,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
+    bar: &ProgressBar,
 ) -> Result<(Workload, Vec<Input>)> {
     let Some((first, further)) = entry.ports.split_first() else {
         return Err(Error::unsupported(format!("{spec} has no input port and cannot be measured")));
@@ -81,7 +81,7 @@ fn first_values(
     described: &Map<String, Json>,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
+    bar: &ProgressBar,
 ) -> Result<(Workload, Vec<Value>)> {
     let kind = port.value_type;
     let (source, values) = match matches.get_one::<PathBuf>("input") {
@@ -102,7 +102,7 @@ fn first_values(
 }
 
 /// Returns the inputs that the model's manifest describes.
-fn manifest_inputs(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Map<String, Json>> {
+fn manifest_inputs(spec: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<Map<String, Json>> {
     let container = match matches.get_one::<PathBuf>("model") {
         Some(path) => path.clone(),
         None => loading::pretrained(spec, matches, bar)?,
@@ -139,7 +139,7 @@ fn workload(source: String, values: Vec<Value>, entry: &'static Entry) -> Result
 }
 
 /// Returns the first sample of the zoo of type `kind`; `None` when none can be downloaded.
-fn sample(kind: ValueType, matches: &ArgMatches, bar: &Bar) -> Result<Option<(String, Value)>> {
+fn sample(kind: ValueType, matches: &ArgMatches, bar: &ProgressBar) -> Result<Option<(String, Value)>> {
     let zoo = loading::zoo(matches)?;
     let is_of_kind = |name: &str| {
         Path::new(name)

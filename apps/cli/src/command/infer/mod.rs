@@ -14,7 +14,7 @@ use crate::exit::Outcome;
 use crate::inputs::Inputs;
 use crate::item::{Datum, Item, Next};
 use crate::port_file::PortFile;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::recordings::RecordingSink;
 use crate::report::{Json, Report};
 use crate::timings::Timings;
@@ -75,7 +75,7 @@ pub fn grammar() -> Command {
 pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let json = match matches.get_one::<PathBuf>("json") {
         Some(path) => Json::file(path)?,
         None if matches.contains_id("json") => Json::Stdout,
@@ -226,7 +226,7 @@ impl Job {
         limit: u64,
         report: &mut Report<'_>,
         out: &mut Out,
-        bar: &Bar,
+        bar: &ProgressBar,
     ) -> Result<()> {
         let classes = learners.classes();
         let mut left = limit;

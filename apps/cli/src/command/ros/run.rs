@@ -7,14 +7,15 @@ use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::ros::{
-    Feeds, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, words_from_ros1,
+    Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, SharedSubscriptions,
+    ros_args_from_ros1,
 };
 
 use super::node::{node_grammar, options, set_parameters};
 use super::participant;
 use super::version::{ROS_ARGS, Ros};
 use crate::exit::Outcome;
-use crate::progress_bar::{Bar, interrupted};
+use crate::progress_bar::{ProgressBar, interrupted};
 use crate::{learner_flags, loading};
 
 /// Id of the argument that holds everything after `run`.
@@ -44,7 +45,7 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
     let mut ros_words: Vec<String> = rest.iter().map(|word| word.to_string_lossy().into_owned()).collect();
     let mut own_words = Vec::new();
     for word in words {
-        match words_from_ros1(&word.to_string_lossy())? {
+        match ros_args_from_ros1(&word.to_string_lossy())? {
             Some(of_ros) => ros_words.extend(of_ros),
             None => own_words.push(word.clone()),
         }
@@ -57,7 +58,7 @@ pub fn run(ros: Ros, matches: &ArgMatches) -> Result<Outcome> {
         }
     }
     let Some(first) = nodes.first() else { return Ok(Outcome::Done) };
-    let mut feeds = Feeds::default();
+    let mut feeds = SharedSubscriptions::default();
     let mut running = Vec::new();
     // The participant outlives its nodes.
     let mut joined = None;
@@ -102,7 +103,12 @@ fn parse(ros: Ros, words: &[OsString]) -> Result<Result<ArgMatches, Outcome>> {
     }))
 }
 
-fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
+fn start_ros2(
+    ros2: &Ros2,
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut SharedSubscriptions,
+) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = ros2.node(names)?;
     let node = learner_node(&mut *graph, matches, &args.parameters, feeds)?;
@@ -113,7 +119,11 @@ fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &m
     Ok((graph, node))
 }
 
-fn start_ros1(matches: &ArgMatches, ros_words: &[String], feeds: &mut Feeds) -> Result<Running> {
+fn start_ros1(
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut SharedSubscriptions,
+) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = Ros1Node::new(names)?;
     // Parameters of the command line override those of a launch file.
@@ -137,7 +147,7 @@ fn learner_node(
     graph: &mut dyn Graph,
     matches: &ArgMatches,
     parameters: &[(String, String)],
-    feeds: &mut Feeds,
+    feeds: &mut SharedSubscriptions,
 ) -> Result<LearnerNode> {
     let spec = matches.get_one::<String>(loading::LEARNER).map_or("", String::as_str);
     let entry = loading::entry(spec)?;
@@ -145,7 +155,7 @@ fn learner_node(
         (learner_flags::params(entry, matches)?, learner_flags::values(NodeParams::FIELDS, matches)?);
     set_parameters(entry, parameters, &mut of_learner, &mut of_node)?;
     let options = options(entry, matches, NodeParams::from_map(&of_node)?)?;
-    let bar = Bar::new(matches.get_flag("quiet"));
+    let bar = ProgressBar::new(matches.get_flag("quiet"));
     let learner: Box<dyn AnyLearner> = loading::load(spec, &of_learner, matches, &bar)?;
     let node = LearnerNode::new(graph, entry, learner, options, feeds)?;
     graph.log()(Severity::Info, &format!("{} is ready as {}", entry.spec.class, graph.name()));

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::audio::sound::for_each_audio;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Changes the volume of audio by a random gain; samples beyond -1 and 1 are clipped.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,7 @@ impl Augmentation for AudioGain {
 }
 
 impl Augment for AudioGain {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let gain = 10f32.powf(random.uniform(self.min_gain, self.max_gain) / 20.0);
         for_each_audio(sample, |samples, _| samples.iter_mut().for_each(|sample| *sample *= gain))
     }

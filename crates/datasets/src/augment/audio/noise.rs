@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::audio::sound::for_each_audio;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Adds white noise at a random signal-to-noise ratio; silence stays silent.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,7 @@ impl Augmentation for AudioNoise {
 }
 
 impl Augment for AudioNoise {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let ratio = random.uniform(self.min_snr, self.max_snr);
         for_each_audio(sample, |samples, _| {
             let power =

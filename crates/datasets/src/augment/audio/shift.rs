@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::audio::sound::for_each_audio;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Shifts audio in time; the length is kept, and silence fills the gap.
 #[derive(Debug, Clone, Params)]
@@ -21,7 +21,7 @@ impl Augmentation for AudioShift {
 }
 
 impl Augment for AudioShift {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let seconds = random.uniform(-self.max_shift, self.max_shift);
         for_each_audio(sample, |samples, audio| {
             let instants = (seconds * audio.sample_rate() as f32).round();

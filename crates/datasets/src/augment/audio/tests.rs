@@ -3,12 +3,12 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::{Header, Random, Value};
 
 use super::*;
-use crate::augment::{Augment, Others};
+use crate::augment::{Augment, OtherSamples};
 
 fn changed(augment: &dyn Augment, samples: Vec<f32>, channels: usize, seed: u64) -> Vec<f32> {
     let audio = Audio::new(samples, channels, 1000).unwrap().with_header(Header::new(5, "ear"));
     let mut sample = Sample { data: vec![audio.into()], target: None };
-    augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+    augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
     let Value::Audio(audio) = &sample.data[0] else { panic!() };
     assert_eq!((audio.header.stamp_ns, audio.channels(), audio.sample_rate()), (Some(5), channels, 1000));
     audio.as_slice().to_vec()

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::cloud::points::for_each_cloud;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Removes a random share of the points; the others keep their order.
 #[derive(Debug, Clone, Params)]
@@ -21,7 +21,7 @@ impl Augmentation for DropPoints {
 }
 
 impl Augment for DropPoints {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let share = random.uniform(0.0, self.max_share);
         for_each_cloud(sample, |data, channels| {
             let mut kept = 0;

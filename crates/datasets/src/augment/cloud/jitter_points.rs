@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::cloud::points::for_each_cloud;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Adds Gaussian noise to the coordinates of every point; its other values are kept.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,7 @@ impl Augmentation for JitterPoints {
 }
 
 impl Augment for JitterPoints {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         for_each_cloud(sample, |data, channels| {
             for point in data.chunks_exact_mut(channels) {
                 for part in &mut point[..3] {

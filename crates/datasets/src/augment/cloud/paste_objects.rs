@@ -9,7 +9,7 @@ use opendr_engine::{Error, Random, Result, Value};
 use crate::augment::cloud::boxes::{contains, touch};
 use crate::augment::cloud::frame::Frame;
 use crate::augment::cloud::points::{change_points, cloud, cloud_mut, no_cloud};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Copies annotated objects with their points from other scenes, at their original location. Objects that would
 /// overlap existing ones are skipped; existing points inside a pasted box are removed.
@@ -32,7 +32,7 @@ impl Augmentation for PasteObjects {
 }
 
 impl Augment for PasteObjects {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         for _ in 0..self.scenes {
             let other = others.pick(random)?;
             let (from, _, boxes) = scene(&other)?;

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::cloud::scene::SceneChange;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Rotates points and boxes about the vertical axis through the lidar.
 #[derive(Debug, Clone, Params)]
@@ -21,7 +21,7 @@ impl Augmentation for CloudRotate {
 }
 
 impl Augment for CloudRotate {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let angle = f64::from(random.uniform(-self.max_angle, self.max_angle));
         SceneChange { angle, ..SceneChange::NONE }.apply(sample)
     }

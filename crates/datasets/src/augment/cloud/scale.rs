@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::cloud::scene::SceneChange;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Scales points and boxes about the lidar.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,7 @@ impl Augmentation for CloudScale {
 }
 
 impl Augment for CloudScale {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let scale = f64::from(random.uniform(self.min_scale, self.max_scale));
         SceneChange { scale, ..SceneChange::NONE }.apply(sample)
     }

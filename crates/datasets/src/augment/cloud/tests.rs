@@ -7,7 +7,7 @@ use super::boxes::{contains, touch};
 use super::frame::Frame;
 use super::points::cloud;
 use super::*;
-use crate::augment::{Augment, Others};
+use crate::augment::{Augment, OtherSamples};
 
 /// Returns a scene with a car, whose calibration has a tilt and an offset.
 fn scene(place: [f32; 3], rotation_y: f32, calibrated: bool) -> Sample {
@@ -61,7 +61,7 @@ fn inside(sample: &Sample) -> Vec<bool> {
 }
 
 fn apply(augment: &dyn Augment, sample: &mut Sample, seed: u64) {
-    augment.apply(sample, &mut Random::new(seed), &Others::none()).unwrap();
+    augment.apply(sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
 }
 
 #[test]
@@ -144,7 +144,7 @@ fn pasted_objects_bring_their_points_and_do_not_touch() {
     for seed in 0..20 {
         let mut sample = Street.get(0).unwrap();
         let paste = PasteObjects { scenes: 4, ..PasteObjects::default() };
-        paste.apply(&mut sample, &mut Random::new(seed), &Others::of(&Street)).unwrap();
+        paste.apply(&mut sample, &mut Random::new(seed), &OtherSamples::of(&Street)).unwrap();
         let object = boxes(&sample);
         for (index, one) in object.iter().enumerate() {
             assert!(object[..index].iter().all(|other| !touch(one, other)));
@@ -179,6 +179,6 @@ fn overlap_of_rotated_boxes() {
 fn images_beside_clouds_are_errors() {
     let mut sample = scene([3.0, 1.2, 15.0], 0.7, true);
     sample.data.push(Image::from_rgb8(vec![0; 3], 1, 1).unwrap().into());
-    let refused = CloudFlip {}.apply(&mut sample, &mut Random::new(0), &Others::none());
+    let refused = CloudFlip {}.apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::Unsupported);
 }

@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Rotates, scales, shears and shifts an image about its centre, with one resampling. The size is kept.
 #[derive(Debug, Clone, Params)]
@@ -36,8 +36,8 @@ impl Augmentation for Affine {
 }
 
 impl Augment for Affine {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let size = picture_size(sample)?;
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let size = image_size(sample)?;
         let mut either_way = |most: f32| f64::from(random.uniform(-most, most));
         let (sine, cosine) = either_way(self.max_angle).sin_cos();
         let [across, down] = [either_way(self.max_shear), either_way(self.max_shear)];
@@ -46,7 +46,7 @@ impl Augment for Affine {
         // The rotation, then the shear [[1, across], [down, 1]].
         let linear =
             [[cosine - across * sine, sine + across * cosine], [down * cosine - sine, down * sine + cosine]];
-        let map = PictureMap::about_middle(size, linear.map(|row| row.map(|part| part * scale)), shift);
-        transform(sample, &map, &Border::keeping(self.min_visible))
+        let map = AffineMap::about_centre(size, linear.map(|row| row.map(|part| part * scale)), shift);
+        transform(sample, &map, &Border::with_min_visible(self.min_visible))
     }
 }

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::picture::pixels::{Bytes, for_each_u8_image};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Blurs an image with a Gaussian of random width; pixels at the border are repeated.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,7 @@ impl Augmentation for Blur {
 }
 
 impl Augment for Blur {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let weights = weights(random.uniform(self.min_deviation, self.max_deviation));
         for_each_u8_image(sample, |picture| blur(picture, &weights))
     }

@@ -17,13 +17,13 @@ impl Border {
     pub const IGNORED: u32 = 255;
 
     /// Returns grey padding (level 114) and ignored labels, with a smallest share of boxes.
-    pub fn keeping(min_visible: f32) -> Self {
+    pub fn with_min_visible(min_visible: f32) -> Self {
         Self { level: 114, label: Self::IGNORED, min_visible }
     }
 }
 
 impl Default for Border {
     fn default() -> Self {
-        Self::keeping(0.0)
+        Self::with_min_visible(0.0)
     }
 }

@@ -4,7 +4,7 @@ use opendr_engine::Result;
 use opendr_engine::target::{BoundingBox, Rle, Segment, Segmentation};
 
 use crate::augment::picture::border::Border;
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::polygons;
 use crate::augment::picture::warp::nearest_plane;
 
@@ -15,7 +15,7 @@ const UNKNOWN: [f32; 2] = [-1.0; 2];
 const MIRRORED_FACE: [usize; 5] = [1, 0, 2, 4, 3];
 
 /// Transforms a box; returns `false` if too little of it is left.
-pub(super) fn map_box(object: &mut BoundingBox, map: &PictureMap, border: &Border) -> Result<bool> {
+pub(super) fn map_box(object: &mut BoundingBox, map: &AffineMap, border: &Border) -> Result<bool> {
     let whole = whole_box(object, map);
     let size = map.output_size().map(|side| side as f64);
     let cut: [f64; 4] = std::array::from_fn(|edge| whole[edge].clamp(0.0, size[edge % 2]));
@@ -36,7 +36,7 @@ pub(super) fn map_box(object: &mut BoundingBox, map: &PictureMap, border: &Borde
 
 /// Returns the transformed box without clipping: around its outline if it has one and the map rotates, otherwise
 /// around its corners.
-fn whole_box(object: &BoundingBox, map: &PictureMap) -> [f64; 4] {
+fn whole_box(object: &BoundingBox, map: &AffineMap) -> [f64; 4] {
     let outline = match object.segment.as_deref() {
         Some(Segment { segmentation: Segmentation::Polygons(outlines), .. })
             if map.along_axes().is_none() =>
@@ -51,7 +51,7 @@ fn whole_box(object: &BoundingBox, map: &PictureMap) -> [f64; 4] {
     outline.or_else(|| polygons::bounds(&corners)).unwrap_or_default()
 }
 
-fn map_landmarks(object: &mut BoundingBox, map: &PictureMap) {
+fn map_landmarks(object: &mut BoundingBox, map: &AffineMap) {
     let size = map.output_size().map(|side| side as f32);
     for landmark in object.landmarks.iter_mut().filter(|landmark| landmark.iter().all(|part| *part >= 0.0)) {
         let place = map.output_from_input(landmark.map(f64::from)).map(|part| part as f32);
@@ -65,7 +65,7 @@ fn map_landmarks(object: &mut BoundingBox, map: &PictureMap) {
 }
 
 /// Transforms a mask and its area; returns `false` if no pixel is left of a mask that was not empty.
-fn map_segment(segment: &mut Segment, map: &PictureMap) -> Result<bool> {
+fn map_segment(segment: &mut Segment, map: &AffineMap) -> Result<bool> {
     match &mut segment.segmentation {
         Segmentation::Polygons(outlines) => {
             let had_some = !outlines.is_empty();
@@ -92,7 +92,7 @@ fn map_segment(segment: &mut Segment, map: &PictureMap) -> Result<bool> {
     }
 }
 
-fn map_rle(runs: &Rle, map: &PictureMap) -> Result<Rle> {
+fn map_rle(runs: &Rle, map: &AffineMap) -> Result<Rle> {
     let [height, width] = runs.size();
     let map = map.for_size([width as usize, height as usize]);
     let [columns, rows] = map.output_size();

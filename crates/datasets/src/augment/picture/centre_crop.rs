@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Crops the centre of an image; a smaller image is padded with grey on all sides.
 #[derive(Debug, Clone, Params)]
@@ -27,9 +27,13 @@ impl Augmentation for CentreCrop {
 }
 
 impl Augment for CentreCrop {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, output_size) = (picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let corner = [0, 1].map(|axis| (size[axis] as i64 - output_size[axis] as i64).div_euclid(2));
-        transform(sample, &PictureMap::crop(size, corner, output_size), &Border::keeping(self.min_visible))
+        transform(
+            sample,
+            &AffineMap::crop(size, corner, output_size),
+            &Border::with_min_visible(self.min_visible),
+        )
     }
 }

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::picture::pixels::{Bytes, for_each_u8_image};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Changes brightness, contrast, saturation and hue at random, in this order, in one pass over the pixels.
 ///
@@ -33,7 +33,7 @@ impl Augmentation for Colour {
 }
 
 impl Augment for Colour {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let mut factor = |most: f32| 1.0 + random.uniform(-most, most);
         let [brightness, contrast, saturation] =
             [self.brightness, self.contrast, self.saturation].map(&mut factor);

@@ -4,9 +4,9 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result, Value};
 
-use crate::augment::picture::picture_size;
+use crate::augment::picture::image_size;
 use crate::augment::picture::pixels::{Bytes, for_each_u8_image};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Covers random rectangles of an image with grey, which simulates occlusion. Keypoints and label maps are kept.
 #[derive(Debug, Clone, Params)]
@@ -34,8 +34,8 @@ impl Augmentation for CutOut {
 }
 
 impl Augment for CutOut {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let size = picture_size(sample)?;
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let size = image_size(sample)?;
         for _ in 0..self.count {
             let sides = size.map(|side| {
                 let share = random.uniform(self.min_side, self.max_side);

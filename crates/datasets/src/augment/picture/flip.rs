@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 opendr_engine::choices! {
     /// Direction of mirroring.
@@ -30,11 +30,11 @@ impl Augmentation for Flip {
 }
 
 impl Augment for Flip {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
-        let size = picture_size(sample)?;
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let size = image_size(sample)?;
         let map = match self.direction {
-            FlipDirection::Horizontal => PictureMap::flip_horizontal(size),
-            FlipDirection::Vertical => PictureMap::flip_vertical(size),
+            FlipDirection::Horizontal => AffineMap::flip_horizontal(size),
+            FlipDirection::Vertical => AffineMap::flip_vertical(size),
         };
         transform(sample, &map, &Border::default())
     }

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::picture::pixels::for_each_u8_image;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Replaces colours by their luminance (ITU-R BT.601); the image keeps its three channels.
 #[derive(Debug, Clone, Params)]
@@ -17,7 +17,7 @@ impl Augmentation for Grey {
 }
 
 impl Augment for Grey {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         for_each_u8_image(sample, |picture| {
             if picture.channels == 3 {
                 for pixel in picture.samples.as_chunks_mut::<3>().0 {

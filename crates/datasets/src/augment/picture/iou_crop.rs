@@ -5,8 +5,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{Random, Result, Value};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Smallest IoU of the crop with an object, one of which is drawn; `None` keeps the whole image.
 const OVERLAPS: [Option<f32>; 7] = [None, Some(0.0), Some(0.1), Some(0.3), Some(0.5), Some(0.7), Some(0.9)];
@@ -84,8 +84,8 @@ impl Augmentation for IouCrop {
 }
 
 impl Augment for IouCrop {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let size = picture_size(sample)?;
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let size = image_size(sample)?;
         let mut boxes = Vec::new();
         retain_boxes(sample, |object| {
             boxes.push(object.corners());
@@ -95,7 +95,7 @@ impl Augment for IouCrop {
         let corners = corners_of(window);
         retain_boxes(sample, |object| has_centre(corners, object.corners()));
         let [left, top, width, height] = window;
-        let map = PictureMap::crop(size, [left as i64, top as i64], [width, height]);
+        let map = AffineMap::crop(size, [left as i64, top as i64], [width, height]);
         transform(sample, &map, &Border::default())
     }
 }

@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Resizes an image to a fixed size, keeps its aspect ratio and pads the rest equally on both sides.
 #[derive(Debug, Clone, Params)]
@@ -27,15 +27,15 @@ impl Augmentation for Letterbox {
 }
 
 impl Augment for Letterbox {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, output_size) = (picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let scale =
             (0..2).map(|axis| output_size[axis] as f64 / size[axis] as f64).fold(f64::INFINITY, f64::min);
         let sides =
             [0, 1].map(|axis| ((size[axis] as f64 * scale).round() as usize).min(output_size[axis]).max(1));
         let corner = [0, 1].map(|axis| output_size[axis].saturating_sub(sides[axis]) / 2);
         let rectangle = [corner[0], corner[1], sides[0], sides[1]];
-        let map = PictureMap::window(size, [0, 0, size[0], size[1]], rectangle, output_size);
+        let map = AffineMap::window(size, [0, 0, size[0], size[1]], rectangle, output_size);
         transform(sample, &map, &Border { level: self.level.min(255) as u8, ..Border::default() })
     }
 }

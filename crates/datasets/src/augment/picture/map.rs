@@ -4,13 +4,13 @@
 ///
 /// Positions are continuous: the left-top corner of the first pixel is (0, 0), its centre (0.5, 0.5).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PictureMap {
+pub struct AffineMap {
     matrix: [[f64; 3]; 2],
     input_size: [usize; 2],
     output_size: [usize; 2],
 }
 
-impl PictureMap {
+impl AffineMap {
     /// Creates the map by `matrix` (x' = m00 x + m01 y + m02, y' = m10 x + m11 y + m12) from an image of
     /// `input_size` (width and height) to one of `output_size`.
     pub fn new(matrix: [[f64; 3]; 2], input_size: [usize; 2], output_size: [usize; 2]) -> Self {
@@ -55,7 +55,7 @@ impl PictureMap {
     }
 
     /// Returns the map by the linear part `[[a, b], [c, d]]` about the centre of the image, then a shift in pixels.
-    pub fn about_middle(size: [usize; 2], [[a, b], [c, d]]: [[f64; 2]; 2], shift: [f64; 2]) -> Self {
+    pub fn about_centre(size: [usize; 2], [[a, b], [c, d]]: [[f64; 2]; 2], shift: [f64; 2]) -> Self {
         let [x, y] = size.map(|side| side as f64 / 2.0);
         let matrix = [[a, b, x - a * x - b * y + shift[0]], [c, d, y - c * x - d * y + shift[1]]];
         Self::new(matrix, size, size)

@@ -7,8 +7,8 @@ use opendr_engine::target::Category;
 use opendr_engine::{Error, Random, Result, Value};
 
 use crate::augment::picture::pixels::make_interleaved;
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Blends an image with another, which is resized to its size. Boxes and poses of both are kept; classes become the
 /// shares of the images as probabilities.
@@ -29,10 +29,10 @@ impl Augmentation for MixUp {
 }
 
 impl Augment for MixUp {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         let mut other = others.pick(random)?;
         let share = beta(self.alpha, random).clamp(0.0, 1.0);
-        let map = PictureMap::stretch(picture_size(&other)?, picture_size(sample)?);
+        let map = AffineMap::stretch(image_size(&other)?, image_size(sample)?);
         transform(&mut other, &map, &Border::default())?;
         let ([Value::Image(image)], [Value::Image(over)]) = (&mut sample.data[..], &mut other.data[..])
         else {

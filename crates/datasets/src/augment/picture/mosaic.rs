@@ -9,8 +9,8 @@ use opendr_engine::{Error, Random, Result, Value};
 use crate::augment::picture::border::Border;
 use crate::augment::picture::targets::follow;
 use crate::augment::picture::warp::check_size;
-use crate::augment::picture::{PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Combines an image with three others around a random point; each is cropped to its quadrant.
 #[derive(Debug, Clone, Params)]
@@ -38,7 +38,7 @@ impl Augmentation for Mosaic {
 }
 
 impl Augment for Mosaic {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, others: &OtherSamples<'_>) -> Result<()> {
         let size = [self.width, self.height];
         check_size(size, 3)?;
         let point = size.map(|side| {
@@ -57,7 +57,7 @@ impl Augment for Mosaic {
                 .map(|axis| if right_below[axis] == 0 { point[axis] } else { size[axis] - point[axis] });
             self.fit(&mut part, sides, right_below, random)?;
             paste_picture(&mut canvas, self.width, &part, corner)?;
-            let shift = PictureMap::crop(sides, corner.map(|edge| -(edge as i64)), size);
+            let shift = AffineMap::crop(sides, corner.map(|edge| -(edge as i64)), size);
             if let Some(target) = &mut part.target {
                 follow(target, &shift, &Border::default())?;
             }
@@ -86,15 +86,15 @@ impl Mosaic {
         if !matches!(part.data[..], [Value::Image(_)]) {
             return Err(Error::unsupported("a mosaic needs samples of one image; remove the augmentation"));
         }
-        let size = picture_size(part)?;
+        let size = image_size(part)?;
         let cover = (0..2).map(|axis| sides[axis] as f32 / size[axis] as f32).fold(0.0, f32::max);
         let scale = cover * random.uniform(1.0, self.max_zoom);
         // The window of the image that fills the quadrant, in whole pixels.
         let window = [0, 1].map(|axis| ((sides[axis] as f32 / scale).round() as usize).clamp(1, size[axis]));
         let corner = [0, 1].map(|axis| if outer_end[axis] == 0 { size[axis] - window[axis] } else { 0 });
         let window = [corner[0], corner[1], window[0], window[1]];
-        let map = PictureMap::window(size, window, [0, 0, sides[0], sides[1]], sides);
-        transform(part, &map, &Border::keeping(self.min_visible))
+        let map = AffineMap::window(size, window, [0, 0, sides[0], sides[1]], sides);
+        transform(part, &map, &Border::with_min_visible(self.min_visible))
     }
 }
 

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::picture::pixels::for_each_u8_image;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Adds noise of random strength to every sample of an image.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,7 @@ impl Augmentation for PixelNoise {
 }
 
 impl Augment for PixelNoise {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let deviation = random.uniform(self.min_deviation, self.max_deviation);
         // The noise is a sum of bytes with this deviation, as fixed point with 16 fractional bits.
         let factor = (deviation / BYTE_SUM_DEVIATION * 65536.0).round() as i64;
@@ -62,7 +62,7 @@ mod tests {
         let image = Image::from_rgb8(vec![128; 200 * 100 * 3], 200, 100).unwrap();
         let mut sample = Sample { data: vec![image.into()], target: None };
         let noise = PixelNoise { min_deviation: 12.0, max_deviation: 12.0 };
-        noise.apply(&mut sample, &mut Random::new(1), &Others::none()).unwrap();
+        noise.apply(&mut sample, &mut Random::new(1), &OtherSamples::none()).unwrap();
         let opendr_engine::Value::Image(image) = &sample.data[0] else { panic!() };
         let away: Vec<f64> = image.chw_u8().iter().map(|level| f64::from(*level) - 128.0).collect();
         let mean = away.iter().sum::<f64>() / away.len() as f64;

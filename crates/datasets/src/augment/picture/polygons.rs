@@ -1,9 +1,9 @@
 //! Transformation of polygons.
 
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 
 /// Maps the polygon `[x0, y0, x1, y1, ...]` without clipping; points that are not finite are skipped.
-pub(super) fn mapped(polygon: &[f32], map: &PictureMap) -> Vec<[f64; 2]> {
+pub(super) fn mapped(polygon: &[f32], map: &AffineMap) -> Vec<[f64; 2]> {
     let corners = polygon.chunks_exact(2).filter(|corner| corner.iter().all(|part| part.is_finite()));
     corners.map(|corner| map.output_from_input([corner[0].into(), corner[1].into()])).collect()
 }

@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Crops a window of fixed size at a random place; a smaller image is placed at random on grey.
 #[derive(Debug, Clone, Params)]
@@ -27,12 +27,16 @@ impl Augmentation for RandomCrop {
 }
 
 impl Augment for RandomCrop {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, output_size) = (picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let corner = [0, 1].map(|axis| {
             let place = random.below(size[axis].abs_diff(output_size[axis]) + 1) as i64;
             if size[axis] < output_size[axis] { -place } else { place }
         });
-        transform(sample, &PictureMap::crop(size, corner, output_size), &Border::keeping(self.min_visible))
+        transform(
+            sample,
+            &AffineMap::crop(size, corner, output_size),
+            &Border::with_min_visible(self.min_visible),
+        )
     }
 }

@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Number of windows that are drawn before the central one is used.
 const TRIES: usize = 10;
@@ -68,11 +68,11 @@ impl Augmentation for RandomResizedCrop {
 }
 
 impl Augment for RandomResizedCrop {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, output_size) = (picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let window = self.window(size, random);
-        let map = PictureMap::window(size, window, [0, 0, self.width, self.height], output_size);
-        transform(sample, &map, &Border::keeping(self.min_visible))
+        let map = AffineMap::window(size, window, [0, 0, self.width, self.height], output_size);
+        transform(sample, &map, &Border::with_min_visible(self.min_visible))
     }
 }
 

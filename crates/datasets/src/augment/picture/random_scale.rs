@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Scales an image by a random factor; a crop usually follows.
 #[derive(Debug, Clone, Params)]
@@ -24,9 +24,9 @@ impl Augmentation for RandomScale {
 }
 
 impl Augment for RandomScale {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let (size, scale) = (picture_size(sample)?, random.uniform(self.min_scale, self.max_scale));
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let (size, scale) = (image_size(sample)?, random.uniform(self.min_scale, self.max_scale));
         let output_size = size.map(|side| (side as f32 * scale).round().max(1.0) as usize);
-        transform(sample, &PictureMap::stretch(size, output_size), &Border::default())
+        transform(sample, &AffineMap::stretch(size, output_size), &Border::default())
     }
 }

@@ -4,8 +4,8 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, PictureMap, picture_size, transform};
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Resizes an image to a fixed size without keeping its aspect ratio.
 #[derive(Debug, Clone, Params)]
@@ -24,8 +24,8 @@ impl Augmentation for Resize {
 }
 
 impl Augment for Resize {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
-        let map = PictureMap::stretch(picture_size(sample)?, [self.width, self.height]);
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let map = AffineMap::stretch(image_size(sample)?, [self.width, self.height]);
         transform(sample, &map, &Border::default())
     }
 }

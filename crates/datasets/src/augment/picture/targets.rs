@@ -5,11 +5,11 @@ use opendr_engine::{Error, Result, Value};
 
 use crate::augment::picture::border::Border;
 use crate::augment::picture::boxes::map_box;
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::warp::{check_size, nearest_plane};
 
 /// Transforms the parts of a target with image coordinates; a target of the whole image (a class, a text) is kept.
-pub(super) fn follow(target: &mut Value, map: &PictureMap, border: &Border) -> Result<()> {
+pub(super) fn follow(target: &mut Value, map: &AffineMap, border: &Border) -> Result<()> {
     match target {
         Value::BoundingBoxList(list) => retain(&mut list.boxes, |object| map_box(object, map, border)),
         Value::TrackingAnnotationList(list) => {
@@ -41,9 +41,9 @@ pub(super) fn retain<T>(items: &mut Vec<T>, mut keep: impl FnMut(&mut T) -> Resu
     outcome
 }
 
-fn map_poses(list: &mut PoseList, map: &PictureMap, border: &Border) -> Result<()> {
+fn map_poses(list: &mut PoseList, map: &AffineMap, border: &Border) -> Result<()> {
     retain(&mut list.poses, |pose| {
-        let joints = |pose: &Pose| pose.keypoints.iter().filter(|joint| joint.is_found()).count();
+        let joints = |pose: &Pose| pose.keypoints.iter().filter(|joint| joint.is_detected()).count();
         let nothing_before = joints(pose) == 0 && pose.region.is_none();
         pose.keypoints.iter_mut().for_each(|joint| map_keypoint(joint, map));
         if map.mirrors() {
@@ -58,8 +58,8 @@ fn map_poses(list: &mut PoseList, map: &PictureMap, border: &Border) -> Result<(
     })
 }
 
-fn map_keypoint(joint: &mut Keypoint, map: &PictureMap) {
-    if !joint.is_found() {
+fn map_keypoint(joint: &mut Keypoint, map: &AffineMap) {
+    if !joint.is_detected() {
         return;
     }
     let [x, y] = map.output_from_input([joint.x.into(), joint.y.into()]);
@@ -82,7 +82,7 @@ fn swap_sides(pose: &mut Pose) {
     pose.skeleton = pose.skeleton.mirrored();
 }
 
-fn map_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> Result<()> {
+fn map_heatmap(heatmap: &mut Heatmap, map: &AffineMap, border: &Border) -> Result<()> {
     let shape: Vec<usize> = heatmap.shape().to_vec();
     let (&[height, width] | &[_, height, width]) = &shape[..] else {
         return Err(Error::unsupported(format!(
@@ -106,7 +106,7 @@ fn map_heatmap(heatmap: &mut Heatmap, map: &PictureMap, border: &Border) -> Resu
     Ok(())
 }
 
-fn each_plane<T: Copy>(values: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>> {
+fn each_plane<T: Copy>(values: &[T], map: &AffineMap, fill: T) -> Result<Vec<T>> {
     let [width, height] = map.input_size();
     let mut moved = Vec::new();
     for plane in values.chunks_exact((width * height).max(1)) {

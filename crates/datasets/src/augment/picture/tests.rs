@@ -11,7 +11,7 @@ use opendr_engine::{ErrorKind, Random, Result, Value};
 use proptest::prelude::*;
 
 use super::*;
-use crate::augment::{Augment, Others, Pipeline, augmentations};
+use crate::augment::{Augment, OtherSamples, Pipeline, augmentations};
 
 /// Brightness above which a pixel belongs to the object; background and padding are darker.
 const BRIGHT: u8 = 180;
@@ -122,7 +122,7 @@ proptest! {
         let rectangle = [left, top, (left + width).min(160), (top + height).min(120)];
         for augment in geometric() {
             let mut sample = painted([160, 120], rectangle);
-            augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+            augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
             let scale = (image(&sample).width() * image(&sample).height()) as f32 / (160.0 * 120.0);
             let area = ((rectangle[2] - rectangle[0]) * (rectangle[3] - rectangle[1])) as f32;
             // Affine enlarges up to one and a half times, for any size of the image.
@@ -130,7 +130,7 @@ proptest! {
         }
         // A window may exclude the object's centre and then drops the box; kept boxes must be right.
         let mut sample = painted([160, 120], rectangle);
-        IouCrop::default().apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+        IouCrop::default().apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
         prop_assert!(!boxes(&sample).is_empty());
         check_painted(&sample, 1.0);
     }
@@ -141,7 +141,7 @@ proptest! {
             let mut sample = painted([160, 120], [40, 30, 100, 80]);
             let labels = bright(image(&sample)).iter().map(|inside| if *inside { OBJECT } else { 1 }).collect();
             sample.target = Some(Heatmap::from_labels(labels, &[120, 160]).unwrap().into());
-            augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+            augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
             let Some(Value::Heatmap(map)) = &sample.target else { panic!() };
             let HeatmapValues::Labels(labels) = map.values() else { panic!() };
             prop_assert_eq!(map.shape(), &[image(&sample).height(), image(&sample).width()][..]);
@@ -156,14 +156,14 @@ proptest! {
     fn keypoints_match_painted_dots(seed in 0u64..1 << 40) {
         for (index, augment) in geometric().into_iter().enumerate() {
             let mut sample = person();
-            augment.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+            augment.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
             let Some(Value::PoseList(list)) = &sample.target else { panic!() };
             // The first two are mirror images: the left wrist is the dot of the former right one.
             let colours = if index < 2 { [1, 2, 0] } else { [1, 0, 2] };
             for pose in &list.poses {
                 for (name, colour) in ["nose", "l_wri", "r_wri"].into_iter().zip(colours) {
                     let joint = pose.keypoint(name).unwrap();
-                    if joint.is_found() {
+                    if joint.is_detected() {
                         check_dot(image(&sample), joint, colour);
                     }
                 }
@@ -206,9 +206,9 @@ fn flipped_twice_is_as_before() {
         for before in [painted([161, 119], [3, 5, 77, 60]), person()] {
             let mut sample = before.clone();
             let flip = Flip { direction };
-            flip.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+            flip.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
             assert_ne!(sample.data, before.data);
-            flip.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+            flip.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
             assert_eq!(sample, before);
         }
     }
@@ -218,7 +218,7 @@ fn flipped_twice_is_as_before() {
 fn every_pixel_format_is_mirrored() {
     let flip = |image: Image| {
         let mut sample = Sample { data: vec![image.into()], target: None };
-        Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+        Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
         self::image(&sample).clone()
     };
     let depth = Image::new(vec![1u16, 2, 3, 4, 5, 6], 3, 2, PixelFormat::Grey, Layout::Hwc).unwrap();
@@ -235,7 +235,7 @@ fn every_pixel_format_is_mirrored() {
     let depth = Image::new(vec![1.0f32; 64 * 48], 64, 48, PixelFormat::Grey, Layout::Hwc).unwrap();
     let mut sample = Sample { data: vec![depth.into()], target: None };
     Rotate { max_angle: 1.0, ..Default::default() }
-        .apply(&mut sample, &mut Random::new(4), &Others::none())
+        .apply(&mut sample, &mut Random::new(4), &OtherSamples::none())
         .unwrap();
     let opendr_engine::data::Pixels::F32(values) = image(&sample).pixels() else { panic!() };
     assert!(values.contains(&0.0) && values.iter().all(|value| *value == 0.0 || *value == 1.0));
@@ -247,7 +247,7 @@ fn mirrored_faces_have_swapped_landmarks() {
     let Some(Value::BoundingBoxList(list)) = &mut sample.target else { panic!() };
     list.boxes[0].landmarks =
         [[12.0, 20.0], [30.0, 20.0], [20.0, 25.0], [-1.0, -1.0], [29.0, 33.0]].into_iter().collect();
-    Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+    Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
     let wanted = [[70.0, 20.0], [88.0, 20.0], [80.0, 25.0], [71.0, 33.0], [-1.0, -1.0]];
     assert_eq!(boxes(&sample)[0].landmarks[..], wanted);
 }
@@ -275,7 +275,7 @@ fn mosaics_keep_boxes_around_objects() {
         (Shelf(5), Mosaic { width: 200, height: 160, min_visible: 0.0, ..Default::default() });
     for seed in 0..40 {
         let mut sample = shelf.get(0).unwrap();
-        mosaic.apply(&mut sample, &mut Random::new(seed), &Others::of(&shelf)).unwrap();
+        mosaic.apply(&mut sample, &mut Random::new(seed), &OtherSamples::of(&shelf)).unwrap();
         let image = image(&sample);
         assert_eq!((image.width(), image.height()), (200, 160));
         let shown = bright(image);
@@ -298,11 +298,12 @@ fn mosaics_keep_boxes_around_objects() {
 #[test]
 fn mixed_pictures_have_the_boxes_of_both() {
     let (shelf, mut sample) = (Shelf(3), Shelf(3).get(2).unwrap());
-    MixUp::default().apply(&mut sample, &mut Random::new(3), &Others::of(&shelf)).unwrap();
+    MixUp::default().apply(&mut sample, &mut Random::new(3), &OtherSamples::of(&shelf)).unwrap();
     assert_eq!(boxes(&sample).len(), 4);
     let size = [image(&sample).width(), image(&sample).height()];
     assert_eq!(size, [152, 106]);
-    let alone = MixUp::default().apply(&mut shelf.get(0).unwrap(), &mut Random::new(3), &Others::none());
+    let alone =
+        MixUp::default().apply(&mut shelf.get(0).unwrap(), &mut Random::new(3), &OtherSamples::none());
     assert_eq!(alone.unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
@@ -310,11 +311,11 @@ fn mixed_pictures_have_the_boxes_of_both() {
 fn cut_out_drops_covered_boxes() {
     let cut = CutOut { min_side: 1.0, max_side: 1.0, ..Default::default() };
     let mut sample = painted([50, 40], [5, 5, 20, 20]);
-    cut.apply(&mut sample, &mut Random::new(0), &Others::none()).unwrap();
+    cut.apply(&mut sample, &mut Random::new(0), &OtherSamples::none()).unwrap();
     assert!(boxes(&sample).is_empty() && image(&sample).chw_u8().iter().all(|level| *level == 114));
     let mut sample = painted([50, 40], [5, 5, 20, 20]);
     CutOut { min_side: 0.1, max_side: 0.1, ..cut }
-        .apply(&mut sample, &mut Random::new(0), &Others::none())
+        .apply(&mut sample, &mut Random::new(0), &OtherSamples::none())
         .unwrap();
     assert_eq!(boxes(&sample).len(), 2);
     let grey = image(&sample).hwc_u8(PixelFormat::Rgb).chunks(3).filter(|pixel| *pixel == [114; 3]).count();
@@ -328,7 +329,7 @@ fn shared_pixels_are_not_changed() {
         let mut sample = before.clone();
         let kept = image(&before).chw_u8();
         let augment = (entry.make)(&ParamMap::new()).unwrap();
-        let _ = augment.apply(&mut sample, &mut Random::new(1), &Others::of(&Shelf(4)));
+        let _ = augment.apply(&mut sample, &mut Random::new(1), &OtherSamples::of(&Shelf(4)));
         assert_eq!(image(&before).chw_u8(), kept, "{}", entry.name);
     }
 }
@@ -339,7 +340,10 @@ fn one_seed_gives_one_sample() {
         let augment = (entry.make)(&ParamMap::new()).unwrap();
         let [first, second] = [(), ()].map(|()| {
             let mut sample = painted([64, 48], [10, 12, 40, 30]);
-            augment.apply(&mut sample, &mut Random::at([1, 2]), &Others::of(&Shelf(4))).map(|()| sample).ok()
+            augment
+                .apply(&mut sample, &mut Random::from_key([1, 2]), &OtherSamples::of(&Shelf(4)))
+                .map(|()| sample)
+                .ok()
         });
         assert_eq!(first, second, "{}", entry.name);
     }
@@ -373,7 +377,7 @@ fn invalid_targets_cause_no_panic() {
                 let image = Image::from_rgb8(vec![9; 3], 1, 1).unwrap();
                 let mut sample = Sample { data: vec![image.into()], target: Some(target) };
                 // The result is an error or finite, but there is no panic.
-                let done = augment.apply(&mut sample, &mut Random::new(7), &Others::none());
+                let done = augment.apply(&mut sample, &mut Random::new(7), &OtherSamples::none());
                 if let (Ok(()), Some(Value::BoundingBoxList(list)), "flip" | "affine") =
                     (done, &sample.target, entry.name)
                 {
@@ -390,10 +394,10 @@ fn invalid_targets_cause_no_panic() {
 fn targets_that_cannot_be_transformed_are_errors() {
     let mut sample = painted([40, 30], [5, 5, 20, 20]);
     sample.target = Some(opendr_engine::target::BoundingBox3DList::default().into());
-    let refused = Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none());
+    let refused = Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::Unsupported);
     let mut empty = Sample { data: vec![], target: None };
-    let refused = Flip::default().apply(&mut empty, &mut Random::new(0), &Others::none());
+    let refused = Flip::default().apply(&mut empty, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidInput);
     let mut sample = painted([40, 30], [5, 5, 20, 20]);
     let huge: [&dyn Augment; 2] = [
@@ -401,14 +405,14 @@ fn targets_that_cannot_be_transformed_are_errors() {
         &Mosaic { width: 65535, height: 65535, ..Default::default() },
     ];
     for augment in huge {
-        let refused = augment.apply(&mut sample, &mut Random::new(0), &Others::of(&Shelf(2)));
+        let refused = augment.apply(&mut sample, &mut Random::new(0), &OtherSamples::of(&Shelf(2)));
         assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
     }
     // A label map of another resolution is scaled with the image, here to a size far too large.
     let mut sample = painted([1, 1], [0, 0, 1, 1]);
     sample.target = Some(Heatmap::from_labels(vec![0; 1 << 16], &[1 << 8, 1 << 8]).unwrap().into());
     let refused =
-        Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &Others::none());
+        Resize { width: 2048, height: 2048 }.apply(&mut sample, &mut Random::new(0), &OtherSamples::none());
     assert_eq!(refused.unwrap_err().kind(), ErrorKind::InvalidParam);
 }
 

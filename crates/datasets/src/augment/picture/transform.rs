@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result, Value};
 
 use crate::augment::picture::border::Border;
 use crate::augment::picture::boxes::map_box;
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::targets::{follow, retain};
 use crate::augment::picture::warp::warp;
 
@@ -15,8 +15,8 @@ use crate::augment::picture::warp::warp;
 /// # Errors
 /// `InvalidInput` if the sample has no image, or one of another size than the map's; `Unsupported` if a target
 /// cannot be transformed; `InvalidParam` if the result would be too large.
-pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Result<()> {
-    let size = picture_size(sample)?;
+pub fn transform(sample: &mut Sample, map: &AffineMap, border: &Border) -> Result<()> {
+    let size = image_size(sample)?;
     if size != map.input_size() {
         return Err(Error::invalid_input(format!(
             "a map for images of {:?} pixels (width, height) cannot transform one of {size:?}",
@@ -46,7 +46,7 @@ pub fn transform(sample: &mut Sample, map: &PictureMap, border: &Border) -> Resu
 ///
 /// # Errors
 /// `InvalidInput` if there is no image, or there are several sizes.
-pub fn picture_size(sample: &Sample) -> Result<[usize; 2]> {
+pub fn image_size(sample: &Sample) -> Result<[usize; 2]> {
     let mut sizes = sample.data.iter().filter_map(picture).map(|image| [image.width(), image.height()]);
     let Some(first) = sizes.next() else {
         let types: Vec<_> =

@@ -4,7 +4,7 @@ use opendr_engine::data::{Image, Layout, PixelFormat, Pixels};
 use opendr_engine::{Error, Result};
 use opendr_vision::{ChannelOrder, Preprocess};
 
-use crate::augment::picture::map::PictureMap;
+use crate::augment::picture::map::AffineMap;
 use crate::augment::picture::placing::{Span, spans};
 
 /// Largest number of samples of an image; the limit of the decoder.
@@ -14,7 +14,7 @@ const MAX_SAMPLES: usize = 1 << 28;
 ///
 /// Shifts and mirroring are exact for every kind of image. Otherwise `u8` pixels are interpolated bilinearly (and
 /// become RGB or grey, `HWC`), and other samples, which are measurements, are taken from the nearest pixel.
-pub(super) fn warp(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
+pub(super) fn warp(image: &Image, map: &AffineMap, level: u8) -> Result<Image> {
     let [width, height] = map.output_size();
     check_size([width, height], image.channels())?;
     let placing = spans(map);
@@ -54,7 +54,7 @@ pub(super) fn check_size([width, height]: [usize; 2], channels: usize) -> Result
 }
 
 /// Transforms a plane of single samples with the nearest neighbour; `fill` outside of the input.
-pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &PictureMap, fill: T) -> Result<Vec<T>> {
+pub(super) fn nearest_plane<T: Copy>(plane: &[T], map: &AffineMap, fill: T) -> Result<Vec<T>> {
     let [width, height] = map.output_size();
     check_size([width, height], 1)?;
     let mut out = vec![fill; width * height];
@@ -77,7 +77,7 @@ trait Resample {
 fn each_plane<T: Copy>(
     image: &Image,
     samples: &[T],
-    map: &PictureMap,
+    map: &AffineMap,
     fill: T,
     show: &impl Resample,
 ) -> Vec<T> {
@@ -128,7 +128,7 @@ struct Nearest {
 }
 
 impl Nearest {
-    fn new(map: &PictureMap) -> Self {
+    fn new(map: &AffineMap) -> Self {
         let (input_size, [width, _]) = (map.input_size(), map.output_size());
         Self { back: map.input_from_output(), input_size, width }
     }
@@ -175,7 +175,7 @@ fn stretched(image: &Image, [x, y]: &[Span; 2], [width, height]: [usize; 2], lev
 }
 
 /// Transforms an image by any map with bilinear interpolation.
-fn blended(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
+fn blended(image: &Image, map: &AffineMap, level: u8) -> Result<Image> {
     let format = match image.format() {
         PixelFormat::Grey => PixelFormat::Grey,
         _ => PixelFormat::Rgb,
@@ -196,7 +196,7 @@ fn blended(image: &Image, map: &PictureMap, level: u8) -> Result<Image> {
     Image::new(samples, width, height, format, Layout::Hwc)
 }
 
-fn blended_pixels<const CHANNELS: usize>(bytes: &[u8], map: &PictureMap, level: u8) -> Vec<u8> {
+fn blended_pixels<const CHANNELS: usize>(bytes: &[u8], map: &AffineMap, level: u8) -> Vec<u8> {
     let [columns, rows] = map.output_size();
     let mut out = vec![[level; CHANNELS]; columns * rows];
     let Some([[a, b, c], [d, e, f]]) = map.input_from_output() else { return out.into_flattened() };

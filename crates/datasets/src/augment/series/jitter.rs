@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::series::rows::for_each_series;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Adds noise to every value, in proportion to the standard deviation of its feature.
 #[derive(Debug, Clone, Params)]
@@ -21,7 +21,7 @@ impl Augmentation for SeriesJitter {
 }
 
 impl Augment for SeriesJitter {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         for_each_series(sample, |numbers, features| {
             for feature in 0..features {
                 let noise =

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::series::rows::for_each_series;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Multiplies each feature by a random factor, which is constant over time.
 #[derive(Debug, Clone, Params)]
@@ -21,7 +21,7 @@ impl Augmentation for SeriesScale {
 }
 
 impl Augment for SeriesScale {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         for_each_series(sample, |numbers, features| {
             let factors: Vec<f32> =
                 (0..features).map(|_| 1.0 + random.normal() as f32 * self.deviation).collect();

@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
 use crate::augment::series::rows::for_each_series;
-use crate::augment::{Augment, Augmentation, Others};
+use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Masks random spans of time and bands of frequency of a spectrogram, a
 /// [`Timeseries`](opendr_engine::data::Timeseries) `[time, bands]`.
@@ -37,7 +37,7 @@ impl Augmentation for SpecAugment {
 }
 
 impl Augment for SpecAugment {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         for_each_series(sample, |numbers, bands| {
             let instants = numbers.len() / bands;
             let longest = self.max_time.min((instants as f32 * self.max_time_share) as usize);

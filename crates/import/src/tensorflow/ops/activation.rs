@@ -6,7 +6,7 @@ use super::elementwise::{apply, apply_unary};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Kind, Operator, Wire};
+use opendr_onnx::{ElementType, Operator, Value};
 
 pub fn activation(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let alpha = call.attr().float("alpha").unwrap_or(0.2);
@@ -33,9 +33,16 @@ fn activate(
         "HardSwish" => Operator::new("HardSwish"),
         "Relu6" | "ReluN1To1" | "Relu0To1" => {
             let (low, high) = clipped_to(name);
-            let (low, high) = (Wire::scalar(low), Wire::scalar(high));
+            let (low, high) = (Value::scalar(low), Value::scalar(high));
             let clip = Operator::new("Clip");
-            return ctx.emit(call, clip, &[&x.wire, &low, &high], Kind::Float, &x.dims(), x.order.clone());
+            return ctx.emit(
+                call,
+                clip,
+                &[&x.wire, &low, &high],
+                ElementType::Float,
+                &x.dims(),
+                x.order.clone(),
+            );
         }
         "Softmax" | "LogSoftmax" => {
             let last =
@@ -48,7 +55,7 @@ fn activate(
             let slope = slope.ok_or_else(|| Error::format("Prelu has no slope"))?;
             let slope = ctx.broadcastable(slope, &x.order)?;
             let prelu = Operator::new("PRelu");
-            return ctx.emit(call, prelu, &[&x.wire, &slope], Kind::Float, &x.dims(), x.order.clone());
+            return ctx.emit(call, prelu, &[&x.wire, &slope], ElementType::Float, &x.dims(), x.order.clone());
         }
         other => return Err(Error::unsupported(format!("unsupported fused operator {other:?}"))),
     };

@@ -8,7 +8,7 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, Operator, Value};
 
 /// Returns the filter's dimensions, which must be known.
 fn filter_dims(call: &Call) -> Result<[usize; 4]> {
@@ -21,7 +21,7 @@ fn filter_dims(call: &Call) -> Result<[usize; 4]> {
 }
 
 /// Returns the filter stored in the given order.
-fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<Wire> {
+fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<Value> {
     ctx.ordered(call.input(1)?, &Order::new(order.to_vec()))
 }
 
@@ -60,9 +60,14 @@ pub fn depthwise(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let weights = filter(ctx, call, [2, 3, 0, 1])?;
     let shape = [filters, 1, height, width];
     let dims = shape.map(Some).to_vec();
-    let target = Wire::ints(shape.map(|dim| dim as i64));
-    let weights =
-        ctx.graph.add(&weights.hint(), Operator::new("Reshape"), &[&weights, &target], Kind::Float, dims)?;
+    let target = Value::ints(shape.map(|dim| dim as i64));
+    let weights = ctx.graph.add(
+        &weights.hint(),
+        Operator::new("Reshape"),
+        &[&weights, &target],
+        ElementType::Float,
+        dims,
+    )?;
     convolve(ctx, call, axes, [height, width], weights, channels, filters)
 }
 
@@ -72,7 +77,7 @@ fn convolve(
     call: &Call,
     axes: Axes,
     kernel: Pair<usize>,
-    weights: Wire,
+    weights: Value,
     groups: usize,
     filters: usize,
 ) -> Result<Vec<Value>> {
@@ -90,23 +95,23 @@ fn convolve(
     if let Some(bias) = &epilogue.bias {
         inputs.push(channel_vector(ctx, bias, filters)?);
     }
-    let inputs: Vec<&Wire> = inputs.iter().collect();
-    let output = ctx.emit(call, operator, &inputs, Kind::Float, &dims, axes.order())?;
+    let inputs: Vec<&Value> = inputs.iter().collect();
+    let output = ctx.emit(call, operator, &inputs, ElementType::Float, &dims, axes.order())?;
     Ok(vec![epilogue.activate(ctx, call, output)?])
 }
 
 /// Returns a bias of one element per filter.
-fn channel_vector(ctx: &mut Lowering, bias: &Value, filters: usize) -> Result<Wire> {
+fn channel_vector(ctx: &mut Lowering, bias: &Value, filters: usize) -> Result<Value> {
     match bias.known_dims().as_deref() {
         Some([length]) if *length == filters => Ok(bias.wire.clone()),
         Some([1]) | Some([]) => {
-            let shape = Wire::ints([filters as i64]);
+            let shape = Value::ints([filters as i64]);
             let dims = vec![Some(filters)];
             ctx.graph.add(
                 &bias.wire.hint(),
                 Operator::new("Expand"),
                 &[&bias.wire, &shape],
-                Kind::Float,
+                ElementType::Float,
                 dims,
             )
         }
@@ -140,7 +145,7 @@ pub fn transposed(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let weights = filter(ctx, call, [3, 2, 0, 1])?;
     let dims = axes.dims(image.dims()[0], Some(filters), [height.output, width.output]);
     let image = ctx.ordered(image, &axes.order())?;
-    Ok(vec![ctx.emit(call, operator, &[&image, &weights], Kind::Float, &dims, axes.order())?])
+    Ok(vec![ctx.emit(call, operator, &[&image, &weights], ElementType::Float, &dims, axes.order())?])
 }
 
 /// How one axis of a transposed convolution is cropped (`before`, `after`) or extended (`extra`).
@@ -203,7 +208,7 @@ pub fn batch_norm(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     for index in 1..5 {
         inputs.push(call.input(index)?.wire.clone());
     }
-    let inputs: Vec<&Wire> = inputs.iter().collect();
+    let inputs: Vec<&Value> = inputs.iter().collect();
     let operator = Operator::new("BatchNormalization").float("epsilon", epsilon);
-    Ok(vec![ctx.emit(call, operator, &inputs, Kind::Float, &x.dims(), axes.order())?])
+    Ok(vec![ctx.emit(call, operator, &inputs, ElementType::Float, &x.dims(), axes.order())?])
 }

@@ -6,11 +6,11 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, Operator, Value};
 
 /// Operands with a common element type and order, ready to broadcast.
 struct Aligned {
-    wires: Vec<Wire>,
+    wires: Vec<Value>,
     order: Order,
     /// TensorFlow's dimensions of the result.
     dims: Vec<Dim>,
@@ -23,7 +23,7 @@ fn align(ctx: &mut Lowering, values: &[&Value]) -> Result<Aligned> {
     let largest = computed
         .max_by_key(|value| (value.wire.element_count().unwrap_or(usize::MAX), !value.order.is_plain()));
     let order = largest.map_or_else(|| Order::plain(rank), |value| value.order.clone());
-    let float = values.iter().any(|value| value.kind() == Kind::Float);
+    let float = values.iter().any(|value| value.kind() == ElementType::Float);
     let mut wires = Vec::with_capacity(values.len());
     let mut dims: Vec<Dim> = Vec::new();
     for value in values {
@@ -31,7 +31,11 @@ fn align(ctx: &mut Lowering, values: &[&Value]) -> Result<Aligned> {
             Some(_) => ctx.broadcastable(value, &order)?,
             None => ctx.plain(value)?,
         };
-        wires.push(if float && value.kind() == Kind::Int { ctx.cast(&wire, Kind::Float)? } else { wire });
+        wires.push(if float && value.kind() == ElementType::Int {
+            ctx.cast(&wire, ElementType::Float)?
+        } else {
+            wire
+        });
         dims = broadcast(&dims, &value.dims())?;
     }
     Ok(Aligned { wires, order, dims })
@@ -60,9 +64,9 @@ pub fn apply(ctx: &mut Lowering, call: &Call, name: &'static str, x: &Value, y: 
     let Aligned { wires, order, dims } = align(ctx, &[x, y])?;
     let comparison =
         matches!(name, "Equal" | "Less" | "LessOrEqual" | "Greater" | "GreaterOrEqual" | "And" | "Or");
-    let kind = if comparison { Kind::Bool } else { wires[0].kind() };
+    let kind = if comparison { ElementType::Bool } else { wires[0].kind() };
     // rten 0.27 returns a quotient of the dividend's rank where the divisor has one element.
-    if name == "Div" && kind == Kind::Float && wires[0].rank() < wires[1].rank() {
+    if name == "Div" && kind == ElementType::Float && wires[0].rank() < wires[1].rank() {
         let divisor = Value::new(wires[1].clone(), order);
         let inverse = apply_unary(ctx, call, Operator::new("Reciprocal"), &divisor)?;
         return apply(ctx, call, "Mul", x, &inverse);
@@ -103,7 +107,7 @@ pub fn not_equal(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 /// Divides and rounds towards minus infinity; ONNX's integer division rounds towards zero.
 pub fn floor_div(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, y) = (call.input(0)?, call.input(1)?);
-    if x.kind() == Kind::Float || y.kind() == Kind::Float {
+    if x.kind() == ElementType::Float || y.kind() == ElementType::Float {
         let quotient = apply(ctx, call, "Div", x, y)?;
         return Ok(vec![apply_unary(ctx, call, Operator::new("Floor"), &quotient)?]);
     }
@@ -114,7 +118,7 @@ pub fn floor_div(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 
 pub fn floor_mod(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, y) = (call.input(0)?, call.input(1)?);
-    if x.kind() != Kind::Float && y.kind() != Kind::Float {
+    if x.kind() != ElementType::Float && y.kind() != ElementType::Float {
         return Ok(vec![apply(ctx, call, "Mod", x, y)?]);
     }
     let quotient = apply(ctx, call, "Div", x, y)?;
@@ -132,7 +136,7 @@ pub fn squared_difference(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>>
 pub fn atan2(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     use std::f32::consts::{FRAC_PI_2, PI};
     let (y, x) = (call.input(0)?, call.input(1)?);
-    let constant = |value: f32| Value::plain(Wire::scalar(value));
+    let constant = |value: f32| Value::plain(Value::scalar(value));
     let zero = constant(0.0);
     let quotient = apply(ctx, call, "Div", y, x)?;
     let angle = apply_unary(ctx, call, Operator::new("Atan"), &quotient)?;

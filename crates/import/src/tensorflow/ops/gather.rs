@@ -7,7 +7,7 @@ use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Dim, Kind, Operator, Wire};
+use opendr_onnx::{Array, Dim, ElementType, Operator, Value};
 
 pub fn gather(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
@@ -18,7 +18,7 @@ pub fn gather(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let mut dims = x.dims();
     dims.splice(axis..=axis, indices.dims());
     let picked = ctx.plain(indices)?;
-    let picked = ctx.cast(&picked, Kind::Int)?;
+    let picked = ctx.cast(&picked, ElementType::Int)?;
     // With one index axis in place of the old one the order is kept.
     let (wire, stored, order) = match indices.rank() {
         0 => (x.wire.clone(), x.order.stored(axis), x.order.without(&[axis])),
@@ -40,10 +40,10 @@ fn gather_batched(ctx: &mut Lowering, call: &Call, axis: usize) -> Result<Vec<Va
     }
     let data = ctx.plain(x)?;
     let picked = ctx.plain(indices)?;
-    let last = Wire::ints([indices.rank() as i64]);
+    let last = Value::ints([indices.rank() as i64]);
     let tuple = [indices.dims(), vec![Some(1)]].concat();
     let picked =
-        ctx.graph.add(call.name(), Operator::new("Unsqueeze"), &[&picked, &last], Kind::Int, tuple)?;
+        ctx.graph.add(call.name(), Operator::new("Unsqueeze"), &[&picked, &last], ElementType::Int, tuple)?;
     let dims = [indices.dims(), x.dims()[axis + 1..].to_vec()].concat();
     let operator = Operator::new("GatherND").int("batch_dims", batch);
     Ok(vec![ctx.emit_plain(call, operator, &[&data, &picked], x.kind(), &dims)?])
@@ -64,8 +64,8 @@ pub fn gather_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 pub fn scatter_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (indices, updates, shape) = (call.input(0)?, call.input(1)?, call.input(2)?);
     let zero = match updates.kind() {
-        Kind::Float => Wire::scalar(0.0),
-        _ => Wire::constant(Array::int(0)),
+        ElementType::Float => Value::scalar(0.0),
+        _ => Value::constant(Array::int(0)),
     };
     let zeros = fill_shape(ctx, call, &zero, shape)?;
     let (indices, updates) = (ctx.plain(indices)?, ctx.plain(updates)?);

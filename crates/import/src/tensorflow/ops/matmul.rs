@@ -7,7 +7,7 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, Kind, Operator, Wire};
+use opendr_onnx::{Dim, ElementType, Operator, Value};
 
 /// Converts `MatMul` of two matrices, and `_FusedMatMul` with bias and activation.
 pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -27,10 +27,11 @@ pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     check_inner(a.dims()[1], b.dims()[0])?;
     let product = match &epilogue.bias {
         Some(bias) if bias.rank() <= 1 => {
-            ctx.emit_plain(call, Operator::new("Gemm"), &[&a, &b, &bias.wire], Kind::Float, &dims)?
+            ctx.emit_plain(call, Operator::new("Gemm"), &[&a, &b, &bias.wire], ElementType::Float, &dims)?
         }
         _ => {
-            let product = ctx.emit_plain(call, Operator::new("MatMul"), &[&a, &b], Kind::Float, &dims)?;
+            let product =
+                ctx.emit_plain(call, Operator::new("MatMul"), &[&a, &b], ElementType::Float, &dims)?;
             epilogue.add_bias(ctx, call, product)?
         }
     };
@@ -51,26 +52,27 @@ pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let a = operand(ctx, a, call.attr().flag("adj_x"))?;
     let b = operand(ctx, b, call.attr().flag("adj_y"))?;
     check_inner(a.dims()[a.rank() - 1], b.dims()[b.rank() - 2])?;
-    let outer =
-        |wire: &Wire, axis: usize| (axis + wire.rank()).checked_sub(rank).map_or(Some(1), |i| wire.dims()[i]);
+    let outer = |wire: &Value, axis: usize| {
+        (axis + wire.rank()).checked_sub(rank).map_or(Some(1), |i| wire.dims()[i])
+    };
     let batch = |axis: usize| match (outer(&a, axis), outer(&b, axis)) {
         (Some(1), other) | (other, _) => other,
     };
     let mut dims: Vec<Dim> = (0..rank - 2).map(batch).collect();
     dims.extend([a.dims()[a.rank() - 2], b.dims()[b.rank() - 1]]);
-    let product = ctx.emit_plain(call, Operator::new("MatMul"), &[&a, &b], Kind::Float, &dims)?;
+    let product = ctx.emit_plain(call, Operator::new("MatMul"), &[&a, &b], ElementType::Float, &dims)?;
     Ok(vec![Value::plain(ctx.cast(&product.wire, kind)?)])
 }
 
 /// Returns a matrix, or one per batch element, transposed where requested. Runtimes multiply floats only.
-fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<Wire> {
+fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<Value> {
     let mut perm: Vec<usize> = (0..x.rank()).collect();
     if transposed {
         perm.swap(x.rank() - 2, x.rank() - 1);
     }
     let value = Value::new(x.wire.clone(), x.order.transposed(&perm));
     let wire = ctx.ordered(&value, &Order::plain(x.rank()))?;
-    ctx.cast(&wire, Kind::Float)
+    ctx.cast(&wire, ElementType::Float)
 }
 
 fn check_inner(columns: Dim, rows: Dim) -> Result<()> {

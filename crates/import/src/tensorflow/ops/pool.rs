@@ -6,7 +6,7 @@ use super::window::{Axes, Window};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Kind, Operator};
+use opendr_onnx::{ElementType, Operator};
 
 /// By default ONNX, like TensorFlow, excludes the padding from averages.
 pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -18,5 +18,5 @@ pub fn pool(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let operator = window.onto(Operator::new(name), spatial)?;
     let dims = axes.dims(x.dims()[0], x.dims()[axes.channels], window.output(spatial)?);
     let x = ctx.ordered(x, &axes.order())?;
-    Ok(vec![ctx.emit(call, operator, &[&x], Kind::Float, &dims, axes.order())?])
+    Ok(vec![ctx.emit(call, operator, &[&x], ElementType::Float, &dims, axes.order())?])
 }

@@ -5,28 +5,28 @@ use opendr_engine::{Error, Result};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Data, Dim, Kind, Operator, Wire};
+use opendr_onnx::{Array, Data, Dim, ElementType, Operator, Value};
 
 /// Returns TensorFlow's dimensions as integers; known ones stay known in later arithmetic.
 pub fn shape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let rank = [Some(x.rank())];
-    let stored = ctx.emit_plain(call, Operator::new("Shape"), &[&x.wire], Kind::Int, &rank)?;
+    let stored = ctx.emit_plain(call, Operator::new("Shape"), &[&x.wire], ElementType::Int, &rank)?;
     if x.order.is_plain() {
         return Ok(vec![stored]);
     }
-    let positions = Wire::ints((0..x.rank()).map(|axis| x.order.stored(axis) as i64));
+    let positions = Value::ints((0..x.rank()).map(|axis| x.order.stored(axis) as i64));
     let gather = Operator::new("Gather").int("axis", 0);
-    Ok(vec![ctx.emit_plain(call, gather, &[&stored.wire, &positions], Kind::Int, &rank)?])
+    Ok(vec![ctx.emit_plain(call, gather, &[&stored.wire, &positions], ElementType::Int, &rank)?])
 }
 
 pub fn size(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
-    Ok(vec![ctx.emit_plain(call, Operator::new("Size"), &[&x.wire], Kind::Int, &[])?])
+    Ok(vec![ctx.emit_plain(call, Operator::new("Size"), &[&x.wire], ElementType::Int, &[])?])
 }
 
 pub fn rank(_: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
-    Ok(vec![Value::plain(Wire::constant(Array::int(call.input(0)?.rank() as i64)))])
+    Ok(vec![Value::plain(Value::constant(Array::int(call.input(0)?.rank() as i64)))])
 }
 
 pub fn fill(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -35,7 +35,7 @@ pub fn fill(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 /// Returns a scalar repeated over a shape.
-pub fn fill_shape(ctx: &mut Lowering, call: &Call, scalar: &Wire, shape: &Value) -> Result<Value> {
+pub fn fill_shape(ctx: &mut Lowering, call: &Call, scalar: &Value, shape: &Value) -> Result<Value> {
     let dims = shape_dims(shape)?;
     ctx.emit_plain(call, Operator::new("Expand"), &[scalar, &shape.wire], scalar.kind(), &dims)
 }
@@ -52,13 +52,13 @@ fn shape_dims(shape: &Value) -> Result<Vec<Dim>> {
 }
 
 pub fn range(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
-    let float = call.inputs().iter().any(|input| input.kind() == Kind::Float);
-    let kind = if float { Kind::Float } else { Kind::Int };
+    let float = call.inputs().iter().any(|input| input.kind() == ElementType::Float);
+    let kind = if float { ElementType::Float } else { ElementType::Int };
     let mut limits = Vec::with_capacity(3);
     for index in 0..3 {
         limits.push(ctx.cast(&call.input(index)?.wire, kind)?);
     }
-    let inputs: Vec<&Wire> = limits.iter().collect();
+    let inputs: Vec<&Value> = limits.iter().collect();
     let value = ctx.emit_plain(call, Operator::new("Range"), &inputs, kind, &[None])?;
     // If it was evaluated, the length is known.
     Ok(vec![Value::plain(value.wire)])
@@ -69,14 +69,14 @@ pub fn filled_like(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
     let value = i64::from(call.op() == "OnesLike");
     let scalar = match x.kind() {
-        Kind::Float => Array::scalar(value as f32),
-        Kind::Int => Array::int(value),
-        Kind::Bool => {
+        ElementType::Float => Array::scalar(value as f32),
+        ElementType::Int => Array::int(value),
+        ElementType::Bool => {
             Array::new(Vec::new(), Data::Bool(vec![value == 1])).unwrap_or_else(|| Array::int(value))
         }
     };
     let shape = shape(ctx, call)?.remove(0);
-    Ok(vec![fill_shape(ctx, call, &Wire::constant(scalar), &shape)?])
+    Ok(vec![fill_shape(ctx, call, &Value::constant(scalar), &shape)?])
 }
 
 pub fn broadcast_to(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

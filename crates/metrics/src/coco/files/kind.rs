@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 
 use super::entry::{Entry, Fields, Region, needed};
 use crate::coco::keypoints::area_around;
-use crate::coco::overlap::{JOINTS, Mask, Person, box_overlap, check_box, keypoint_similarity};
+use crate::coco::overlap::{JOINTS, Mask, Person, box_iou, check_box, keypoint_similarity};
 
 /// A kind of evaluation.
 pub(super) trait Kind: 'static {
@@ -58,7 +58,7 @@ impl Kind for Boxes {
     }
 
     fn overlap(detected: &[f64; 4], object: &[f64; 4], crowd: bool) -> Result<f64> {
-        Ok(box_overlap(*detected, *object, crowd))
+        Ok(box_iou(*detected, *object, crowd))
     }
 }
 
@@ -99,7 +99,7 @@ impl Kind for Masks {
     }
 
     fn overlap(detected: &Mask, object: &Mask, crowd: bool) -> Result<f64> {
-        detected.overlap(object, crowd)
+        detected.iou(object, crowd)
     }
 }
 

@@ -82,7 +82,7 @@ impl CocoFiles {
     ///
     /// # Errors
     /// As [`CocoFiles::compare`].
-    pub fn compare_texts(&self, annotations: impl Read, results: impl Read) -> Result<CocoComparison> {
+    pub fn compare_readers(&self, annotations: impl Read, results: impl Read) -> Result<CocoComparison> {
         self.dispatch((annotations, "reading annotations".into()), (results, "reading results".into()))
     }
 
@@ -124,11 +124,11 @@ impl CocoFiles {
         let mut whole = fresh();
         parts.into_iter().for_each(|part| whole.merge(part));
         Ok(CocoComparison {
-            pictures: truths.images() as u64,
+            images: truths.images() as u64,
             objects: truths.objects() as u64,
             detections: results.detections() as u64,
-            objects_of_nothing: truths.unlisted,
-            detections_of_other_classes: results.unlisted,
+            unlisted_objects: truths.unlisted,
+            unlisted_detections: results.unlisted,
             classes: truths.classes,
             outcome: whole.finish(threads),
         })
@@ -186,15 +186,15 @@ pub struct CocoComparison {
     /// Class names by category id.
     pub classes: BTreeMap<i64, String>,
     /// Number of annotated images.
-    pub pictures: u64,
+    pub images: u64,
     /// Number of annotated objects, including crowds.
     pub objects: u64,
     /// Number of detections.
     pub detections: u64,
     /// Number of annotations that are ignored because their image or category is not listed.
-    pub objects_of_nothing: u64,
+    pub unlisted_objects: u64,
     /// Number of detections that are ignored because their category is not listed.
-    pub detections_of_other_classes: u64,
+    pub unlisted_detections: u64,
 }
 
 impl CocoComparison {

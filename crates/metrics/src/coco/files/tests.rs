@@ -56,8 +56,8 @@ const KINDS: [CocoKind; 3] = [CocoKind::Boxes, CocoKind::Masks, CocoKind::Keypoi
 fn one_object_is_found() {
     let files = Files::new(filled(ANNOTATIONS).as_bytes(), filled(RESULTS).as_bytes());
     let done = files.compare(CocoKind::Boxes, 2).unwrap();
-    assert_eq!((done.pictures, done.objects, done.detections), (2, 2, 1));
-    assert_eq!((done.objects_of_nothing, done.detections_of_other_classes), (0, 1));
+    assert_eq!((done.images, done.objects, done.detections), (2, 2, 1));
+    assert_eq!((done.unlisted_objects, done.unlisted_detections), (0, 1));
     let stats = done.outcome.stats();
     assert_eq!((stats.len(), stats[3], stats[5]), (12, -1.0, -1.0));
     assert!((stats[0] - 1.0).abs() < 1e-12, "{stats:?}");
@@ -128,6 +128,6 @@ proptest! {
             }
         }
         let files = CocoFiles { threads: 1, ..CocoFiles::new(KINDS[kind]) };
-        let _ = files.compare_texts(&texts[0][..], &texts[1][..]).map(|done| done.report());
+        let _ = files.compare_readers(&texts[0][..], &texts[1][..]).map(|done| done.report());
     }
 }

@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::Sizes;
 use super::network::ActivityNetwork;
@@ -62,7 +62,7 @@ where
     let dataset = open_for_training::<L>(dataset, job)?;
     let classes = classes_to_train(&*dataset, params.class_count(), "num_classes")?;
     let sizes = params.network_sizes()?;
-    let device = begin(job, training)?;
+    let device = seeded_device(job, training)?;
     let network = ActivityNetwork::new(&sizes, classes.len(), fit_params.dropout, &device);
     let network = network_from_base(network, base)?;
     let objective =

@@ -1,7 +1,7 @@
 //! Batches, loss and container of both learners.
 
 use burn::tensor::{Device, Tensor};
-use opendr_datasets::augment::{Augment, Others, Pipeline};
+use opendr_datasets::augment::{Augment, OtherSamples, Pipeline};
 use opendr_datasets::loader::Collate;
 use opendr_engine::data::Video;
 use opendr_engine::dataset::Sample;
@@ -121,7 +121,7 @@ impl ActivityObjective {
 struct Mirror;
 
 impl Augment for Mirror {
-    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let video = video_of(sample)?;
         let shape = video.shape();
         let mut levels = video.as_slice().to_vec();

@@ -8,8 +8,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, ErrorKind, Random, Result, Value};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_training::Objective;
 
 use super::network::ActivityNetwork;
@@ -118,9 +118,9 @@ fn learners_meet_the_contract() {
     both(&folder);
     let scratch = folder.0.join("scratch");
     let clips = (0..3).map(|seed| vec![Value::Video(video(&pictures(seed, FRAMES)))]).collect();
-    check::<X3d>(&folder.0.join("clip"), &scratch, clips);
+    check_trained_learner::<X3d>(&folder.0.join("clip"), &scratch, clips);
     let pictures = (0..3).map(|seed| vec![Value::Image(image(&pictures(seed, 1)[0]))]).collect();
-    check::<CoX3d>(&folder.0.join("step"), &scratch, pictures);
+    check_trained_learner::<CoX3d>(&folder.0.join("step"), &scratch, pictures);
 }
 
 #[test]

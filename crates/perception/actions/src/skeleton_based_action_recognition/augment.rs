@@ -1,6 +1,6 @@
 //! Random augmentation of skeleton sequences.
 
-use opendr_datasets::augment::{Augment, Others};
+use opendr_datasets::augment::{Augment, OtherSamples};
 use opendr_engine::data::SkeletonSequence;
 use opendr_engine::dataset::Sample;
 use opendr_engine::target::Skeleton;
@@ -28,7 +28,7 @@ const SPEED: f32 = 1.3;
 const NOISE: f32 = 0.01;
 
 impl Augment for SkeletonChanges {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let Some(Value::SkeletonSequence(sequence)) = sample.data.first_mut() else {
             return Err(Error::invalid_input(
                 "the sample has no skeletons; the first input must be a SkeletonSequence",

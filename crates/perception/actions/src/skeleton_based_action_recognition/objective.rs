@@ -8,7 +8,7 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Task, Value};
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{self, Input};
@@ -143,7 +143,7 @@ impl Collate for ClipBatches {
             ));
         };
         self.features.check(sequence)?;
-        let mut work = ClipWork::default();
+        let mut work = ClipScratch::default();
         let persons = sequence.shape()[4];
         if !(0..persons).any(|person| self.features.clip_into(sequence, person, self.frames, &mut work)) {
             return Err(Error::invalid_input("the recording has no person; remove it from the data set"));

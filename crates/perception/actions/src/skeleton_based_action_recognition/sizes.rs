@@ -1,7 +1,7 @@
 //! Sizes of the network.
 
 use opendr_engine::{Error, Result};
-use opendr_perception_common::frame_features::KINDS;
+use opendr_perception_common::frame_features::FEATURES_PER_COORDINATE;
 
 use super::GraphType;
 
@@ -22,7 +22,7 @@ pub(super) struct NetworkSizes {
 impl NetworkSizes {
     /// Returns the number of features of a joint.
     pub fn features(&self) -> usize {
-        KINDS * self.coordinates
+        FEATURES_PER_COORDINATE * self.coordinates
     }
 
     /// Returns the number of frames that remain after the unpadded blocks.

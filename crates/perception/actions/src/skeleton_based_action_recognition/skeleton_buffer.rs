@@ -263,7 +263,7 @@ impl Person {
 }
 
 fn is_there(point: &Keypoint) -> bool {
-    point.is_found() && point.x.is_finite() && point.y.is_finite() && !point.confidence.is_nan()
+    point.is_detected() && point.x.is_finite() && point.y.is_finite() && !point.confidence.is_nan()
 }
 
 /// Returns centre and height of the detected joints; `None` where no joint is detected.

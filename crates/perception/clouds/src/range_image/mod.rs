@@ -9,7 +9,7 @@ mod view;
 pub use view::RangeView;
 
 /// Value of a missing pixel or point.
-pub const NOWHERE: u32 = u32::MAX;
+pub const NONE: u32 = u32::MAX;
 /// Radius in pixels in which a hidden point looks up a neighbour.
 const REACH: usize = 2;
 /// Maximum difference of ranges in metres between a point and its pixel.
@@ -33,18 +33,18 @@ impl RangeImage {
     pub fn project(&mut self, view: &RangeView, points: impl Iterator<Item = [f32; 3]>) {
         self.size = [view.columns, view.rows];
         self.points.clear();
-        self.points.resize(view.columns * view.rows, NOWHERE);
+        self.points.resize(view.columns * view.rows, NONE);
         self.ranges.clear();
         self.ranges.resize(view.columns * view.rows, 0.0);
         self.pixels.clear();
         self.distances.clear();
-        for (point, place @ [x, y, z]) in (0..NOWHERE).zip(points) {
+        for (point, place @ [x, y, z]) in (0..NONE).zip(points) {
             let distance = (x * x + y * y + z * z).sqrt();
             let pixel = view.pixel(place, distance);
-            self.pixels.push(pixel.map_or(NOWHERE, |pixel| pixel as u32));
+            self.pixels.push(pixel.map_or(NONE, |pixel| pixel as u32));
             self.distances.push(distance);
             let Some(pixel) = pixel else { continue };
-            if self.points[pixel] == NOWHERE || distance < self.ranges[pixel] {
+            if self.points[pixel] == NONE || distance < self.ranges[pixel] {
                 (self.points[pixel], self.ranges[pixel]) = (point, distance);
             }
         }
@@ -67,9 +67,9 @@ impl RangeImage {
 
     /// Returns the pixel whose prediction applies to a point: its own, or, where that shows a nearer point, the neighbour at
     /// the same range. `None` outside of the view.
-    pub fn speaker(&self, point: usize) -> Option<usize> {
+    pub fn pixel_for(&self, point: usize) -> Option<usize> {
         let (own, distance) = (*self.pixels.get(point)?, *self.distances.get(point)?);
-        let own = Some(own as usize).filter(|_| own != NOWHERE)?;
+        let own = Some(own as usize).filter(|_| own != NONE)?;
         let off = |pixel: usize| (self.ranges[pixel] - distance).abs();
         if off(own) <= SAME {
             return Some(own);
@@ -109,17 +109,17 @@ mod tests {
             image.project(&VIEW, points.into_iter());
             let pixels = image.pixels();
             assert_eq!((pixels[0], pixels[1], pixels[2]), (11, 11, 10));
-            assert_eq!(pixels[3..], [NOWHERE; 3]);
+            assert_eq!(pixels[3..], [NONE; 3]);
             assert_eq!((image.points()[11], image.points()[10]), (0, 2));
             assert!((image.ranges()[11] - 10.001).abs() < 1e-3 && image.ranges()[0] == 0.0);
-            let speakers: Vec<_> = (0..7).map(|point| image.speaker(point)).collect();
+            let speakers: Vec<_> = (0..7).map(|point| image.pixel_for(point)).collect();
             assert_eq!(speakers[..2], [Some(11), Some(11)]);
             assert_eq!(speakers[2..], [Some(10), None, None, None, None]);
         }
         // At the range of its neighbour to within a metre.
         image.project(&VIEW, [[10.0, 0.1, 0.1], [20.9, 0.2, 0.2], [19.0, 9.0, 0.2]].into_iter());
-        assert_eq!(image.speaker(1), Some(10));
+        assert_eq!(image.pixel_for(1), Some(10));
         image.project(&VIEW, std::iter::empty());
-        assert!(image.pixels().is_empty() && image.points().iter().all(|point| *point == NOWHERE));
+        assert!(image.pixels().is_empty() && image.points().iter().all(|point| *point == NONE));
     }
 }

@@ -43,7 +43,7 @@ impl CellGrid {
             self.stack.push(first);
             while let Some(cell) = self.stack.pop() {
                 let (column, row) = (cell % self.columns, cell / self.columns);
-                region = region.joined(&self.region([column, row], size));
+                region = region.union(&self.region([column, row], size));
                 for row in row.saturating_sub(1)..(row + 2).min(self.rows) {
                     for column in column.saturating_sub(1)..(column + 2).min(self.columns) {
                         let neighbour = row * self.columns + column;

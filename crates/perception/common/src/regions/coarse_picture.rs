@@ -4,7 +4,7 @@ use opendr_vision::{ChannelOrder, Preprocess};
 
 /// Mean and range of brightness of an image per cell; its memory is reused.
 #[derive(Debug, Clone)]
-pub struct CoarsePicture {
+pub struct CellBrightness {
     preprocess: Preprocess,
     columns: usize,
     rows: usize,
@@ -13,19 +13,19 @@ pub struct CoarsePicture {
     ranges: Vec<u8>,
 }
 
-impl Default for CoarsePicture {
+impl Default for CellBrightness {
     fn default() -> Self {
         let preprocess = Preprocess::new(1, 1).order(ChannelOrder::Grey);
         Self { preprocess, columns: 0, rows: 0, grey: Vec::new(), means: Vec::new(), ranges: Vec::new() }
     }
 }
 
-impl CoarsePicture {
+impl CellBrightness {
     /// Computes mean and range over `columns` x `rows` cells (at least one each way) of `side` x `side` samples.
     ///
     /// # Errors
     /// As the pre-processing of images.
-    pub fn look(&mut self, view: ImageView<'_>, columns: usize, rows: usize, side: usize) -> Result<()> {
+    pub fn compute(&mut self, view: ImageView<'_>, columns: usize, rows: usize, side: usize) -> Result<()> {
         let (columns, rows, side) = (columns.max(1), rows.max(1), side.max(1));
         (self.columns, self.rows) = (columns, rows);
         let width = columns * side;
@@ -83,8 +83,8 @@ mod tests {
         let level = |at: usize| if at % 32 < 16 { 10 } else { [0, 200][at % 2] };
         let samples = (0..32 * 16).flat_map(|at| [level(at); 3]).collect();
         let image = Image::from_rgb8(samples, 32, 16).unwrap();
-        let mut coarse = CoarsePicture::default();
-        coarse.look(image.view(), 2, 1, 16).unwrap();
+        let mut coarse = CellBrightness::default();
+        coarse.compute(image.view(), 2, 1, 16).unwrap();
         assert_eq!(coarse.size(), [2, 1]);
         assert_eq!(coarse.means(), [10, 100]);
         assert_eq!((coarse.range(0, 0), coarse.range(1, 0), coarse.range(5, 5)), (0, 200, 0));

@@ -8,7 +8,7 @@ mod cell_grid;
 mod coarse_picture;
 
 pub use cell_grid::CellGrid;
-pub use coarse_picture::CoarsePicture;
+pub use coarse_picture::CellBrightness;
 
 /// A region of an image, in whole pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -53,7 +53,7 @@ impl Region {
 
     /// Returns the smallest region that contains both.
     #[must_use]
-    pub fn joined(&self, other: &Self) -> Self {
+    pub fn union(&self, other: &Self) -> Self {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));
         let right = (self.x + self.width).max(other.x + other.width);
         let bottom = (self.y + self.height).max(other.y + other.height);
@@ -61,7 +61,7 @@ impl Region {
     }
 
     /// Returns whether the region contains a point.
-    pub fn holds(&self, [x, y]: [f32; 2]) -> bool {
+    pub fn contains(&self, [x, y]: [f32; 2]) -> bool {
         let [left, top, right, bottom] = self.corners();
         (left..right).contains(&x) && (top..bottom).contains(&y)
     }
@@ -95,14 +95,14 @@ impl Region {
 }
 
 /// Merges regions that overlap until none do. Their order is kept as far as possible.
-pub fn join_overlapping(regions: &mut Vec<Region>) {
+pub fn merge_overlapping(regions: &mut Vec<Region>) {
     let mut at = 0;
     while at < regions.len() {
         let later = (at + 1..regions.len()).find(|other| regions[at].overlaps(&regions[*other]));
         match later {
             // A merged region may overlap an earlier one.
             Some(other) => {
-                let joined = regions[at].joined(&regions[other]);
+                let joined = regions[at].union(&regions[other]);
                 regions.remove(other);
                 regions[at] = joined;
                 at = 0;
@@ -138,7 +138,7 @@ mod tests {
             let region = Region { x: 7, y: 9, width, height };
             let tiles: Vec<_> = region.tiles(side, overlap).collect();
             prop_assert!(tiles.iter().all(|tile| tile.width <= side && tile.height <= side && !tile.is_empty()));
-            prop_assert!(tiles.iter().all(|tile| region.joined(tile) == region));
+            prop_assert!(tiles.iter().all(|tile| region.union(tile) == region));
             for x in (0..width).step_by(13) {
                 for y in (0..height).step_by(11) {
                     let pixel = Region { x: 7 + x, y: 9 + y, width: 1, height: 1 };
@@ -154,12 +154,12 @@ mod tests {
             let all: Vec<_> =
                 boxes.into_iter().map(|(x, y, width, height)| Region { x, y, width, height }).collect();
             let mut joined = all.clone();
-            join_overlapping(&mut joined);
+            merge_overlapping(&mut joined);
             for (at, region) in joined.iter().enumerate() {
                 prop_assert!(joined[at + 1..].iter().all(|other| !region.overlaps(other)));
             }
             for region in &all {
-                prop_assert!(joined.iter().any(|whole| whole.joined(region) == *whole));
+                prop_assert!(joined.iter().any(|whole| whole.union(region) == *whole));
             }
         }
     }

@@ -7,7 +7,7 @@ mod soft;
 mod standing;
 mod weighted;
 
-pub use standing::{StandingCandidate, suppress_standing};
+pub use standing::{BevCandidate, suppress_bev};
 pub use weighted::merge_overlapping;
 
 /// A box before suppression.
@@ -46,11 +46,11 @@ pub struct Suppression {
     /// The method.
     pub kind: SuppressionKind,
     /// IoU above which boxes overlap.
-    pub overlap: f32,
+    pub iou_threshold: f32,
     /// Score below which boxes are dropped; only `soft` lowers scores.
     pub threshold: f32,
     /// Maximum number of boxes that are kept.
-    pub most: usize,
+    pub max_boxes: usize,
 }
 
 /// Number of candidates with the highest scores that are processed. Further ones are noise, and time grows with the square.
@@ -67,12 +67,12 @@ impl Suppression {
         keep_best(candidates, CONSIDERED);
         candidates.sort_unstable_by(by_score);
         match self.kind {
-            SuppressionKind::Hard => hard::suppress(candidates, marks, self.overlap, self.most),
-            SuppressionKind::Soft => soft::suppress(candidates, self.threshold, self.most),
-            SuppressionKind::Fast => fast::suppress(candidates, marks, self.overlap),
-            SuppressionKind::Cluster => cluster::suppress(candidates, marks, self.overlap),
+            SuppressionKind::Hard => hard::suppress(candidates, marks, self.iou_threshold, self.max_boxes),
+            SuppressionKind::Soft => soft::suppress(candidates, self.threshold, self.max_boxes),
+            SuppressionKind::Fast => fast::suppress(candidates, marks, self.iou_threshold),
+            SuppressionKind::Cluster => cluster::suppress(candidates, marks, self.iou_threshold),
         }
-        candidates.truncate(self.most);
+        candidates.truncate(self.max_boxes);
     }
 }
 

@@ -10,7 +10,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::Preprocess;
 
@@ -35,7 +35,7 @@ pub struct CenterNetParams {
 pub struct CenterNet {
     params: CenterNetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     detections: usize,
     scratch: Pool<Scratch>,
 }
@@ -60,18 +60,18 @@ impl Learner for CenterNet {
         .without_effect(&[
             ("img_size", "the network's input has a fixed size"),
             ("keep_size", "the whole image is resized to the network's input"),
-            ("num_workers", Spec::OF_TRAINING),
-            ("epochs", Spec::OF_TRAINING),
-            ("val_after", Spec::OF_TRAINING),
-            ("log_after", Spec::OF_TRAINING),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
-            ("wh_weight", Spec::OF_TRAINING),
-            ("center_reg_weight", Spec::OF_TRAINING),
-            ("lr_decay_epoch", Spec::OF_TRAINING),
-            ("lr_decay", Spec::OF_TRAINING),
-            ("warmup_epochs", Spec::OF_TRAINING),
-            ("flip_validation", Spec::OF_TRAINING),
+            ("num_workers", Spec::TRAINING_ONLY),
+            ("epochs", Spec::TRAINING_ONLY),
+            ("val_after", Spec::TRAINING_ONLY),
+            ("log_after", Spec::TRAINING_ONLY),
+            ("weight_decay", Spec::TRAINING_ONLY),
+            ("momentum", Spec::TRAINING_ONLY),
+            ("wh_weight", Spec::TRAINING_ONLY),
+            ("center_reg_weight", Spec::TRAINING_ONLY),
+            ("lr_decay_epoch", Spec::TRAINING_ONLY),
+            ("lr_decay", Spec::TRAINING_ONLY),
+            ("warmup_epochs", Spec::TRAINING_ONLY),
+            ("flip_validation", Spec::TRAINING_ONLY),
         ]);
     type Params = CenterNetParams;
     type Input<'a> = &'a Image;
@@ -79,7 +79,7 @@ impl Learner for CenterNet {
     type State = ();
 
     fn load(model: &Model, params: CenterNetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| Preprocess::new(SIDE, SIDE))?;
+        let network = ImageNetwork::open(model, device, |_| Preprocess::new(SIDE, SIDE))?;
         Ok(Self {
             detections: network.output("tower_0/detections")?,
             classes: model.manifest().classes.clone(),
@@ -105,7 +105,7 @@ impl Learner for CenterNet {
         let Scratch { candidates, marks } = &mut *self.scratch.take();
         let CenterNetParams { threshold, iou_threshold, max_detections, suppression } = self.params;
         let suppression =
-            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
         candidates.clear();
         self.network.run(image, |outputs, geometry| {
             candidates.extend(outputs[self.detections].values()?.chunks_exact(FIELDS).zip(0..).map(

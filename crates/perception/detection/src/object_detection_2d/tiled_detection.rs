@@ -11,8 +11,8 @@ use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_tiling::{
-    Allowance, Looks, PictureLearner, Piece, Slot, TilePicture, Tiles, TilingParams, look_side_by_side,
-    merge_pieces, open_copies,
+    ImageLearner, Piece, Slot, TileImage, TileInferences, Tiles, TilingParams, TimeBudget, merge_pieces,
+    open_copies, run_within_budget,
 };
 
 use super::DETECTORS;
@@ -37,14 +37,14 @@ pub struct TiledDetectionParams {
 /// A loaded detector, with one copy per parallel tile.
 pub struct TiledDetection {
     params: TiledDetectionParams,
-    detectors: Vec<Box<dyn PictureLearner<BoundingBoxList>>>,
+    detectors: Vec<Box<dyn ImageLearner<BoundingBoxList>>>,
     classes: Classes,
     scratch: Pool<Scratch>,
 }
 
 #[derive(Default)]
 struct Scratch {
-    tile: TilePicture,
+    tile: TileImage,
     found: BoundingBoxList,
 }
 
@@ -52,7 +52,7 @@ struct Scratch {
 #[derive(Default)]
 pub struct TiledDetectionState {
     tiles: Tiles,
-    looks: Looks,
+    looks: TileInferences,
     /// Indices of the inferences.
     numbers: Vec<usize>,
     /// Detections of each tile's last inference.
@@ -101,7 +101,7 @@ impl Learner for TiledDetection {
         boxes: &mut BoundingBoxList,
     ) -> Result<()> {
         let tiling = &self.params.tiling;
-        let allowance = Allowance::of_milliseconds(tiling.time_budget);
+        let allowance = TimeBudget::from_milliseconds(tiling.time_budget);
         let TiledDetectionState { tiles, looks, numbers, found, pieces } = state;
         let has_some = |index: usize| found.get(index).is_some_and(|found: &Vec<_>| !found.is_empty());
         if tiles.plan(tiling, image.view(), |index, _| has_some(index))? {
@@ -114,23 +114,23 @@ impl Learner for TiledDetection {
         }
         numbers.clear();
         numbers.extend(0..looks.len());
-        let looked = look_side_by_side(self.detectors.len(), numbers, allowance, |worker, number| {
-            self.look(worker, image, looks.look(number))
+        let looked = run_within_budget(self.detectors.len(), numbers, allowance, |worker, number| {
+            self.look(worker, image, looks.slots(number))
         })?;
         for (number, mut seen) in looked {
-            for (place, slot) in looks.look(number).iter().enumerate() {
+            for (place, slot) in looks.slots(number).iter().enumerate() {
                 let is_whole = tiles.tiles().get(slot.tile).is_some_and(|tile| tile.region == slot.part);
                 let found = &mut found[slot.tile];
-                found.retain(|piece| !is_whole && !slot.part.holds(middle(&piece.found)));
+                found.retain(|piece| !is_whole && !slot.part.contains(middle(&piece.bounding_box)));
                 found.extend(seen.extract_if(.., |(of, _)| *of == place).map(|(_, piece)| piece));
-                tiles.saw(slot.tile, is_whole);
+                tiles.record(slot.tile, is_whole);
             }
         }
         self.gather(tiles, found, pieces);
         merge_pieces(pieces, self.params.iou_threshold);
         boxes.boxes.clear();
         boxes.classes.clone_from(&self.classes);
-        boxes.boxes.extend(pieces.drain(..).take(self.params.max_detections).map(|piece| piece.found));
+        boxes.boxes.extend(pieces.drain(..).take(self.params.max_detections).map(|piece| piece.bounding_box));
         Ok(())
     }
 }
@@ -143,17 +143,17 @@ impl TiledDetection {
         let size = [image.width(), image.height()];
         let picture = match slots {
             [Slot { part, .. }] if [part.width, part.height] == size => image,
-            [Slot { part, .. }] => picture.cut(image.view(), part)?,
-            _ => picture.put_together(image.view(), slots, self.params.tiling.tile)?,
+            [Slot { part, .. }] => picture.crop(image.view(), part)?,
+            _ => picture.pack(image.view(), slots, self.params.tiling.tile)?,
         };
         detector.answer(picture, found)?;
         let pieces = found.boxes.drain(..).filter_map(|found| {
             if let [slot] = slots {
                 return Some((0, Piece::new(found, &slot.part, size)));
             }
-            let place = slots.iter().position(|slot| slot.shows(middle(&found)))?;
+            let place = slots.iter().position(|slot| slot.contains(middle(&found)))?;
             let slot = slots.get(place)?;
-            Some((place, Piece::new(slot.within(found), &slot.part, size)))
+            Some((place, Piece::new(slot.box_in_part(found), &slot.part, size)))
         });
         Ok(pieces.collect())
     }
@@ -162,14 +162,14 @@ impl TiledDetection {
     fn gather(&self, tiles: &Tiles, found: &[Vec<Piece>], pieces: &mut Vec<Piece>) {
         pieces.clear();
         for (index, found) in found.iter().enumerate() {
-            if !tiles.holds(index, self.params.tiling.memory) {
+            if !tiles.is_valid(index, self.params.tiling.memory) {
                 continue;
             }
             pieces.extend(
                 found
                     .iter()
                     .filter(|piece| {
-                        let one = &piece.found;
+                        let one = &piece.bounding_box;
                         one.confidence >= self.params.threshold && !tiles.is_superseded(index, middle(one))
                     })
                     .cloned(),

@@ -4,11 +4,11 @@ use opendr_engine::data::Image;
 use opendr_engine::model::Model;
 use opendr_engine::target::{BoundingBox, Classes};
 use opendr_engine::{Device, Error, Result};
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 use opendr_vision::Similarity;
 
-use crate::face_finder::{eye_angle, square_around};
+use crate::face_detector::{eye_angle, square_around};
 
 /// Name of the part of the container, an image classifier.
 const PART: &str = "mask";
@@ -27,7 +27,7 @@ pub fn mask_crop(face: &BoundingBox, side: usize) -> Similarity {
 
 /// Classifier of faces with and without a mask.
 pub(super) struct MaskNetwork {
-    network: PictureNetwork,
+    network: ImageNetwork,
     side: usize,
 }
 
@@ -48,8 +48,9 @@ impl MaskNetwork {
                 )));
             }
         }
-        let network =
-            PictureNetwork::open_file(&part, FILE, device, |input| described_input(&part, input, LEVEL))?;
+        let network = ImageNetwork::open_file(&part, FILE, device, |input| {
+            preprocess_from_manifest(&part, input, LEVEL)
+        })?;
         let [side, _] = network.size();
         Ok(Some(Self { network, side }))
     }

@@ -10,7 +10,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::Preprocess;
 
@@ -35,7 +35,7 @@ pub struct UltraLightFaceParams {
 pub struct UltraLightFace {
     params: UltraLightFaceParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     scores: usize,
     boxes: usize,
     scratch: Pool<Scratch>,
@@ -60,7 +60,7 @@ impl Learner for UltraLightFace {
     type State = ();
 
     fn load(model: &Model, params: UltraLightFaceParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
+        let network = ImageNetwork::open(model, device, |_| {
             Preprocess::new(WIDTH, HEIGHT).normalise([127.0; 3], [128.0; 3])
         })?;
         Ok(Self {
@@ -89,7 +89,7 @@ impl Learner for UltraLightFace {
         let Scratch { candidates, marks } = &mut *self.scratch.take();
         let UltraLightFaceParams { threshold, iou_threshold, max_detections, suppression } = self.params;
         let suppression =
-            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
         candidates.clear();
         self.network.run(image, |outputs, geometry| {
             let (scores, boxes) =

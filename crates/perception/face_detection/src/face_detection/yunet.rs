@@ -12,9 +12,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
-use opendr_vision::{Anchor, ChannelOrder, InputGeometry, Preprocess};
+use opendr_vision::{ChannelOrder, InputGeometry, LetterboxAlign, Preprocess};
 
 use super::masked_face::MaskNetwork;
 
@@ -42,7 +42,7 @@ pub struct YunetParams {
 pub struct Yunet {
     params: YunetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     side: usize,
     levels: [Level; 3],
     masks: Option<MaskNetwork>,
@@ -77,9 +77,9 @@ impl Learner for Yunet {
 
     fn load(model: &Model, mut params: YunetParams, device: Device) -> Result<Self> {
         let mut side = params.size.next_multiple_of(32);
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             side = input.dims.get(2).copied().flatten().unwrap_or(side);
-            Preprocess::new(side, side).letterbox(Anchor::TopLeft, 0.0).order(ChannelOrder::Bgr)
+            Preprocess::new(side, side).letterbox(LetterboxAlign::TopLeft, 0.0).order(ChannelOrder::Bgr)
         })?;
         params.size = side;
         let level = |stride: usize| -> Result<Level> {
@@ -115,7 +115,7 @@ impl Learner for Yunet {
         let Scratch { candidates, landmarks, marks } = &mut *self.scratch.take();
         let YunetParams { threshold, iou_threshold, max_detections, suppression, .. } = self.params;
         let suppression =
-            Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections };
+            Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections };
         candidates.clear();
         landmarks.clear();
         faces.classes.clone_from(&self.classes);

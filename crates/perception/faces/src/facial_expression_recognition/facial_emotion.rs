@@ -9,9 +9,11 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Category, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_face_detection::face_finder::{FaceFinder, FaceInput, largest, square_around, whole_picture};
+use opendr_face_detection::face_detector::{
+    FaceDetector, FaceInput, largest_face, square_around, whole_image,
+};
 use opendr_perception_common::category_scores::category_from_scores;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{Border, ChannelOrder, Preprocess};
 
 /// Parameters of [`FacialEmotion`].
@@ -32,8 +34,8 @@ pub struct FacialEmotionParams {
 pub struct FacialEmotion {
     params: FacialEmotionParams,
     classes: Classes,
-    finder: FaceFinder,
-    network: PictureNetwork,
+    finder: FaceDetector,
+    network: ImageNetwork,
     no_face: Classes,
     scratch: Pool<BoundingBoxList>,
 }
@@ -49,17 +51,17 @@ impl Learner for FacialEmotion {
         .about("mini-XCEPTION classifies the emotion of the largest face in an image, one of seven.")
         .without_effect(&[
             ("device_ind", "`device` sets it"),
-            ("validation_interval", Spec::OF_TRAINING),
-            ("max_training_epoch", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
+            ("validation_interval", Spec::TRAINING_ONLY),
+            ("max_training_epoch", Spec::TRAINING_ONLY),
+            ("momentum", Spec::TRAINING_ONLY),
             ("ensemble_size", "the network is one, not an ensemble"),
-            ("base_path_experiment", Spec::OF_TRAINING),
-            ("name_experiment", Spec::OF_TRAINING),
-            ("dimensional_finetune", Spec::OF_TRAINING),
-            ("categorical_train", Spec::OF_TRAINING),
-            ("base_path_to_dataset", Spec::OF_TRAINING),
-            ("max_tuning_epoch", Spec::OF_TRAINING),
-            ("diversify", Spec::OF_TRAINING),
+            ("base_path_experiment", Spec::TRAINING_ONLY),
+            ("name_experiment", Spec::TRAINING_ONLY),
+            ("dimensional_finetune", Spec::TRAINING_ONLY),
+            ("categorical_train", Spec::TRAINING_ONLY),
+            ("base_path_to_dataset", Spec::TRAINING_ONLY),
+            ("max_tuning_epoch", Spec::TRAINING_ONLY),
+            ("diversify", Spec::TRAINING_ONLY),
         ]);
     type Params = FacialEmotionParams;
     type Input<'a> = &'a Image;
@@ -67,13 +69,13 @@ impl Learner for FacialEmotion {
     type State = ();
 
     fn load(model: &Model, params: FacialEmotionParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             let layout = if input.dims.last() == Some(&Some(1)) { Layout::Hwc } else { Layout::Chw };
             let grey = Preprocess::new(SIDE, SIDE).order(ChannelOrder::Grey).layout(layout);
-            grey.normalise([127.5; 3], [127.5; 3]).border(Border::Level(0.0))
+            grey.normalise([127.5; 3], [127.5; 3]).border(Border::Constant(0.0))
         })?;
         Ok(Self {
-            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            finder: FaceDetector::open(model, params.face_threshold, device)?,
             classes: model.classes().clone(),
             no_face: ["no face"].into_iter().collect(),
             scratch: Pool::default(),
@@ -97,10 +99,10 @@ impl Learner for FacialEmotion {
     fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
         let faces = &mut *self.scratch.take();
         let crop = match self.params.picture {
-            FaceInput::Face => Some(whole_picture(image, SIDE)),
+            FaceInput::Face => Some(whole_image(image, SIDE)),
             FaceInput::Frame => {
-                self.finder.find(image, faces)?;
-                largest(faces).map(|face| square_around(face, SCALE, 0.0, SIDE))
+                self.finder.detect(image, faces)?;
+                largest_face(faces).map(|face| square_around(face, SCALE, 0.0, SIDE))
             }
         };
         let Some(crop) = crop else {

@@ -11,7 +11,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_perception_common::category_scores::category_of_two;
+use opendr_perception_common::category_scores::binary_category;
 
 use persistence::{Peak, Persistence};
 
@@ -109,7 +109,7 @@ impl Learner for AmbiguityMeasure {
         // The highest peak is the first, with the weight 1.
         let ambiguity = 1.0 - 1.0 / sum;
         let is_ambiguous = ambiguity >= threshold && peaks.len() > 1;
-        category_of_two(&mut targets.category, is_ambiguous, ambiguity as f32, &self.classes);
+        binary_category(&mut targets.category, is_ambiguous, ambiguity as f32, &self.classes);
         Ok(())
     }
 }

@@ -65,7 +65,7 @@ fn middle_of(pose: &Pose, names: &[&str]) -> Option<[f32; 2]> {
 }
 
 fn is_usable(joint: &Keypoint) -> bool {
-    joint.is_found() && joint.x.is_finite() && joint.y.is_finite()
+    joint.is_detected() && joint.x.is_finite() && joint.y.is_finite()
 }
 
 /// Returns 0 when `lower` is below `upper`, 180 when it is above; `None` when both are one point.

@@ -11,8 +11,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_perception_common::picture_network::{PictureNetwork, input_of};
-use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
+use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
+use opendr_perception_common::rotated_square::{RotatedSquare, angle_upwards};
 use opendr_vision::Border;
 
 /// Parameters of [`BlazePose`].
@@ -35,7 +35,7 @@ pub struct BlazePoseParams {
 /// A loaded BlazePose.
 pub struct BlazePose {
     params: BlazePoseParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     side: usize,
     outputs: [usize; 2],
 }
@@ -44,7 +44,7 @@ pub struct BlazePose {
 #[derive(Default)]
 pub struct BlazePoseState {
     size: [usize; 2],
-    square: Option<TurnedSquare>,
+    square: Option<RotatedSquare>,
 }
 
 /// Names of the outputs: 39 points, each x, y, z, visibility and presence; the score of the person.
@@ -70,8 +70,9 @@ impl Learner for BlazePose {
 
     fn load(model: &Model, params: BlazePoseParams, device: Device) -> Result<Self> {
         let mut side = 0;
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            let preprocess = input_of(input)?.border(Border::Level(0.0)).normalise([0.0; 3], [255.0; 3]);
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            let preprocess =
+                preprocess_from_input(input)?.border(Border::Constant(0.0)).normalise([0.0; 3], [255.0; 3]);
             let [width, height] = preprocess.size();
             side = width;
             match width == height {
@@ -119,7 +120,12 @@ impl Learner for BlazePose {
 
 impl BlazePose {
     /// Writes the person in a square into `pose` and returns the next square; `None` without a person.
-    fn predict(&self, image: &Image, square: &TurnedSquare, pose: &mut Pose) -> Result<Option<TurnedSquare>> {
+    fn predict(
+        &self,
+        image: &Image,
+        square: &RotatedSquare,
+        pose: &mut Pose,
+    ) -> Result<Option<RotatedSquare>> {
         let crop = square.crop(self.side);
         let mut next = None;
         self.network.run_crop(image, &crop, |outputs| {
@@ -153,7 +159,7 @@ impl BlazePose {
             (pose.id, pose.region) = (None, None);
             let [hips, above] = [HIPS, ABOVE].map(place);
             let radius = (above[0] - hips[0]).hypot(above[1] - hips[1]);
-            next = Some(TurnedSquare {
+            next = Some(RotatedSquare {
                 centre: hips,
                 side: 2.0 * radius * ROOM,
                 angle: angle_upwards(hips, above),
@@ -165,9 +171,9 @@ impl BlazePose {
 }
 
 /// Returns the whole image, upright.
-fn whole([width, height]: [usize; 2]) -> TurnedSquare {
+fn whole([width, height]: [usize; 2]) -> RotatedSquare {
     let [width, height] = [width as f32, height as f32];
-    TurnedSquare { centre: [width / 2.0, height / 2.0], side: width.max(height), angle: 0.0 }
+    RotatedSquare { centre: [width / 2.0, height / 2.0], side: width.max(height), angle: 0.0 }
 }
 
 #[cfg(test)]

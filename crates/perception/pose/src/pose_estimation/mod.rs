@@ -68,7 +68,7 @@ mod tests {
         let mut pose = Pose::default();
         opendr_from_coco(&mut pose, &joints, 0.45);
         assert_eq!(pose.keypoints.len(), 18);
-        assert!(!pose.keypoints[NECK].is_found());
+        assert!(!pose.keypoints[NECK].is_detected());
         opendr_from_coco(&mut pose, &joints, 0.3);
         assert_eq!(pose.keypoints[NECK], Keypoint { x: 15.0, y: 21.0, confidence: 0.4 });
     }

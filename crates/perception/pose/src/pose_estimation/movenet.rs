@@ -11,8 +11,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
 
@@ -33,7 +33,7 @@ pub struct MovenetParams {
 /// A loaded MoveNet.
 pub struct Movenet {
     params: MovenetParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     heads: Heads,
     side: usize,
 }
@@ -62,9 +62,9 @@ impl Learner for Movenet {
 
     fn load(model: &Model, mut params: MovenetParams, device: Device) -> Result<Self> {
         let mut side = params.size.next_multiple_of(32);
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             side = input.dims.get(2).copied().flatten().unwrap_or(side);
-            Preprocess::new(side, side).letterbox(Anchor::Centre, 0.0)
+            Preprocess::new(side, side).letterbox(LetterboxAlign::Centre, 0.0)
         })?;
         params.size = side;
         let last = network.outputs().first().and_then(|output| *output.dims.last()?);

@@ -106,7 +106,7 @@ impl Track {
         let unit = size(&self.joints).unwrap_or(1.0).max(1.0);
         let seconds = seconds * self.away.max(1) as f32;
         for (smoothed, joint) in self.smoothed.iter_mut().zip(&mut pose.keypoints) {
-            if !joint.is_found() {
+            if !joint.is_detected() {
                 *smoothed = None;
                 continue;
             }
@@ -123,7 +123,7 @@ impl Track {
 
 /// Returns the square root of the area of the box around the detected joints, in pixels.
 fn size(joints: &[Keypoint]) -> Option<f32> {
-    let mut found = joints.iter().filter(|joint| joint.is_found());
+    let mut found = joints.iter().filter(|joint| joint.is_detected());
     let first = found.next()?;
     let [x0, y0, x1, y1] = found.fold([first.x, first.y, first.x, first.y], |[x0, y0, x1, y1], joint| {
         [x0.min(joint.x), y0.min(joint.y), x1.max(joint.x), y1.max(joint.y)]
@@ -137,8 +137,8 @@ fn similarity(a: &[Keypoint], b: &[Keypoint]) -> Option<f32> {
     let size = size(a)?.max(size(b)?).max(1.0);
     let (mut sum, mut shared, mut either) = (0.0, 0, 0);
     for ((a, b), falloff) in a.iter().zip(b).zip(FALLOFFS) {
-        either += usize::from(a.is_found() || b.is_found());
-        if a.is_found() && b.is_found() {
+        either += usize::from(a.is_detected() || b.is_detected());
+        if a.is_detected() && b.is_detected() {
             let squares = (a.x - b.x).powi(2) + (a.y - b.y).powi(2);
             sum += (-squares / (2.0 * (size * falloff).powi(2))).exp();
             shared += 1;

@@ -10,9 +10,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
 
@@ -39,7 +39,7 @@ pub struct PosenetParams {
 /// A loaded PoseNet.
 pub struct Posenet {
     params: PosenetParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     heatmap: usize,
     offsets: usize,
     forward: usize,
@@ -67,8 +67,10 @@ impl Learner for Posenet {
     type State = ();
 
     fn load(model: &Model, params: PosenetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
-            Preprocess::new(SIDE, SIDE).letterbox(Anchor::Centre, 0.0).normalise([127.5; 3], [127.5; 3])
+        let network = ImageNetwork::open(model, device, |_| {
+            Preprocess::new(SIDE, SIDE)
+                .letterbox(LetterboxAlign::Centre, 0.0)
+                .normalise([127.5; 3], [127.5; 3])
         })?;
         let output = |name: &str| network.output(&format!("MobilenetV1/{name}_2/BiasAdd"));
         Ok(Self {
@@ -93,7 +95,7 @@ impl Learner for Posenet {
     fn infer_into(&self, _: &mut (), image: &Image, poses: &mut PoseList) -> Result<()> {
         let Scratch { peaks, persons } = &mut *self.scratch.take();
         let PosenetParams { peak_threshold, nms_radius, max_detections, .. } = self.params;
-        let tree = PartTree { peak_threshold, radius: nms_radius, most: max_detections };
+        let tree = PartTree { peak_threshold, radius: nms_radius, max_persons: max_detections };
         poses.poses.clear();
         self.network.run(image, |outputs, geometry| {
             tree.decode(&self.maps(outputs)?, peaks, persons);

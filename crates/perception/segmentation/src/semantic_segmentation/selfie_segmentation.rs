@@ -10,8 +10,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 
 /// Parameters of [`SelfieSegmentation`].
 #[derive(Debug, Clone, Params)]
@@ -28,7 +28,7 @@ pub struct SelfieSegmentationParams {
 pub struct SelfieSegmentation {
     params: SelfieSegmentationParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     /// Size of the network's map.
     width: usize,
     height: usize,
@@ -48,8 +48,8 @@ impl Learner for SelfieSegmentation {
     type State = ();
 
     fn load(model: &Model, params: SelfieSegmentationParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, DEFAULT_LEVEL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, DEFAULT_LEVEL)
         })?;
         let [map] = network.outputs() else {
             let count = network.outputs().len();

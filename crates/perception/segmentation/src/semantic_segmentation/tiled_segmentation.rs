@@ -11,7 +11,7 @@ use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_perception_common::regions::Region;
 use opendr_tiling::{
-    Allowance, PictureLearner, TilePicture, Tiles, TilingParams, look_side_by_side, open_copies,
+    ImageLearner, TileImage, Tiles, TilingParams, TimeBudget, open_copies, run_within_budget,
 };
 
 use super::SEGMENTERS;
@@ -27,14 +27,14 @@ pub struct TiledSegmentationParams {
 /// A loaded network, one copy per tile that is processed in parallel.
 pub struct TiledSegmentation {
     params: TiledSegmentationParams,
-    segmenters: Vec<Box<dyn PictureLearner<Heatmap>>>,
+    segmenters: Vec<Box<dyn ImageLearner<Heatmap>>>,
     classes: Classes,
     scratch: Pool<Scratch>,
 }
 
 #[derive(Default)]
 struct Scratch {
-    tile: TilePicture,
+    tile: TileImage,
     map: Heatmap,
 }
 
@@ -82,21 +82,21 @@ impl Learner for TiledSegmentation {
 
     fn infer_into(&self, state: &mut TiledSegmentationState, image: &Image, map: &mut Heatmap) -> Result<()> {
         let tiling = &self.params.tiling;
-        let allowance = Allowance::of_milliseconds(tiling.time_budget);
+        let allowance = TimeBudget::from_milliseconds(tiling.time_budget);
         let TiledSegmentationState { tiles, coarse, fine } = state;
         let (width, height) = (image.width(), image.height());
-        if tiles.plan(tiling, image.view(), |_, tile| tile.seen.is_some())? {
+        if tiles.plan(tiling, image.view(), |_, tile| tile.last_processed.is_some())? {
             for labels in [&mut *coarse, &mut *fine] {
                 labels.clear();
                 labels.resize(width * height, UNKNOWN);
             }
         }
         let segmented =
-            look_side_by_side(self.segmenters.len(), tiles.order(), allowance, |worker, index| {
+            run_within_budget(self.segmenters.len(), tiles.order(), allowance, |worker, index| {
                 self.segment(worker, image, tiles, index)
             })?;
         for (index, labels) in segmented {
-            tiles.saw(index, true);
+            tiles.record(index, true);
             let Some(tile) = tiles.tiles().get(index) else { continue };
             match tile.core.is_empty() {
                 true => coarse.copy_from_slice(&labels),
@@ -104,7 +104,7 @@ impl Learner for TiledSegmentation {
             }
         }
         for (index, tile) in tiles.tiles().iter().enumerate() {
-            if !tiles.holds(index, tiling.memory) && tile.seen.is_some() {
+            if !tiles.is_valid(index, tiling.memory) && tile.last_processed.is_some() {
                 let Region { x, y, width: across, height: down } = tile.core;
                 let rows = fine.chunks_exact_mut(width).skip(y).take(down);
                 rows.for_each(|row| row[x..x + across].fill(UNKNOWN));
@@ -130,7 +130,7 @@ impl TiledSegmentation {
         let Scratch { tile: picture, map } = &mut *self.scratch.take();
         let Region { x, y, width, height } = tile.region;
         let is_whole = [width, height] == [image.width(), image.height()];
-        let picture = if is_whole { image } else { picture.cut(image.view(), &tile.region)? };
+        let picture = if is_whole { image } else { picture.crop(image.view(), &tile.region)? };
         segmenter.answer(picture, map)?;
         let HeatmapValues::Labels(labels) = map.values() else {
             return Err(Error::format("the network returns scores instead of the class of every pixel"));

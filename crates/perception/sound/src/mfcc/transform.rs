@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use opendr_kernels::{
-    Compute, FOURIER_FRAMES, FourierWork, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum,
+    Compute, FOURIER_FRAMES, FourierScratch, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum,
 };
 
 use crate::mfcc::mel_bank::MelBank;
@@ -28,7 +28,7 @@ pub(super) struct FrameSpectrum {
 pub(super) struct FrameWork {
     /// Windowed frames; samples outside the window stay zero.
     samples: Vec<Frames>,
-    fourier: FourierWork,
+    fourier: FourierScratch,
     /// Magnitude or power of each frequency.
     values: Vec<Frames>,
     /// Sums of each band.

@@ -2,7 +2,7 @@
 
 use opendr_engine::{Error, Pool, Result};
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
-use opendr_sound::{Sound, standardise};
+use opendr_sound::{AudioInput, standardise};
 
 /// Number of frames in the network's input: 1.2 s of audio; longer audio is cut, shorter audio is padded.
 pub const FRAMES: usize = 40;
@@ -33,7 +33,7 @@ impl FrontEnd {
     ///
     /// # Errors
     /// `InvalidInput` for audio of another sample rate, or (without MFCC) for an input that is no cepstra.
-    pub fn input_into(&self, sound: Sound<'_>, input: &mut Vec<f32>) -> Result<()> {
+    pub fn input_into(&self, sound: AudioInput<'_>, input: &mut Vec<f32>) -> Result<()> {
         let cepstra = &mut *self.cepstra.take();
         self.cepstra_into(sound, cepstra)?;
         input.clear();
@@ -49,7 +49,7 @@ impl FrontEnd {
     ///
     /// # Errors
     /// As [`FrontEnd::input_into`].
-    pub fn cepstra_into(&self, sound: Sound<'_>, cepstra: &mut Vec<f32>) -> Result<()> {
+    pub fn cepstra_into(&self, sound: AudioInput<'_>, cepstra: &mut Vec<f32>) -> Result<()> {
         match (&self.mfcc, sound) {
             (Some(mfcc), sound) => {
                 mfcc.run_into(&sound.samples(self.sample_rate)?, cepstra);
@@ -57,7 +57,7 @@ impl FrontEnd {
                 standardise(cepstra);
                 Ok(())
             }
-            (None, Sound::Series(series)) if series.shape()[1] == self.coefficients => {
+            (None, AudioInput::Series(series)) if series.shape()[1] == self.coefficients => {
                 cepstra.clear();
                 cepstra.extend(series.as_slice().iter().take(FRAMES * self.coefficients));
                 Ok(())

@@ -11,7 +11,7 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{ElementType, Session, TensorView};
 use opendr_perception_common::category_scores::category_from_probabilities;
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 use opendr_sound::mfcc::{Mfcc, MfccOptions, peak_factor};
 
 use crate::speech_recognition::word_stream::{SpeechWindows, WordStream, WordStreamParams};
@@ -75,7 +75,7 @@ impl Learner for DsCnn {
         .class("DsCnnLearner")
         .about("DS-CNN classifies twelve spoken words, in 52 kB and INT8.");
     type Params = DsCnnParams;
-    type Input<'a> = Sound<'a>;
+    type Input<'a> = AudioInput<'a>;
     type Target = Category;
     type State = WordStream;
 
@@ -112,14 +112,19 @@ impl Learner for DsCnn {
         self.classes.clone()
     }
 
-    fn infer_into(&self, _: &mut WordStream, sound: Sound<'_>, category: &mut Category) -> Result<()> {
+    fn infer_into(&self, _: &mut WordStream, sound: AudioInput<'_>, category: &mut Category) -> Result<()> {
         self.category(&sound.samples(SAMPLE_RATE)?, category)
     }
 }
 
 /// Yields a prediction for every second of audio, each half a second after the one before.
 impl Streaming for DsCnn {
-    fn push(&self, state: &mut WordStream, piece: Sound<'_>, emit: &mut dyn FnMut(Category)) -> Result<()> {
+    fn push(
+        &self,
+        state: &mut WordStream,
+        piece: AudioInput<'_>,
+        emit: &mut dyn FnMut(Category),
+    ) -> Result<()> {
         self.windows.push(state, &piece.samples(SAMPLE_RATE)?, |second| {
             let mut category = Category::default();
             self.category(second.as_slice(), &mut category)?;

@@ -84,7 +84,7 @@ impl Speech {
     }
 
     /// Returns the number of samples of the chunks so far.
-    pub fn heard(&self) -> u64 {
+    pub fn samples(&self) -> u64 {
         self.heard
     }
 }

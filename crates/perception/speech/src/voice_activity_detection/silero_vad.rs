@@ -11,8 +11,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
-use opendr_perception_common::category_scores::category_of_two;
-use opendr_sound::Sound;
+use opendr_perception_common::category_scores::binary_category;
+use opendr_sound::AudioInput;
 
 use crate::voice_activity::{SAMPLE_RATE, Speech, VoiceNetwork, VoiceRule, VoiceStream};
 
@@ -52,7 +52,7 @@ impl SileroVad {
     fn category_of(&self, speech: &mut Speech, probability: f32) -> Category {
         self.rule().next(speech, probability);
         let mut category = Category::default();
-        category_of_two(&mut category, speech.is_active(), probability, &self.classes);
+        binary_category(&mut category, speech.is_active(), probability, &self.classes);
         category
     }
 }
@@ -62,7 +62,7 @@ impl Learner for SileroVad {
         .class("SileroVadLearner")
         .about("Silero VAD detects speech in chunks of 32 ms.");
     type Params = SileroVadParams;
-    type Input<'a> = Sound<'a>;
+    type Input<'a> = AudioInput<'a>;
     type Target = Category;
     type State = SileroVadStream;
 
@@ -83,7 +83,12 @@ impl Learner for SileroVad {
         self.classes.clone()
     }
 
-    fn infer_into(&self, _: &mut SileroVadStream, sound: Sound<'_>, category: &mut Category) -> Result<()> {
+    fn infer_into(
+        &self,
+        _: &mut SileroVadStream,
+        sound: AudioInput<'_>,
+        category: &mut Category,
+    ) -> Result<()> {
         let samples = sound.samples(SAMPLE_RATE)?;
         let (mut stream, mut highest) = (VoiceStream::default(), 0f32);
         self.network.push(&mut stream, &samples, |probability| {
@@ -91,7 +96,7 @@ impl Learner for SileroVad {
             Ok(())
         })?;
         highest = highest.max(self.network.flush(&mut stream)?.unwrap_or(0.0));
-        category_of_two(category, highest >= self.params.threshold, highest, &self.classes);
+        binary_category(category, highest >= self.params.threshold, highest, &self.classes);
         Ok(())
     }
 }
@@ -101,7 +106,7 @@ impl Streaming for SileroVad {
     fn push(
         &self,
         state: &mut SileroVadStream,
-        piece: Sound<'_>,
+        piece: AudioInput<'_>,
         emit: &mut dyn FnMut(Category),
     ) -> Result<()> {
         let samples = piece.samples(SAMPLE_RATE)?;

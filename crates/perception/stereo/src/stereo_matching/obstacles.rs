@@ -1,7 +1,7 @@
 //! Boxes around obstacles on a floor, from a depth map.
 
 use opendr_engine::target::BoundingBox3D;
-use opendr_vision::components::{Components, Touching};
+use opendr_vision::components::{Components, Connectivity};
 use opendr_vision::stereo::StereoCamera;
 
 /// Criteria of an obstacle.
@@ -85,10 +85,10 @@ impl Obstacles {
         let counts = &self.counts;
         let is_taken = |square: usize| {
             let depth = ((square / columns) as f32 + 0.5) * SIDE;
-            let surface = (camera.focal * SIDE / depth).powi(2);
+            let surface = (camera.focal_length * SIDE / depth).powi(2);
             counts[square] as f32 >= (SHARE * surface).max(LEAST)
         };
-        let count = self.components.label([columns, rows], Touching::Corners, is_taken, |_, _| true);
+        let count = self.components.label([columns, rows], Connectivity::Eight, is_taken, |_, _| true);
         let nothing =
             Extent { low: [f32::MAX; 3], high: [f32::MIN; 3], pixels: [f32::MAX, f32::MAX, 0.0, 0.0] };
         self.extents.clear();
@@ -130,8 +130,12 @@ impl Extent {
 mod tests {
     use super::*;
 
-    const CAMERA: StereoCamera =
-        StereoCamera { focal: 100.0, baseline: 0.1, centre: [80.0, 60.0], offset: 0.0 };
+    const CAMERA: StereoCamera = StereoCamera {
+        focal_length: 100.0,
+        baseline: 0.1,
+        principal_point: [80.0, 60.0],
+        principal_point_offset: 0.0,
+    };
     const OPTIONS: ObstacleOptions =
         ObstacleOptions { camera_height: 1.0, camera_pitch: 0.0, heights: [0.2, 2.0], farthest: 10.0 };
 
@@ -190,7 +194,7 @@ mod tests {
         }
         finder.find(&CAMERA, &[], 160, &OPTIONS, &mut boxes);
         assert!(boxes.is_empty());
-        let wild = StereoCamera { focal: f32::NAN, ..CAMERA };
+        let wild = StereoCamera { focal_length: f32::NAN, ..CAMERA };
         finder.find(&wild, &depths(), 160, &OPTIONS, &mut boxes);
         assert!(boxes.is_empty());
     }

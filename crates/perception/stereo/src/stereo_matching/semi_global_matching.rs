@@ -170,7 +170,12 @@ impl SemiGlobalMatching {
         let SemiGlobalMatchingParams { focal_length: focal, baseline, disparity_offset: offset, .. } =
             self.params;
         let centre = size.map(|side| side as f32 / 2.0);
-        (focal > 0.0 && baseline > 0.0).then_some(StereoCamera { focal, baseline, centre, offset })
+        (focal > 0.0 && baseline > 0.0).then_some(StereoCamera {
+            focal_length: focal,
+            baseline,
+            principal_point: centre,
+            principal_point_offset: offset,
+        })
     }
 
     fn options(&self) -> StereoOptions {
@@ -178,14 +183,14 @@ impl SemiGlobalMatching {
         StereoOptions {
             min_disparity: params.min_disparity,
             disparities: params.num_disparities,
-            small_penalty: byte(params.p1),
-            large_penalty: byte(params.p2),
+            p1: byte(params.p1),
+            p2: byte(params.p2),
             uniqueness: byte(params.uniqueness_ratio),
-            left_right: u16::try_from(params.disp12_max_diff).ok(),
+            max_left_right_difference: u16::try_from(params.disp12_max_diff).ok(),
             speckle_size: params.speckle_window_size,
             speckle_range: params.speckle_range,
             fill: params.fill,
-            shrink: params.shrink,
+            downscale: params.shrink,
         }
     }
 

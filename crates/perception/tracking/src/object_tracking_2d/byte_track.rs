@@ -5,15 +5,15 @@
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Device, Result, Task};
 
 use super::TrackerInputs;
 use super::tracks::{Rules, Track, Tracks};
-use crate::tracking::camera_motion::PlaneMotion;
-use crate::tracking::{HeightFilter, SoundBox};
+use crate::tracking::camera_motion::SimilarityMotion;
+use crate::tracking::{HeightFilter, ValidBox};
 
 /// Parameters of [`ByteTrack`].
 #[derive(Debug, Clone, Params)]
@@ -112,14 +112,14 @@ impl ByteTrackState {
         self.tracks.begin_frame(input, f64::from(lowest), Motion::predict)?;
         let high = f64::from(params.threshold);
         let is_confirmed = |track: &Track<Motion>| track.life.id.is_some();
-        let by_likelihood = |track: &Track<Motion>, found: &SoundBox| {
+        let by_likelihood = |track: &Track<Motion>, found: &ValidBox| {
             track.motion.gain(found, |overlap| {
                 let likelihood = overlap * found.confidence.min(1.0);
                 (found.confidence >= high).then_some(likelihood - f64::from(params.iou_threshold))
             })
         };
         // Only a detection of a high score resumes a lost track.
-        let by_overlap = |track: &Track<Motion>, found: &SoundBox| {
+        let by_overlap = |track: &Track<Motion>, found: &ValidBox| {
             track.motion.gain(found, |overlap| {
                 let was_seen = track.life.away == 1;
                 (was_seen && found.confidence < high).then_some(overlap - f64::from(params.low_iou_threshold))
@@ -141,11 +141,11 @@ impl ByteTrackState {
 }
 
 impl Motion {
-    fn new(found: &SoundBox) -> Self {
+    fn new(found: &ValidBox) -> Self {
         Self { filter: HeightFilter::new(found.corners), expected: found.corners }
     }
 
-    fn predict(&mut self, away: u32, camera: Option<&PlaneMotion>) {
+    fn predict(&mut self, away: u32, camera: Option<&SimilarityMotion>) {
         if let Some(camera) = camera {
             self.filter.move_camera(camera);
         }
@@ -156,13 +156,13 @@ impl Motion {
         self.expected = self.filter.corners();
     }
 
-    fn update(&mut self, found: &SoundBox, _: u32) {
+    fn update(&mut self, found: &ValidBox, _: u32) {
         self.filter.update(found.corners);
     }
 
     /// Returns the gain of an association, above 0, where the boxes overlap and `surplus` of the overlap is at least 0.
-    fn gain(&self, found: &SoundBox, surplus: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-        let overlap = image_overlap(self.expected, found.corners);
+    fn gain(&self, found: &ValidBox, surplus: impl Fn(f64) -> Option<f64>) -> Option<f64> {
+        let overlap = box_iou(self.expected, found.corners);
         let surplus = if overlap > 0.0 { surplus(overlap) } else { None };
         surplus.filter(|surplus| *surplus >= 0.0).map(|surplus| surplus + f64::EPSILON)
     }

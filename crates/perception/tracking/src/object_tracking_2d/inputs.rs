@@ -5,8 +5,8 @@ use opendr_engine::data::Image;
 use opendr_engine::learner::Inputs;
 use opendr_engine::target::{BoundingBoxList, Name, TrackingAnnotation, TrackingAnnotationList};
 
-use crate::tracking::SoundBox;
-use crate::tracking::camera_motion::{CameraMotion, PlaneMotion};
+use crate::tracking::ValidBox;
+use crate::tracking::camera_motion::{CameraMotion, SimilarityMotion};
 
 /// The detections in a frame.
 #[derive(Debug, Clone, Copy, Inputs)]
@@ -22,10 +22,10 @@ impl TrackerInputs<'_> {
     pub(crate) fn motion(
         &self,
         camera: &mut CameraMotion,
-        boxes: &[SoundBox],
-    ) -> Result<Option<PlaneMotion>> {
-        let motion = self.image.map(|image| camera.next(image, boxes)).transpose()?;
-        Ok(motion.filter(|motion| *motion != PlaneMotion::NONE))
+        boxes: &[ValidBox],
+    ) -> Result<Option<SimilarityMotion>> {
+        let motion = self.image.map(|image| camera.update(image, boxes)).transpose()?;
+        Ok(motion.filter(|motion| *motion != SimilarityMotion::NONE))
     }
 
     /// Clears the output for a frame.

@@ -5,14 +5,14 @@
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Name, TrackingAnnotationList};
 use opendr_engine::{Device, Result, Task};
 
 use super::TrackerInputs;
 use crate::tracking::camera_motion::CameraMotion;
-use crate::tracking::{AreaFilter, Life, MOST_BOXES, Pairing, SoundBox, sound_boxes};
+use crate::tracking::{AreaFilter, Life, MAX_BOXES, SparseAssignment, ValidBox, valid_boxes};
 
 /// Parameters of [`Sort`].
 #[derive(Debug, Clone, Params)]
@@ -46,10 +46,10 @@ pub struct SortState {
     last_id: i64,
     frame: i64,
     camera: CameraMotion,
-    boxes: Vec<SoundBox>,
+    boxes: Vec<ValidBox>,
     expected: Vec<[f64; 4]>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
 }
 
 struct Track {
@@ -89,7 +89,7 @@ impl Learner for Sort {
     ) -> Result<()> {
         let params = &self.params;
         input.begin(target);
-        sound_boxes(input.detections, f64::from(params.threshold), &mut state.boxes);
+        valid_boxes(input.detections, f64::from(params.threshold), &mut state.boxes);
         let motion = input.motion(&mut state.camera, &state.boxes)?;
         state.frame = state.frame.saturating_add(1);
         state.expected.clear();
@@ -128,10 +128,10 @@ impl SortState {
     /// Associates tracks and boxes, drops old tracks, and starts tracks for the other boxes.
     fn pair(&mut self, params: &SortParams, input: &TrackerInputs<'_>) {
         let needed = if self.frame <= i64::from(params.min_hits) { 1 } else { params.min_hits };
-        self.pairing.begin();
+        self.pairing.clear();
         for (row, (track, expected)) in self.tracks.iter().zip(&self.expected).enumerate() {
             for (column, found) in self.boxes.iter().enumerate() {
-                let overlap = image_overlap(*expected, found.corners);
+                let overlap = box_iou(*expected, found.corners);
                 let may_match = overlap >= f64::from(params.iou_threshold)
                     && (!params.per_class || input.name(found.index) == Some(&track.name));
                 if may_match {
@@ -150,7 +150,7 @@ impl SortState {
         }
         self.tracks.retain(|track| track.life.away <= params.max_age);
         for (found, is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let Some(name) = input.name(found.index).filter(|_| !is_taken && self.tracks.len() < MOST_BOXES)
+            let Some(name) = input.name(found.index).filter(|_| !is_taken && self.tracks.len() < MAX_BOXES)
             else {
                 continue;
             };

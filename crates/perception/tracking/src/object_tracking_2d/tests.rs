@@ -154,7 +154,7 @@ fn scene(shift: usize) -> Image {
     let noise = |x: usize, y: usize, cell: usize| {
         let corner = |across: usize, down: usize| {
             let place = [cell as u64, (x / cell + across) as u64, (y / cell + down) as u64];
-            Random::at(place).unit()
+            Random::from_key(place).unit()
         };
         let [across, down] = [x, y].map(|at| (at % cell) as f64 / cell as f64);
         let row = |down| corner(0, down) + across * (corner(1, down) - corner(0, down));
@@ -214,13 +214,13 @@ fn hostile_frames_never_panic_and_memory_is_bounded() {
     each!(&[], |tracker| for (at, boxes) in frames.iter().enumerate() {
         let most = boxes.len();
         let found = tracker.run_at(-(at as i64), None, boxes.clone());
-        assert!(found.len() <= most.min(crate::tracking::MOST_BOXES));
+        assert!(found.len() <= most.min(crate::tracking::MAX_BOXES));
         let mut ids: Vec<_> = found.iter().map(|track| track.id).collect();
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), found.len(), "no number twice");
         assert!(found.iter().all(|track| track.id > 0 && track.bounding_box.corners().iter().all(|edge| edge.is_finite())));
-        assert!(tracker.state.track_count() <= crate::tracking::MOST_BOXES);
+        assert!(tracker.state.track_count() <= crate::tracking::MAX_BOXES);
     });
 }
 

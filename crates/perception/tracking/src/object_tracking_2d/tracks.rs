@@ -4,8 +4,8 @@ use opendr_engine::Result;
 use opendr_engine::target::{Name, TrackingAnnotationList};
 
 use super::TrackerInputs;
-use crate::tracking::camera_motion::{CameraMotion, PlaneMotion};
-use crate::tracking::{Life, MOST_BOXES, Pairing, SoundBox, sound_boxes};
+use crate::tracking::camera_motion::{CameraMotion, SimilarityMotion};
+use crate::tracking::{Life, MAX_BOXES, SparseAssignment, ValidBox, valid_boxes};
 
 /// One object: its identity, and its motion as the tracker estimates it.
 pub(super) struct Track<M> {
@@ -22,9 +22,9 @@ pub(super) struct Tracks<M> {
     last_id: i64,
     frame: i64,
     camera: CameraMotion,
-    boxes: Vec<SoundBox>,
+    boxes: Vec<ValidBox>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
 }
 
 /// Parameters that the trackers share.
@@ -45,7 +45,7 @@ impl<M> Default for Tracks<M> {
             camera: CameraMotion::default(),
             boxes: Vec::new(),
             is_taken: Vec::new(),
-            pairing: Pairing::default(),
+            pairing: SparseAssignment::default(),
         }
     }
 }
@@ -57,9 +57,9 @@ impl<M> Tracks<M> {
         &mut self,
         input: &TrackerInputs<'_>,
         threshold: f64,
-        predict: impl Fn(&mut M, u32, Option<&PlaneMotion>),
+        predict: impl Fn(&mut M, u32, Option<&SimilarityMotion>),
     ) -> Result<()> {
-        sound_boxes(input.detections, threshold, &mut self.boxes);
+        valid_boxes(input.detections, threshold, &mut self.boxes);
         self.is_taken.clear();
         self.is_taken.resize(self.boxes.len(), false);
         self.frame = self.frame.saturating_add(1);
@@ -80,10 +80,10 @@ impl<M> Tracks<M> {
         rules: Rules,
         input: &TrackerInputs<'_>,
         which: impl Fn(&Track<M>) -> bool,
-        gain: impl Fn(&Track<M>, &SoundBox) -> Option<f64>,
-        update: impl Fn(&mut M, &SoundBox, u32),
+        gain: impl Fn(&Track<M>, &ValidBox) -> Option<f64>,
+        update: impl Fn(&mut M, &ValidBox, u32),
     ) {
-        self.pairing.begin();
+        self.pairing.clear();
         let is_free = |(_, track): &(usize, &Track<M>)| track.seen.is_none() && which(track);
         for (row, track) in self.list.iter().enumerate().filter(is_free) {
             for (column, found) in self.boxes.iter().enumerate() {
@@ -109,11 +109,11 @@ impl<M> Tracks<M> {
         &mut self,
         rules: Rules,
         input: &TrackerInputs<'_>,
-        motion: impl Fn(&SoundBox) -> Option<M>,
+        motion: impl Fn(&ValidBox) -> Option<M>,
     ) {
         let needed = self.needed(rules);
         for (found, is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let is_free = !is_taken && self.list.len() < MOST_BOXES;
+            let is_free = !is_taken && self.list.len() < MAX_BOXES;
             let Some(name) = input.name(found.index).filter(|_| is_free) else { continue };
             let Some(motion) = motion(found) else { continue };
             let mut life = Life::default();

@@ -1,6 +1,6 @@
 //! DeepSORT's Kalman filter of a box.
 
-use super::camera_motion::PlaneMotion;
+use super::camera_motion::SimilarityMotion;
 use super::{ConstantVelocity, corners, middle_and_size};
 
 /// Kalman filter of centre, aspect ratio and height of a box, each with its velocity (N. Wojke et al., "Simple Online and
@@ -82,9 +82,9 @@ impl HeightFilter {
     }
 
     /// Compensates a motion of the camera. Its rotations are small: they change positions and velocities, not variances.
-    pub fn move_camera(&mut self, motion: &PlaneMotion) {
+    pub fn move_camera(&mut self, motion: &SimilarityMotion) {
         let [x, y] = motion.map([self.x.position, self.y.position]);
-        let [across, down] = motion.turn([self.x.velocity, self.y.velocity]);
+        let [across, down] = motion.map_direction([self.x.velocity, self.y.velocity]);
         (self.x.position, self.x.velocity) = (x, across);
         (self.y.position, self.y.velocity) = (y, down);
         self.height.rescale(motion.scale());
@@ -116,7 +116,7 @@ mod tests {
     #[test]
     fn moves_with_the_camera() {
         let mut filter = HeightFilter::new([10.0, 10.0, 30.0, 50.0]);
-        filter.move_camera(&PlaneMotion::new([2.0, 0.0], [5.0, -5.0]));
+        filter.move_camera(&SimilarityMotion::new([2.0, 0.0], [5.0, -5.0]));
         let found = filter.corners();
         let expected = [25.0, 15.0, 65.0, 95.0];
         assert!(

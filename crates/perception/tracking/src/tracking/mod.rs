@@ -15,8 +15,8 @@ mod sound_boxes;
 pub use area_filter::AreaFilter;
 pub use constant_velocity::{Constant, ConstantVelocity};
 pub use height_filter::HeightFilter;
-pub use pairing::Pairing;
-pub use sound_boxes::{MOST_BOXES, SoundBox, sound_boxes};
+pub use pairing::SparseAssignment;
+pub use sound_boxes::{MAX_BOXES, ValidBox, valid_boxes};
 
 pub(crate) use life::Life;
 

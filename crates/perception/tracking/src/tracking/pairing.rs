@@ -18,7 +18,7 @@ use opendr_engine::assignment::Assignment;
 /// assert_eq!(pairing.solve(), [(0, 1), (1, 0)]);
 /// ```
 #[derive(Debug, Clone, Default)]
-pub struct Pairing {
+pub struct SparseAssignment {
     proposals: Vec<Proposal>,
     /// Union-find parents of rows, then a row of each column.
     leaders: [Vec<usize>; 2],
@@ -41,9 +41,9 @@ struct Proposal {
 /// Maximum of rows times columns of a group that is solved exactly; larger groups are solved greedily by the largest gain.
 const LARGEST_GROUP: usize = 1 << 20;
 
-impl Pairing {
+impl SparseAssignment {
     /// Clears the proposals.
-    pub fn begin(&mut self) {
+    pub fn clear(&mut self) {
         self.proposals.clear();
     }
 
@@ -169,10 +169,10 @@ mod tests {
         #[test]
         fn as_the_whole_matrix(rows in 1usize..12, columns in 1usize..12, seed in prop::collection::vec(0u8..40, 144)) {
             let gains: Vec<f64> = seed[..rows * columns].iter().map(|number| f64::from(*number) - 28.0).collect();
-            let mut pairing = Pairing::default();
+            let mut pairing = SparseAssignment::default();
             // Twice, as memory is reused.
             for _ in 0..2 {
-                pairing.begin();
+                pairing.clear();
                 for (at, gain) in gains.iter().enumerate() {
                     pairing.propose(at / columns, at % columns, *gain);
                 }
@@ -191,7 +191,7 @@ mod tests {
 
     #[test]
     fn a_large_group_is_solved_greedily() {
-        let mut pairing = Pairing::default();
+        let mut pairing = SparseAssignment::default();
         for row in 0..1100 {
             (0..1100)
                 .for_each(|column| pairing.propose(row, column, 1.0 / (1.0 + row.abs_diff(column) as f64)));
@@ -201,7 +201,7 @@ mod tests {
 
     #[test]
     fn pairs_without_gain_are_not_assigned() {
-        let mut pairing = Pairing::default();
+        let mut pairing = SparseAssignment::default();
         for gain in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             pairing.propose(0, 0, gain);
         }

@@ -22,7 +22,7 @@ use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
 use super::typed_services::TypedServices as _;
 use super::{Ros2Node, lifecycle, log, network_error, parameter_services};
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};
 
 /// A DDS participant, shared by the nodes of a process.
@@ -162,7 +162,7 @@ impl Graph for DdsNode {
         topic: &str,
         message_type: MessageType,
         qos: Qos,
-        mut deliver: Deliver,
+        mut deliver: MessageCallback,
     ) -> Result<()> {
         let name = self.names.resolve(topic)?;
         let topic = self.topic(topic, message_type, qos)?;
@@ -184,7 +184,7 @@ impl Graph for DdsNode {
         })
     }
 
-    fn serve(&mut self, service: &str, mut trigger: Trigger) -> Result<()> {
+    fn serve(&mut self, service: &str, mut trigger: TriggerHandler) -> Result<()> {
         self.serve_typed::<StdSrvsTrigger>(service, move |_| answer_to(&mut trigger))
     }
 

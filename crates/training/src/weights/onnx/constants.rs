@@ -145,12 +145,12 @@ fn floats(tensor: &TensorProto) -> Option<Vec<f32>> {
         DataType::Double if raw.is_empty() => {
             tensor.double_data.iter().map(|number| *number as f32).collect()
         }
-        DataType::Float16 if raw.is_empty() => FloatType::F16.numbers(&halves()),
-        DataType::Bfloat16 if raw.is_empty() => FloatType::Bf16.numbers(&halves()),
-        DataType::Float => FloatType::F32.numbers(raw),
-        DataType::Double => FloatType::F64.numbers(raw),
-        DataType::Float16 => FloatType::F16.numbers(raw),
-        DataType::Bfloat16 => FloatType::Bf16.numbers(raw),
+        DataType::Float16 if raw.is_empty() => FloatType::F16.decode(&halves()),
+        DataType::Bfloat16 if raw.is_empty() => FloatType::Bf16.decode(&halves()),
+        DataType::Float => FloatType::F32.decode(raw),
+        DataType::Double => FloatType::F64.decode(raw),
+        DataType::Float16 => FloatType::F16.decode(raw),
+        DataType::Bfloat16 => FloatType::Bf16.decode(raw),
         _ => return None,
     })
 }

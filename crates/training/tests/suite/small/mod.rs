@@ -29,7 +29,7 @@ impl DatasetIterator for Spirals {
 
     fn get(&self, index: usize) -> Result<Sample> {
         let class = (index % 2) as i64;
-        let mut random = Random::at([1, index as u64]);
+        let mut random = Random::from_key([1, index as u64]);
         let turn = random.uniform(0.2, 1.0);
         let angle = turn * 6.0 + class as f32 * std::f32::consts::PI;
         let x = if self.broken == Some(index) { f32::NAN } else { turn * angle.cos() };

@@ -6,7 +6,7 @@ use opendr_engine::{Random, Result};
 
 use crate::records::{StudyRecord, TrialRecord, TrialState, dominates};
 use crate::sampler::axis::Axis;
-use crate::sampler::{Drawn, Sampler, stream};
+use crate::sampler::{DrawnParameters, Sampler, stream};
 use crate::space::Parameter;
 use parzen::Mixture;
 
@@ -38,7 +38,7 @@ impl Tpe {
 }
 
 impl Sampler for Tpe {
-    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<Drawn> {
+    fn draw(&self, study: &StudyRecord, number: usize, parameters: &[&Parameter]) -> Result<DrawnParameters> {
         let mut random = stream(self.seed, number, parameters);
         let axes: Vec<Axis> = parameters.iter().map(|parameter| Axis::new(&parameter.distribution)).collect();
         let others = study.trials.iter().filter(|trial| trial.number != number);
@@ -54,7 +54,7 @@ impl Sampler for Tpe {
             let mixture = |trials: &[&TrialRecord]| Mixture::new(&axes, &numbers_of(trials, parameters));
             best_candidate(&mixture(&good), &mixture(&bad), &mut random)
         };
-        Ok(Drawn { numbers, notes: Vec::new() })
+        Ok(DrawnParameters { numbers, system_attributes: Vec::new() })
     }
 }
 

@@ -89,7 +89,7 @@ impl Camera {
             )));
         }
         let mut camera = Self {
-            info: Arc::new(VideoInfo { rate: rate_of(&file), frames: None, duration_s: None }),
+            info: Arc::new(VideoInfo { frame_rate: rate_of(&file), frames: None, duration_s: None }),
             mappings: Vec::new(),
             pixel_format: picture.pixel_format,
             decoder: options.decoder,
@@ -134,7 +134,7 @@ impl Camera {
                     image.header.stamp_ns = Some(stamp_ns(&buffer));
                     let path = Arc::clone(&self.path);
                     let video = Some(Arc::clone(&self.info));
-                    return Ok(Some(Frame { image, path, index: 0, number, video }));
+                    return Ok(Some(Frame { image, path, item_index: 0, frame_index: number, video }));
                 }
                 Err(error) => {
                     damaged += 1;

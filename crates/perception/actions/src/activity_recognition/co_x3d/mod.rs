@@ -143,7 +143,7 @@ impl Learner for CoX3d {
 
     fn infer_into(&self, state: &mut CoX3dState, image: &Image, category: &mut Category) -> Result<()> {
         let CoX3dState { input, has_begun, kept, next } = state;
-        self.frames.picture_into(image, input)?;
+        self.frames.image_into(image, input)?;
         let is_first = [if *has_begun { 0.0 } else { 1.0 }];
         kept.resize(self.state, 0.0);
         let inputs = [

@@ -9,7 +9,7 @@ use opendr_engine::{Result, ResultExt, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{
-    Container, Objective, OptimizerKind, TrainingParams, begin, fit_learner, open_for_training,
+    Container, Objective, OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device,
     training_device,
 };
 
@@ -58,7 +58,7 @@ impl Fit for CoStGcn {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.num_classes, "num_classes")?;
         joints_of(params.graph_type, params.num_point)?;
-        let (sizes, device) = (params.sizes(), begin(job, training)?);
+        let (sizes, device) = (params.sizes(), seeded_device(job, training)?);
         let network = ActionNetwork::new(&sizes, classes.len(), fit_params.dropout, &device)?;
         let network = network_from_base(network, base)?;
         let objective = ActionObjective {

@@ -24,7 +24,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_perception_common::frame_features::{FrameFeatures, KINDS, LastFrame};
+use opendr_perception_common::frame_features::{FEATURES_PER_COORDINATE, FrameFeatures, LastFrame};
 
 use super::GraphType;
 use super::sizes::NetworkSizes;
@@ -130,7 +130,7 @@ impl Learner for CoStGcn {
         let ([frame, state], [logits, next]) = (session.inputs(), session.outputs()) else {
             return Err(Error::format(format!("{FILE} does not have two inputs and two outputs")));
         };
-        let rows = KINDS * params.in_channels;
+        let rows = FEATURES_PER_COORDINATE * params.in_channels;
         let joints = joints_of(params.graph_type, params.num_point)?;
         let (&[Some(1), Some(numbers)], &[_, Some(classes)]) = (&state.dims[..], &logits.dims[..]) else {
             return Err(Error::format(format!(
@@ -193,7 +193,7 @@ impl Learner for CoStGcn {
             }
             for frame in 0..frames {
                 let one = &mut known[person];
-                let first = !one.last.is_seen();
+                let first = !one.last.is_observed();
                 if !self.features.write(sequence, frame, person, &mut one.last, features) {
                     continue;
                 }
@@ -209,7 +209,7 @@ impl Learner for CoStGcn {
         }
         sum.clear();
         let mut count = 0;
-        for person in known.iter().take(persons).filter(|person| person.last.is_seen()) {
+        for person in known.iter().take(persons).filter(|person| person.last.is_observed()) {
             add_to(sum, &person.logits);
             count += 1;
         }
@@ -220,7 +220,8 @@ impl Learner for CoStGcn {
 impl CoStGcn {
     /// Processes the features of one frame.
     fn step(&self, features: &[f32], person: &mut Person) -> Result<()> {
-        let shape = [1, KINDS * self.params.in_channels, 1, self.params.graph_type.joints()];
+        let shape =
+            [1, FEATURES_PER_COORDINATE * self.params.in_channels, 1, self.params.graph_type.joints()];
         let Person { state, next, logits, .. } = person;
         let inputs = [TensorView::new(&shape, features)?, TensorView::new(&[1, self.state], &state[..])?];
         self.session.run(&inputs, |outputs| {

@@ -18,7 +18,7 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures, KINDS};
+use opendr_perception_common::frame_features::{ClipScratch, FEATURES_PER_COORDINATE, FrameFeatures};
 
 use super::GraphType;
 
@@ -71,7 +71,7 @@ pub struct SpatioTemporalGcn {
 
 #[derive(Default)]
 struct Work {
-    clip: ClipWork,
+    clip: ClipScratch,
     sum: Vec<f32>,
 }
 
@@ -101,7 +101,7 @@ impl Learner for SpatioTemporalGcn {
         let ([input], [output]) = (session.inputs(), session.outputs()) else {
             return Err(Error::format(format!("{FILE} does not have exactly one input and one output")));
         };
-        let rows = KINDS * params.in_channels;
+        let rows = FEATURES_PER_COORDINATE * params.in_channels;
         let joints = joints_of(params.graph_type, params.num_point)?;
         let fits = input.dims == [Some(1), Some(rows), Some(params.num_frames), Some(joints)];
         let &[_, Some(classes)] = &output.dims[..] else {
@@ -146,8 +146,10 @@ impl Learner for SpatioTemporalGcn {
                 continue;
             }
             present += 1;
-            let input =
-                TensorView::new(&[1, KINDS * self.params.in_channels, frames, joints], &clip.clip[..])?;
+            let input = TensorView::new(
+                &[1, FEATURES_PER_COORDINATE * self.params.in_channels, frames, joints],
+                &clip.clip[..],
+            )?;
             self.session.run(&[input], |outputs| {
                 add_to(sum, outputs.first().map_or(Ok(&[][..]), TensorView::values)?);
                 Ok(())

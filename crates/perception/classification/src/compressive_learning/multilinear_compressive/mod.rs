@@ -21,7 +21,7 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
@@ -56,7 +56,7 @@ pub struct MultilinearCompressiveParams {
 pub struct MultilinearCompressive {
     params: MultilinearCompressiveParams,
     classes: Classes,
-    sensing: PictureNetwork,
+    sensing: ImageNetwork,
     /// Shape of a measurement, `[1, channels, height, width]`.
     measured: [usize; 4],
     classifier: Session,
@@ -127,7 +127,7 @@ impl Learner for MultilinearCompressive {
 
     fn load(model: &Model, params: MultilinearCompressiveParams, device: Device) -> Result<Self> {
         let mut size = [0; 2];
-        let sensing = PictureNetwork::open(model, device, |input| {
+        let sensing = ImageNetwork::open(model, device, |input| {
             if let [_, _, Some(height), Some(width)] = input.dims[..] {
                 size = [height, width];
             }

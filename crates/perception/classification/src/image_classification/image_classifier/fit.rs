@@ -8,7 +8,7 @@ use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::small_classifier::SmallClassifier;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::objective::Classify;
 use super::{ImageClassifier, ImageClassifierParams};
@@ -53,7 +53,7 @@ impl Fit for ImageClassifier {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, None, "classes")?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = SmallClassifier::new(3, classes.len(), fit_params.width, fit_params.dropout, &device);
         let network = network_from_base(network, base)?;
         let ImageClassifierFitParams { side, crop, flip, label_smoothing, .. } = *fit_params;

@@ -14,8 +14,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
 use opendr_perception_common::category_scores::{category_from_logits, category_from_probabilities};
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 
@@ -37,7 +37,7 @@ pub struct ImageClassifierParams {
 pub struct ImageClassifier {
     params: ImageClassifierParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     scores: usize,
 }
 
@@ -62,8 +62,8 @@ impl Learner for ImageClassifier {
     type State = ();
 
     fn load(model: &Model, params: ImageClassifierParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, LEVEL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, LEVEL)
         })?;
         let scores = match network.outputs() {
             [_] => 0,

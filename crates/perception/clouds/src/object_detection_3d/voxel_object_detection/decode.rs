@@ -13,12 +13,12 @@ pub struct PillarMaps<'a> {
     /// Offsets, seven maps per anchor.
     pub offsets: &'a [f32],
     /// Direction logits, one map per anchor; above 0 for backward.
-    pub backs: &'a [f32],
+    pub directions: &'a [f32],
 }
 
 /// A decoded box.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FoundBox {
+pub struct DecodedBox {
     /// Position, size and yaw in the lidar's frame.
     pub place: LidarBox,
     /// Score, 0..=1.
@@ -31,19 +31,19 @@ impl PillarMaps<'_> {
     /// Appends the boxes whose score reaches `threshold` to `found`.
     ///
     /// Scores are compared as logits, so that only boxes above the threshold cost an exponential.
-    pub fn decode(&self, layout: &PillarLayout, threshold: f32, found: &mut Vec<FoundBox>) {
+    pub fn decode(&self, layout: &PillarLayout, threshold: f32, found: &mut Vec<DecodedBox>) {
         let [columns, rows] = layout.maps();
         let cells = (columns * rows).max(1);
         let least = (threshold / (1.0 - threshold)).ln();
         let maps = self.scores.chunks_exact(cells).zip(self.offsets.chunks_exact(NUMBERS * cells));
-        let maps = maps.zip(self.backs.chunks_exact(cells));
+        let maps = maps.zip(self.directions.chunks_exact(cells));
         for (kind, ((scores, offsets), backs)) in layout.anchors.iter().zip(maps) {
             for (cell, score) in scores.iter().enumerate().filter(|(_, score)| **score >= least) {
                 let anchor = kind.at(layout.middle(cell % columns, cell / columns));
                 let offsets = std::array::from_fn(|number| offsets[number * cells + cell]);
                 let score = 1.0 / (1.0 + (-score).exp());
                 let place = box_from_offsets(offsets, backs[cell], &anchor);
-                found.push(FoundBox { place, score, class: kind.class as u32 });
+                found.push(DecodedBox { place, score, class: kind.class as u32 });
             }
         }
     }
@@ -65,7 +65,7 @@ mod tests {
         // The second anchor, column 1 of row 1.
         (scores[6 + 4], backs[6 + 4]) = (2.0, 1.0);
         offsets[(7 + 3) * 6 + 4] = std::f32::consts::LN_2;
-        let maps = PillarMaps { scores: &scores, offsets: &offsets, backs: &backs };
+        let maps = PillarMaps { scores: &scores, offsets: &offsets, directions: &backs };
         let mut found = Vec::new();
         maps.decode(&layout, 0.5, &mut found);
         let [found] = found[..] else { panic!("{found:?}") };

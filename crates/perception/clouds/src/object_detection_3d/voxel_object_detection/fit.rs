@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::anchors::AnchorKind;
 use super::layout::PillarLayout;
@@ -68,7 +68,7 @@ impl Fit for VoxelObjectDetection3d {
         let training = &fit_params.training;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let objective = fit_params.objective(base)?;
-        let network = PillarNetwork::new(objective.layout.anchors.len(), &begin(job, training)?);
+        let network = PillarNetwork::new(objective.layout.anchors.len(), &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)
     }

@@ -1,6 +1,6 @@
 //! Assignment of ground truth to anchors.
 
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::target::LidarBox;
 
 use super::coding::nearest_upright;
@@ -8,13 +8,13 @@ use super::layout::PillarLayout;
 
 /// Training target of an anchor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Wanted {
+pub enum AnchorTarget {
     /// Background.
     Background,
     /// The object with this index.
     Object(usize),
     /// Ignored in the loss.
-    Anything,
+    Ignored,
 }
 
 /// IoU from which an anchor is assigned to an object, and from which it is ignored. Both are below the paper's 0.6 and 0.45, as
@@ -24,7 +24,7 @@ const ANYTHING: f64 = 0.3;
 
 /// An annotated object.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Truth {
+pub struct GroundTruth {
     /// Position, size and yaw in the lidar's frame.
     pub place: LidarBox,
     /// Class index; `None` for an ignored object.
@@ -35,10 +35,10 @@ pub struct Truth {
 ///
 /// The IoU is that of the nearest axis-aligned rectangles on the ground, as in SECOND; every object is assigned at least the
 /// anchor with the highest IoU.
-pub fn wanted(layout: &PillarLayout, truths: &[Truth]) -> Vec<Wanted> {
+pub fn assign_anchors(layout: &PillarLayout, truths: &[GroundTruth]) -> Vec<AnchorTarget> {
     let [columns, rows] = layout.maps();
     let cells = columns * rows;
-    let mut wanted = vec![Wanted::Background; layout.anchors.len() * cells];
+    let mut wanted = vec![AnchorTarget::Background; layout.anchors.len() * cells];
     let mut best = vec![0.0; wanted.len()];
     let mut forced = Vec::new();
     for (number, truth) in truths.iter().enumerate() {
@@ -51,11 +51,11 @@ pub fn wanted(layout: &PillarLayout, truths: &[Truth]) -> Vec<Wanted> {
             let sides = nearest_upright(&anchor.at([0.0; 2]));
             for (column, row) in near(layout, around, sides) {
                 let [x, y] = layout.middle(column, row).map(f64::from);
-                let overlap = image_overlap(around, corners([x, y, 0.0], sides));
+                let overlap = box_iou(around, corners([x, y, 0.0], sides));
                 let at = kind * cells + row * columns + column;
                 if truth.class.is_none() {
-                    if overlap >= ANYTHING && wanted[at] == Wanted::Background {
-                        wanted[at] = Wanted::Anything;
+                    if overlap >= ANYTHING && wanted[at] == AnchorTarget::Background {
+                        wanted[at] = AnchorTarget::Ignored;
                     }
                     continue;
                 }
@@ -64,14 +64,15 @@ pub fn wanted(layout: &PillarLayout, truths: &[Truth]) -> Vec<Wanted> {
                 }
                 if overlap > best[at] && overlap >= ANYTHING {
                     best[at] = overlap;
-                    wanted[at] = if overlap >= OBJECT { Wanted::Object(number) } else { Wanted::Anything };
+                    wanted[at] =
+                        if overlap >= OBJECT { AnchorTarget::Object(number) } else { AnchorTarget::Ignored };
                 }
             }
         }
         forced.extend(own.1.map(|at| (at, number)));
     }
     for (at, number) in forced {
-        wanted[at] = Wanted::Object(number);
+        wanted[at] = AnchorTarget::Object(number);
     }
     wanted
 }
@@ -109,28 +110,28 @@ mod tests {
         PillarLayout { grid, stride: 2, anchors: AnchorKind::of_class("Car", 0).unwrap().to_vec() }
     }
 
-    fn car(x: f64, y: f64, yaw: f64, class: Option<usize>) -> Truth {
-        Truth { place: LidarBox { center: [x, y, -1.7], size: [3.9, 1.6, 1.5], yaw }, class }
+    fn car(x: f64, y: f64, yaw: f64, class: Option<usize>) -> GroundTruth {
+        GroundTruth { place: LidarBox { center: [x, y, -1.7], size: [3.9, 1.6, 1.5], yaw }, class }
     }
 
     #[test]
     fn anchors_around_a_car_are_assigned_to_it() {
         // In the middle of column 5, row 8, along x.
-        let wanted = wanted(&layout(), &[car(5.5, 0.5, 3.1, Some(0))]);
-        let objects: Vec<_> = (0..wanted.len()).filter(|at| wanted[*at] == Wanted::Object(0)).collect();
+        let wanted = assign_anchors(&layout(), &[car(5.5, 0.5, 3.1, Some(0))]);
+        let objects: Vec<_> = (0..wanted.len()).filter(|at| wanted[*at] == AnchorTarget::Object(0)).collect();
         // One column aside: 2.9 of 4.9 metres, 0.59; one row aside: 0.6 of 2.6 metres.
         assert_eq!(objects, [8 * 16 + 4, 8 * 16 + 5, 8 * 16 + 6]);
-        assert_eq!(wanted[8 * 16 + 7], Wanted::Anything);
-        assert!(wanted[256..].iter().all(|wanted| *wanted != Wanted::Object(0)));
+        assert_eq!(wanted[8 * 16 + 7], AnchorTarget::Ignored);
+        assert!(wanted[256..].iter().all(|wanted| *wanted != AnchorTarget::Object(0)));
     }
 
     #[test]
     fn every_object_has_an_anchor_and_ignored_objects_have_none() {
-        let askew = wanted(&layout(), &[car(5.9, 0.97, 0.7, Some(0))]);
-        assert!(askew.contains(&Wanted::Object(0)));
-        let ignored = wanted(&layout(), &[car(5.5, 0.5, 0.0, None)]);
-        assert!(ignored.contains(&Wanted::Anything) && !ignored.contains(&Wanted::Object(0)));
-        let far = wanted(&layout(), &[car(900.0, -900.0, 0.0, Some(0))]);
-        assert!(far.iter().all(|wanted| *wanted == Wanted::Background));
+        let askew = assign_anchors(&layout(), &[car(5.9, 0.97, 0.7, Some(0))]);
+        assert!(askew.contains(&AnchorTarget::Object(0)));
+        let ignored = assign_anchors(&layout(), &[car(5.5, 0.5, 0.0, None)]);
+        assert!(ignored.contains(&AnchorTarget::Ignored) && !ignored.contains(&AnchorTarget::Object(0)));
+        let far = assign_anchors(&layout(), &[car(900.0, -900.0, 0.0, Some(0))]);
+        assert!(far.iter().all(|wanted| *wanted == AnchorTarget::Background));
     }
 }

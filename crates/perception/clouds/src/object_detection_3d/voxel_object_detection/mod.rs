@@ -33,10 +33,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox3DList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_perception_common::suppression::{StandingCandidate, suppress_standing};
+use opendr_perception_common::suppression::{BevCandidate, suppress_bev};
 
 use crate::pillars::{Voxeliser, scatter};
-use decode::{FoundBox, PillarMaps};
+use decode::{DecodedBox, PillarMaps};
 #[cfg(feature = "training")]
 pub use fit::VoxelObjectDetection3dFitParams;
 pub use layout::PillarLayout;
@@ -83,8 +83,8 @@ struct Scratch {
     /// `[pillars, channels]`.
     features: Vec<f32>,
     canvas: Vec<f32>,
-    found: Vec<FoundBox>,
-    candidates: Vec<StandingCandidate>,
+    found: Vec<DecodedBox>,
+    candidates: Vec<BevCandidate>,
     dropped: Vec<bool>,
 }
 
@@ -191,7 +191,7 @@ impl Learner for VoxelObjectDetection3d {
         })?;
         self.suppress(scratch);
         for candidate in &scratch.candidates {
-            let Some(FoundBox { place, score, class }) = scratch.found.get(candidate.index as usize) else {
+            let Some(DecodedBox { place, score, class }) = scratch.found.get(candidate.index as usize) else {
                 continue;
             };
             let mut found = place.to_camera(scan.calibration(), scan.image_shape());
@@ -222,7 +222,7 @@ impl VoxelObjectDetection3d {
             output.values::<f32>()
         };
         let offsets = values(1, kinds * coding::NUMBERS)?;
-        Ok(PillarMaps { scores: values(0, kinds)?, offsets, backs: values(2, kinds)? })
+        Ok(PillarMaps { scores: values(0, kinds)?, offsets, directions: values(2, kinds)? })
     }
 
     /// Non-maximum suppression; boxes are sorted by score.
@@ -235,9 +235,9 @@ impl VoxelObjectDetection3d {
         }
         candidates.clear();
         candidates.extend((0..).zip(found.iter()).map(|(index, found)| {
-            let floor = found.place.standing_box().floor;
-            StandingCandidate { floor, score: found.score, class: found.class, index }
+            let floor = found.place.upright_box().base;
+            BevCandidate { footprint: floor, score: found.score, class: found.class, index }
         }));
-        suppress_standing(candidates, dropped, iou_threshold, max_detections);
+        suppress_bev(candidates, dropped, iou_threshold, max_detections);
     }
 }

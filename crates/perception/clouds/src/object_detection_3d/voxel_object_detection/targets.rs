@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result, Value};
 
 use super::coding::offsets_from_box;
 use super::layout::PillarLayout;
-use super::matching::{Truth, Wanted, wanted};
+use super::matching::{AnchorTarget, GroundTruth, assign_anchors};
 use super::scan::Scan;
 use crate::pillars::Voxeliser;
 
@@ -47,7 +47,7 @@ pub struct PillarBatch {
 const HIDDEN: i32 = 3;
 
 impl PillarBatches {
-    fn truths(&self, list: &BoundingBox3DList, scan: &Scan<'_>) -> Vec<Truth> {
+    fn truths(&self, list: &BoundingBox3DList, scan: &Scan<'_>) -> Vec<GroundTruth> {
         let truths = list.boxes.iter().filter_map(|found| {
             let class = match (list.classes.label(&found.name), &found.name) {
                 (Some(label), _) => self.classes.index(label),
@@ -62,17 +62,17 @@ impl PillarBatches {
             let is_within = (f64::from(grid.x[0])..f64::from(grid.x[1])).contains(&x)
                 && (f64::from(grid.y[0])..f64::from(grid.y[1])).contains(&y);
             let class = (is_within && found.occluded < HIDDEN).then_some(class);
-            is_box.then_some(Truth { place, class })
+            is_box.then_some(GroundTruth { place, class })
         });
         truths.collect()
     }
 
-    fn add_targets(&self, batch: &mut PillarBatch, truths: &[Truth]) {
+    fn add_targets(&self, batch: &mut PillarBatch, truths: &[GroundTruth]) {
         let first = batch.counts.len();
         let [columns, rows] = self.layout.maps();
-        for (at, wanted) in wanted(&self.layout, truths).into_iter().enumerate() {
-            batch.counts.push(if wanted == Wanted::Anything { 0.0 } else { 1.0 });
-            let Wanted::Object(object) = wanted else { continue };
+        for (at, wanted) in assign_anchors(&self.layout, truths).into_iter().enumerate() {
+            batch.counts.push(if wanted == AnchorTarget::Ignored { 0.0 } else { 1.0 });
+            let AnchorTarget::Object(object) = wanted else { continue };
             let (kind, cell) = (at / (columns * rows), at % (columns * rows));
             let middle = self.layout.middle(cell % columns, cell / columns);
             let anchor = self.layout.anchors[kind].at(middle);

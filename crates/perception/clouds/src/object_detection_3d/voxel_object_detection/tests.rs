@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use opendr_engine::data::{PointCloud, PointCloudWithCalibration};
 use opendr_engine::dataset::{DatasetIterator, DatasetRef};
 use opendr_engine::learner::{CheckOptions, Fit, FitJob, Handle, check_learner};
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::BoundingBox3D;
 use opendr_engine::{Device, ErrorKind, Random, Result, Statistics, Value};
 use opendr_simulation::street::StreetScans;
@@ -40,9 +40,9 @@ fn trained(params: &VoxelObjectDetection3dFitParams, job: &FitJob<'_>) -> Result
     VoxelObjectDetection3d::fit(None, &Default::default(), params, dataset, None, job)
 }
 
-fn standing(found: &BoundingBox3D) -> StandingBox {
+fn standing(found: &BoundingBox3D) -> UprightBox3D {
     let (size, place) = (found.dimensions.map(f64::from), found.location.map(f64::from));
-    StandingBox::in_camera(size, place, f64::from(found.rotation_y))
+    UprightBox3D::from_kitti(size, place, f64::from(found.rotation_y))
 }
 
 fn scan_of(value: &Value) -> &PointCloudWithCalibration {
@@ -77,7 +77,7 @@ fn overfits_two_streets() {
         };
         for car in truth.boxes.iter().filter(near) {
             asked += 1;
-            hit += usize::from(found.boxes.iter().any(|found| standing(found).overlap(&standing(car)) > 0.5));
+            hit += usize::from(found.boxes.iter().any(|found| standing(found).iou(&standing(car)) > 0.5));
         }
         // Without a calibration the same cars are offset by the distance of lidar and camera.
         let bare = learner.infer(Scan::from(&scan_of(&sample.data[0]).cloud)).unwrap();

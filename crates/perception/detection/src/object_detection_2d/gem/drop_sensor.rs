@@ -1,6 +1,6 @@
 //! Augmentation: samples with one failed sensor.
 
-use opendr_datasets::augment::{Augment, Others};
+use opendr_datasets::augment::{Augment, OtherSamples};
 use opendr_engine::data::{Image, Pixels};
 use opendr_engine::dataset::Sample;
 use opendr_engine::{Error, Random, Result, Value};
@@ -14,7 +14,7 @@ impl DropSensor {
 }
 
 impl Augment for DropSensor {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let failed = random.below(2);
         match sample.data.get_mut(failed) {
             Some(Value::Image(image)) => *image = blank(image)?,

@@ -160,7 +160,7 @@ impl Learner for Gem {
             self.levels.decode(outputs, self.classes.len(), threshold, candidates)?;
             keep_best(candidates, MOST_CANDIDATES);
             let kind = SuppressionKind::Hard;
-            let suppression = Suppression { kind, overlap: iou_threshold, threshold, most: max_detections };
+            let suppression = Suppression { kind, iou_threshold, threshold, max_boxes: max_detections };
             suppression.run(candidates, marks);
             boxes_from_candidates(&mut target.boxes, candidates, &geometry, &self.classes);
             let weights = outputs[self.weights].values::<f32>()?;

@@ -7,7 +7,7 @@ use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics};
 use opendr_perception_common::suppression::iou;
-use opendr_perception_testing::promises::check;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::drop_sensor::blank;
@@ -38,7 +38,7 @@ impl DatasetIterator for Pairs {
 }
 
 fn pair(index: usize) -> (Image, Image, BoundingBox) {
-    let mut random = Random::at([11, index as u64]);
+    let mut random = Random::from_key([11, index as u64]);
     let mut noise = || (0..SIDE * SIDE * 3).map(|_| 30 + random.below(80) as u8).collect::<Vec<_>>();
     let (mut colour, mut infrared) = (noise(), noise());
     let [width, height] = [0, 1].map(|_| 28 + random.below(24));
@@ -135,7 +135,7 @@ fn a_trained_container_passes_the_learner_checks() {
         [&first, &second].map(|output| FitJob { device: Device::Cpu, ..FitJob::new(output) });
     trained(None, &fit_params(1, 0.3), &first).unwrap();
     let calls = (0..3).map(|index| Pairs(3).get(index).unwrap().data).collect();
-    check::<Gem>(&first.model(), &folder.join("scratch"), calls);
+    check_trained_learner::<Gem>(&first.model(), &folder.join("scratch"), calls);
 
     // At a learning rate of 0 a further training changes nothing.
     let mut still = fit_params(1, 0.3);

@@ -8,7 +8,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_training::weights::{Rules, WeightTable};
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::{DISTANCES, NanodetNetwork};
 use super::objective::NanodetObjective;
@@ -64,7 +64,7 @@ impl Fit for Nanodet {
         let NanodetFitParams { freeze, augment, training } = fit_params;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_of(&*dataset, base)?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = match base {
             Some(base) => NanodetNetwork::from_model(base, &device)?,
             None => {

@@ -10,7 +10,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 use opendr_vision::{ChannelOrder, Preprocess};
 
@@ -51,7 +51,7 @@ pub struct NanodetParams {
 pub struct Nanodet {
     params: NanodetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     levels: [Level; 3],
     scratch: Pool<Scratch>,
 }
@@ -105,7 +105,7 @@ impl Learner for Nanodet {
     type State = ();
 
     fn load(model: &Model, params: NanodetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| preprocess(SIDE))?;
+        let network = ImageNetwork::open(model, device, |_| preprocess(SIDE))?;
         let level = |index: usize| -> Result<Level> {
             let scores = network.output(SCORE_OUTPUTS[index])?;
             let distances = network.output(DISTANCE_OUTPUTS[index])?;
@@ -151,7 +151,7 @@ impl Learner for Nanodet {
 impl Nanodet {
     fn suppression(&self) -> Suppression {
         let NanodetParams { threshold, iou_threshold, max_detections, suppression } = self.params;
-        Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections }
+        Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections }
     }
 }
 

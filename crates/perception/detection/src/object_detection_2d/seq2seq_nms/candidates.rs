@@ -3,20 +3,20 @@
 use std::path::Path;
 use std::sync::OnceLock;
 
-use opendr_datasets::augment::{Augment as _, Colour, Flip, Others, Pipeline, RandomResizedCrop};
+use opendr_datasets::augment::{Augment as _, Colour, Flip, OtherSamples, Pipeline, RandomResizedCrop};
 use opendr_engine::dataset::{Dataset, DatasetIterator, Sample};
 use opendr_engine::model::Model;
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Random, Result, Value};
-use opendr_tiling::{PictureLearner, open_picture_learner};
+use opendr_tiling::{ImageLearner, open_image_learner};
 
 use crate::object_detection_2d::DETECTORS;
 
 /// Converts samples of an image with boxes to samples of the image and its detections, with the boxes as annotation.
 pub(super) struct Candidates<'a> {
     dataset: &'a dyn DatasetIterator,
-    detector: Box<dyn PictureLearner<BoundingBoxList>>,
+    detector: Box<dyn ImageLearner<BoundingBoxList>>,
     pipeline: Pipeline,
     versions: usize,
     seed: u64,
@@ -50,7 +50,7 @@ impl<'a> Candidates<'a> {
             ("max_candidates".to_owned(), MOST_BOXES.into()),
         ]);
         let model = Model::open(Path::new(detector))?;
-        let detector = open_picture_learner(&model, DETECTORS, &overrides, device)?;
+        let detector = open_image_learner(&model, DETECTORS, &overrides, device)?;
         let crop = RandomResizedCrop {
             width: SIDE,
             height: SIDE,
@@ -81,8 +81,8 @@ impl DatasetIterator for Candidates<'_> {
         let found = found.ok_or_else(|| Error::not_found(format!("sample {index} of {}", self.len())))?;
         let mut sample = self.dataset.get(index % count)?;
         if index >= count {
-            let mut random = Random::at([self.seed, index as u64]);
-            self.pipeline.apply(&mut sample, &mut random, &Others::none())?;
+            let mut random = Random::from_key([self.seed, index as u64]);
+            self.pipeline.apply(&mut sample, &mut random, &OtherSamples::none())?;
         }
         let [Value::Image(image)] = &sample.data[..] else {
             return Err(Error::invalid_input(

@@ -78,9 +78,9 @@ impl Choice {
         }
         let suppression = Suppression {
             kind: SuppressionKind::Hard,
-            overlap: self.overlap,
+            iou_threshold: self.overlap,
             threshold: LEAST_SCORE,
-            most: self.most,
+            max_boxes: self.most,
         };
         suppression.run(candidates, marks);
     }

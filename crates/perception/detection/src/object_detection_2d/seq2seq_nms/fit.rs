@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Device, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::candidates::Candidates;
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
@@ -95,7 +95,7 @@ impl Training<'_> {
         let Self { base, params, fit_params, classes, job } = self;
         let variant = base.map_or(Ok(fit_params.variant), |model| variant_of(model.manifest()))?;
         let sizes = NetworkSizes { variant, dropout: fit_params.dropout };
-        let device = begin(job, &fit_params.training)?;
+        let device = seeded_device(job, &fit_params.training)?;
         let network = network_from_base(Seq2SeqNmsNetwork::new(&sizes, &device), base)?;
         let objective = NmsObjective {
             params,

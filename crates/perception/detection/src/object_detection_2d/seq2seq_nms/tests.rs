@@ -7,8 +7,8 @@ use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics, Value};
 use opendr_perception_common::suppression::iou;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};
@@ -39,7 +39,7 @@ impl DatasetIterator for Boards {
 }
 
 fn boards(index: usize) -> (Image, BoundingBoxList, BoundingBoxList) {
-    let mut random = Random::at([5, index as u64]);
+    let mut random = Random::from_key([5, index as u64]);
     let mut levels = vec![60u8; WIDTH * HEIGHT * 3];
     let (mut found, mut truth) = (Vec::new(), Vec::new());
     for left in [random.below(20), 80 + random.below(20)] {
@@ -139,7 +139,7 @@ fn duplicates_and_false_detections_are_suppressed() {
     }
     assert!(right >= 16 && kept <= 24, "{right} of 20 detected, {kept} boxes kept of 120");
     let calls = (0..3).map(|index| Boards(3).get(index).unwrap().data).collect();
-    check::<Seq2SeqNms>(&job.model(), &folder.join("promises"), calls);
+    check_trained_learner::<Seq2SeqNms>(&job.model(), &folder.join("promises"), calls);
     std::fs::remove_dir_all(folder).unwrap();
 }
 

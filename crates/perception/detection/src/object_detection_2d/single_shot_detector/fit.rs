@@ -7,11 +7,11 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, ResultExt, Statistics};
-use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
+use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_cpu};
 use opendr_training::weights::WeightTable;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
-use super::layout::Fitting;
+use super::layout::Resizing;
 use super::layout_options::LayoutOptions;
 use super::matching::Matching;
 use super::network::{BACKBONE_LAYERS, Network, NetworkConfig};
@@ -54,7 +54,7 @@ pub struct SingleShotDetectorFitParams {
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
     /// How an image is resized to that side.
-    pub fitting: Fitting,
+    pub fitting: Resizing,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
     /// Stride of the finest level, 8 or 16. The coarser one suits larger objects and is faster.
@@ -110,7 +110,7 @@ impl Fit for SingleShotDetector {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let mut objective = fit_params.objective(base, &*dataset)?;
         let network = fit_params.network(base, &objective, job)?;
-        if fit_params.freeze >= BACKBONE_LAYERS && is_on_processor(job)? {
+        if fit_params.freeze >= BACKBONE_LAYERS && is_on_cpu(job)? {
             let names = ["fine", "coarse"];
             let backbone = FrozenLayers::new(
                 &network,
@@ -137,7 +137,7 @@ impl SingleShotDetectorFitParams {
             layout: options.layout(base)?,
             classes: selected_classes(&self.classes, &dataset.classes())?,
             matching: Matching::default(),
-            least_score: self.least_score,
+            min_score: self.least_score,
             augment: self.augment,
             frozen: None,
         })
@@ -150,7 +150,7 @@ impl SingleShotDetectorFitParams {
         job: &FitJob<'_>,
     ) -> Result<Network> {
         let config = NetworkConfig::new(self.backbone.width(), &objective.layout, objective.classes.len());
-        let network = config.init(&begin(job, &self.training)?);
+        let network = config.init(&seeded_device(job, &self.training)?);
         let network = match (base, &self.backbone_weights) {
             (Some(model), _) => {
                 let same = model.classes() == &objective.classes;

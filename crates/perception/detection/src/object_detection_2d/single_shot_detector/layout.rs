@@ -2,14 +2,14 @@
 
 use opendr_engine::model::Manifest;
 use opendr_engine::{Error, Result};
-use opendr_vision::{Anchor, Preprocess};
+use opendr_vision::{LetterboxAlign, Preprocess};
 use serde::{Deserialize, Serialize};
 
 use super::anchors::Anchors;
 
 opendr_engine::choices! {
     /// How an image is resized to the network's input.
-    pub enum Fitting {
+    pub enum Resizing {
         /// Stretches both axes to the input, which changes the aspect ratio.
         Stretch = "stretch",
         /// Keeps the aspect ratio and pads the rest.
@@ -48,8 +48,8 @@ const LARGEST: usize = 4096;
 
 impl ImageLayout {
     /// Creates a square input of `size` pixels with values from -1 to 1.
-    pub fn new(size: usize, fitting: Fitting) -> Self {
-        let letterbox = fitting == Fitting::Letterbox;
+    pub fn new(size: usize, fitting: Resizing) -> Self {
+        let letterbox = fitting == Resizing::Letterbox;
         Self { width: size, height: size, letterbox, pad: 127.5, mean: [127.5; 3], std: [127.5; 3] }
     }
 
@@ -61,7 +61,7 @@ impl ImageLayout {
     /// Returns the pre-processing of images.
     pub fn preprocess(&self) -> Preprocess {
         let plain = Preprocess::new(self.width, self.height).normalise(self.mean, self.std);
-        if self.letterbox { plain.letterbox(Anchor::Centre, self.pad) } else { plain }
+        if self.letterbox { plain.letterbox(LetterboxAlign::Centre, self.pad) } else { plain }
     }
 
     fn check(&self) -> Result<()> {
@@ -101,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_layout_survives_the_manifest() {
-        let image = ImageLayout::new(320, Fitting::Letterbox);
+        let image = ImageLayout::new(320, Resizing::Letterbox);
         let layout = Layout { image, anchors: Anchors::new(&[16, 32], &[3.0], &[1.0, 0.5]) };
         assert_eq!(Layout::from_manifest(&manifest(&layout)).unwrap(), layout);
     }
@@ -109,7 +109,7 @@ mod tests {
     #[test]
     fn invalid_layouts_are_refused() {
         let good = Layout {
-            image: ImageLayout::new(320, Fitting::Stretch),
+            image: ImageLayout::new(320, Resizing::Stretch),
             anchors: Anchors::new(&[16], &[3.0], &[1.0]),
         };
         for break_it in [

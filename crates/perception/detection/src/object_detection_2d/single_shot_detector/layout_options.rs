@@ -4,14 +4,14 @@ use opendr_engine::model::Model;
 use opendr_engine::{Error, Result};
 
 use super::anchors::Anchors;
-use super::layout::{Fitting, ImageLayout, Layout};
+use super::layout::{ImageLayout, Layout, Resizing};
 
 /// Parameters of the input and of the anchors.
 pub(crate) struct LayoutOptions<'a> {
     /// Side of the network's input, in pixels.
     pub img_size: usize,
     /// How images are resized to that side.
-    pub fitting: Fitting,
+    pub fitting: Resizing,
     /// Stride of the finest level, in pixels.
     pub stride: usize,
     /// Sides of the anchors of each level, in strides of the level.

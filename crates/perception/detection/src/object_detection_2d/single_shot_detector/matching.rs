@@ -19,16 +19,16 @@ pub enum Match {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Matching {
     /// Minimum IoU of an anchor with its object.
-    pub object: f32,
+    pub object_iou: f32,
     /// IoU below which an anchor is background.
-    pub background: f32,
+    pub background_iou: f32,
     /// Share of an anchor's area in a crowd above which it is ignored.
-    pub crowd: f32,
+    pub crowd_share: f32,
 }
 
 impl Default for Matching {
     fn default() -> Self {
-        Self { object: 0.5, background: 0.4, crowd: 0.5 }
+        Self { object_iou: 0.5, background_iou: 0.4, crowd_share: 0.5 }
     }
 }
 
@@ -48,11 +48,12 @@ impl Matching {
                 }
             }
         }
-        let in_crowd =
-            |anchor: &Anchor| crowds.iter().any(|crowd| share_inside(&anchor.corners(), crowd) > self.crowd);
+        let in_crowd = |anchor: &Anchor| {
+            crowds.iter().any(|crowd| share_inside(&anchor.corners(), crowd) > self.crowd_share)
+        };
         let of_overlap = |((overlap, object), anchor)| match overlap {
-            overlap if overlap >= self.object => Match::Object(object),
-            overlap if overlap >= self.background || in_crowd(anchor) => Match::Ignored,
+            overlap if overlap >= self.object_iou => Match::Object(object),
+            overlap if overlap >= self.background_iou || in_crowd(anchor) => Match::Ignored,
             _ => Match::Background,
         };
         let mut matches: Vec<_> = best.into_iter().zip(anchors).map(of_overlap).collect();

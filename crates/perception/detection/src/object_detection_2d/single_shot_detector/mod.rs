@@ -33,12 +33,12 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_perception_common::boxes_from_candidates::boxes_from_candidates;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind, keep_best};
 
 #[cfg(feature = "training")]
 pub use fit::{Backbone, SingleShotDetectorFitParams};
-pub use layout::{Fitting, ImageLayout, Layout};
+pub use layout::{ImageLayout, Layout, Resizing};
 #[cfg(feature = "training")]
 pub(crate) use layout_options::LayoutOptions;
 pub(crate) use levels::Levels;
@@ -71,7 +71,7 @@ pub struct SingleShotDetectorParams {
 pub struct SingleShotDetector {
     params: SingleShotDetectorParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     levels: Levels,
     scratch: Pool<Scratch>,
 }
@@ -103,7 +103,7 @@ impl Learner for SingleShotDetector {
         if classes.is_empty() {
             return Err(Error::format("the model names no classes; train or download it again"));
         }
-        let network = PictureNetwork::open(model, device, |_| image.preprocess())?;
+        let network = ImageNetwork::open(model, device, |_| image.preprocess())?;
         let levels = Levels::open(anchors, image.size(), |name| network.output(name))?;
         Ok(Self { params, classes, network, levels, scratch: Pool::default() })
     }
@@ -137,6 +137,6 @@ impl SingleShotDetector {
     fn suppression(&self) -> Suppression {
         let SingleShotDetectorParams { threshold, iou_threshold, max_detections, suppression, .. } =
             self.params;
-        Suppression { kind: suppression, overlap: iou_threshold, threshold, most: max_detections }
+        Suppression { kind: suppression, iou_threshold, threshold, max_boxes: max_detections }
     }
 }

@@ -27,7 +27,7 @@ pub struct DetectionObjective {
     /// Thresholds of the matching of anchors and objects.
     pub matching: Matching,
     /// Score below which boxes are neither object nor background.
-    pub least_score: f32,
+    pub min_score: f32,
     /// Whether images are augmented at random.
     pub augment: bool,
     /// The backbone, if it is frozen.
@@ -39,7 +39,7 @@ impl Objective for DetectionObjective {
     type Collate = DetectionBatches;
 
     fn collate(&self) -> Result<DetectionBatches> {
-        Ok(DetectionBatches::new(&self.layout, self.matching, self.classes.clone(), self.least_score))
+        Ok(DetectionBatches::new(&self.layout, self.matching, self.classes.clone(), self.min_score))
     }
 
     fn pipeline(&self) -> Result<Pipeline> {

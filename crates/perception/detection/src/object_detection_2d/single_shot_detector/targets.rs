@@ -140,12 +140,12 @@ mod tests {
     use opendr_engine::target::{Segment, Segmentation};
 
     use super::super::anchors::{AnchorLevel, Anchors};
-    use super::super::layout::{Fitting, ImageLayout};
+    use super::super::layout::{ImageLayout, Resizing};
     use super::*;
 
     fn batches() -> DetectionBatches {
         let anchors = Anchors { levels: vec![AnchorLevel { stride: 32, sides: vec![[32.0, 32.0]] }] };
-        let layout = Layout { image: ImageLayout::new(64, Fitting::Stretch), anchors };
+        let layout = Layout { image: ImageLayout::new(64, Resizing::Stretch), anchors };
         let classes = ["cat", "person"].into_iter().collect();
         DetectionBatches::new(&layout, Matching::default(), classes, 0.5)
     }

@@ -27,7 +27,7 @@ impl DatasetIterator for Synthetic {
     }
 
     fn get(&self, index: usize) -> Result<Sample> {
-        let mut random = Random::at([3, index as u64]);
+        let mut random = Random::from_key([3, index as u64]);
         let mut pixels: Vec<u8> = (0..SIDE * SIDE * 3).map(|_| random.below(90) as u8).collect();
         let [width, height] = [0, 1].map(|_| 24 + random.below(32));
         let [left, top] = [random.below(SIDE - width), random.below(SIDE - height)];

@@ -8,10 +8,10 @@ use opendr_engine::model::{Model, ModelWriter};
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes};
 use opendr_engine::{Error, Result, Statistics, Unit, Value};
-use opendr_face_detection::face_finder::{FaceInput, largest};
+use opendr_face_detection::face_detector::{FaceInput, largest_face};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::{TRAINABLE, network_from_base};
-use opendr_training::{TrainingParams, begin, fit_network, open_for_training};
+use opendr_training::{TrainingParams, fit_network, open_for_training, seeded_device};
 
 use super::gallery::Gallery;
 use super::network::Network;
@@ -103,7 +103,7 @@ fn train(
         manifest,
         parts: parts.collect::<Result<_>>()?,
     };
-    let device = begin(job, &fit_params.training)?;
+    let device = seeded_device(job, &fit_params.training)?;
     let network = Network::new(classes, dimension, width, &device);
     // A network that was not trained by `fit`, such as the zoo's, is not a base.
     let own = Some(base).filter(|base| base.manifest().files.iter().any(|file| file.name == TRAINABLE));
@@ -166,7 +166,7 @@ fn take(
             )));
         };
         learner.faces(image, &mut faces)?;
-        let has_face = match largest(&faces) {
+        let has_face = match largest_face(&faces) {
             Some(face) => learner.embed(image, face, &mut embedding)?,
             None => false,
         };

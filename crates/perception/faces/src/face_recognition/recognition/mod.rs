@@ -20,8 +20,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_face_detection::face_finder::{FaceFinder, FaceInput, whole_picture};
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_face_detection::face_detector::{FaceDetector, FaceInput, whole_image};
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{Preprocess, Similarity};
 
 use gallery::{Gallery, normalise};
@@ -51,8 +51,8 @@ pub struct FaceRecognitionParams {
 /// 0.017).
 pub struct FaceRecognition {
     params: FaceRecognitionParams,
-    finder: FaceFinder,
-    network: PictureNetwork,
+    finder: FaceDetector,
+    network: ImageNetwork,
     gallery: Gallery,
     persons: Classes,
     unknown: Name,
@@ -94,7 +94,7 @@ impl Learner for FaceRecognition {
     type State = ();
 
     fn load(model: &Model, params: FaceRecognitionParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             let layout = if input.dims.last() == Some(&Some(3)) { Layout::Hwc } else { Layout::Chw };
             Preprocess::new(SIDE, SIDE).layout(layout)
         })?;
@@ -110,7 +110,7 @@ impl Learner for FaceRecognition {
         };
         let gallery = Gallery::of_model(model, dimension)?;
         Ok(Self {
-            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            finder: FaceDetector::open(model, params.face_threshold, device)?,
             persons: gallery.names(),
             unknown: Name::Label(Arc::from("unknown")),
             scratch: Pool::default(),
@@ -167,7 +167,7 @@ impl FaceRecognition {
 
     fn faces(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
         if self.params.picture == FaceInput::Frame {
-            return self.finder.find(image, faces);
+            return self.finder.detect(image, faces);
         }
         faces.boxes.clear();
         faces.boxes.push(BoundingBox::new(0, 0.0, 0.0, image.width() as f32, image.height() as f32, 1.0));
@@ -178,7 +178,7 @@ impl FaceRecognition {
     fn crop(&self, image: &Image, face: &BoundingBox) -> Option<Similarity> {
         match self.params.picture {
             FaceInput::Frame => Similarity::from_points(&face.landmarks, &TEMPLATE),
-            FaceInput::Face => Some(whole_picture(image, SIDE)),
+            FaceInput::Face => Some(whole_image(image, SIDE)),
         }
     }
 

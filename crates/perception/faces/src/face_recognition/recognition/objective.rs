@@ -10,7 +10,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::model::Manifest;
 use opendr_engine::target::BoundingBoxList;
 use opendr_engine::{Error, Result, Value};
-use opendr_face_detection::face_finder::{largest, whole_picture};
+use opendr_face_detection::face_detector::{largest_face, whole_image};
 use opendr_perception_common::labelled::class_of;
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
@@ -62,11 +62,11 @@ impl Collate for Collator {
             return Err(Error::invalid_input("the sample has no image; give one"));
         };
         let crop = match &self.finder {
-            None => Some(whole_picture(image, SIDE)),
+            None => Some(whole_image(image, SIDE)),
             Some(finder) => {
                 let mut faces = BoundingBoxList::default();
                 finder.faces(image, &mut faces)?;
-                largest(&faces).and_then(|face| finder.crop(image, face))
+                largest_face(&faces).and_then(|face| finder.crop(image, face))
             }
         };
         let crop = crop.ok_or_else(|| {

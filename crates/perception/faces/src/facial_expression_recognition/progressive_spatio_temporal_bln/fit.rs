@@ -7,7 +7,9 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::{ExpressionObjective, sequence_of};
@@ -49,7 +51,7 @@ impl Fit for ProgressiveSpatioTemporalBln {
         let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
         let sizes = sizes(params, &*dataset)?;
         let params = ProgressiveSpatioTemporalBlnParams { num_point: Some(sizes.points), ..params.clone() };
-        let network = BilinearNetwork::new(&sizes, classes.len(), *dropout, &begin(job, training)?);
+        let network = BilinearNetwork::new(&sizes, classes.len(), *dropout, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = ExpressionObjective { params: &params, classes, sizes };
         fit_learner::<Self, _>(&objective, network, &params, training, &*dataset, val_dataset, job)

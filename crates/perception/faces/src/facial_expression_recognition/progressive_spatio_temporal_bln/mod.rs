@@ -25,7 +25,7 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
 
 /// Parameters of [`ProgressiveSpatioTemporalBln`]. Sizes are those of a network to train; a loaded model has its own.
 #[derive(Debug, Clone, Params)]
@@ -58,7 +58,7 @@ pub struct ProgressiveSpatioTemporalBln {
     /// Shape of the network's input.
     shape: [usize; 4],
     session: Session,
-    work: Pool<ClipWork>,
+    work: Pool<ClipScratch>,
 }
 
 /// File name of the network in a container. Input: `clip` `[1, features, frames, landmarks]`. Output: `logits`
@@ -145,7 +145,7 @@ fn first_face_into(
     features: &FrameFeatures,
     sequence: &SkeletonSequence,
     frames: usize,
-    work: &mut ClipWork,
+    work: &mut ClipScratch,
 ) -> Result<()> {
     match (0..sequence.shape()[4]).any(|face| features.clip_into(sequence, face, frames, work)) {
         true => Ok(()),

@@ -9,7 +9,7 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Value};
-use opendr_perception_common::frame_features::{ClipWork, FrameFeatures};
+use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures};
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
@@ -77,7 +77,7 @@ impl Collate for LandmarkBatches {
     fn add(&self, batch: &mut LabelledBatch, sample: Sample) -> Result<()> {
         let sequence = sequence_of(&sample)?;
         self.features.check(sequence)?;
-        let mut work = ClipWork::default();
+        let mut work = ClipScratch::default();
         first_face_into(&self.features, sequence, self.frames, &mut work)?;
         batch.push(&work.clip, class_of(&sample, self.classes)?);
         Ok(())

@@ -3,8 +3,8 @@ use std::f32::consts::TAU;
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::ExpressionObjective;
@@ -83,7 +83,7 @@ fn infer_loads_the_model_of_fit() {
     let one = SkeletonSequence::new(vec![1.0, 2.0], [1, 2, 1, 1, 1]).unwrap();
     assert_eq!(handle.infer(&one).unwrap_err().kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Faces.get(index).unwrap().data).collect();
-    check::<ProgressiveSpatioTemporalBln>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<ProgressiveSpatioTemporalBln>(&job.model(), &output.join("scratch"), calls);
     let params = ProgressiveSpatioTemporalBlnParams { num_point: Some(68), ..Default::default() };
     let mut other = Handle::<ProgressiveSpatioTemporalBln>::new(params, Device::Cpu).unwrap();
     assert_eq!(other.load(job.model()).unwrap_err().kind(), ErrorKind::InvalidParam);

@@ -1,7 +1,7 @@
 //! Crops of the networks' inputs (MediaPipe's face and iris graphs).
 
 use opendr_engine::target::{BoundingBox, Keypoint};
-use opendr_face_detection::face_finder::{eye_angle, square_around};
+use opendr_face_detection::face_detector::{eye_angle, square_around};
 use opendr_vision::Similarity;
 
 /// Indices of the outer and inner corner of the eye on the image's left, and of the inner and outer one of the other eye.

@@ -12,10 +12,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_face_detection::face_finder::FaceFinder;
+use opendr_face_detection::face_detector::FaceDetector;
 use opendr_inference::{TensorInfo, default_threads, with_threads};
 use opendr_kernels::WorkerPool;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{Preprocess, Similarity};
 
 use crop::EYES;
@@ -43,10 +43,10 @@ pub struct FaceMeshParams {
 /// the confidence of a point is that of its face.
 pub struct FaceMesh {
     params: FaceMeshParams,
-    finder: FaceFinder,
-    mesh: PictureNetwork,
+    finder: FaceDetector,
+    mesh: ImageNetwork,
     /// Networks of the irises, one per eye and thread: the network is too small to run on several threads.
-    irises: [PictureNetwork; 2],
+    irises: [ImageNetwork; 2],
     eyes: WorkerPool,
     outputs: MeshOutputs,
     iris_at: IrisAt,
@@ -104,7 +104,7 @@ fn preprocess(input: &TensorInfo, side: usize) -> Preprocess {
 }
 
 /// Returns the index of the output with `numbers` values.
-fn output_of(network: &PictureNetwork, numbers: usize) -> Option<usize> {
+fn output_of(network: &ImageNetwork, numbers: usize) -> Option<usize> {
     let size =
         |output: &TensorInfo| output.dims.iter().skip(1).try_fold(1, |size, side| Some(size * (*side)?));
     network.outputs().iter().position(|output| size(output) == Some(numbers))
@@ -120,9 +120,9 @@ impl Learner for FaceMesh {
     type State = FaceTracks;
 
     fn load(model: &Model, params: FaceMeshParams, device: Device) -> Result<Self> {
-        let mesh = PictureNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
+        let mesh = ImageNetwork::open_file(model, FILES[0], device, |input| Ok(preprocess(input, SIDE)))?;
         let open_iris =
-            || PictureNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)));
+            || ImageNetwork::open_file(model, FILES[1], device, |input| Ok(preprocess(input, EYE_SIDE)));
         let irises = with_threads(1, || Ok::<_, Error>([open_iris()?, open_iris()?]))?;
         let [iris, _] = &irises;
         let (Some(points), Some(presence)) = (output_of(&mesh, 3 * MESH), output_of(&mesh, 1)) else {
@@ -143,7 +143,7 @@ impl Learner for FaceMesh {
             )));
         };
         Ok(Self {
-            finder: FaceFinder::open(model, params.face_threshold, device)?,
+            finder: FaceDetector::open(model, params.face_threshold, device)?,
             outputs: MeshOutputs { points, presence },
             scratch: Pool::default(),
             mesh,
@@ -176,7 +176,7 @@ impl Learner for FaceMesh {
             found += self.predict(track, found, image, state, poses)?;
         }
         if found < most {
-            self.finder.find(image, faces)?;
+            self.finder.detect(image, faces)?;
             for face in &faces.boxes {
                 let crop = crop::of_found(face, SIDE);
                 let is_known = state.tracks.iter().any(|track| crop::is_same(&track.crop, &crop, SIDE));
@@ -254,7 +254,7 @@ impl FaceMesh {
     /// missing when there is no valid crop.
     fn iris(
         &self,
-        network: &PictureNetwork,
+        network: &ImageNetwork,
         image: &Image,
         corners: [usize; 2],
         is_mirrored: bool,

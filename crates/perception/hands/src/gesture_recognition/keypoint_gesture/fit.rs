@@ -7,7 +7,9 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::{KeypointGestureNetwork, NetworkSizes};
 use super::objective::{GestureObjective, row_of};
@@ -49,7 +51,7 @@ impl Fit for KeypointGesture {
         let numbers = row_of(&dataset.get(0)?)?.len();
         let KeypointGestureParams { hidden, dropout } = *params;
         let sizes = NetworkSizes { numbers, classes: classes.len(), hidden, dropout };
-        let network = KeypointGestureNetwork::new(&sizes, &begin(job, training)?);
+        let network = KeypointGestureNetwork::new(&sizes, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = GestureObjective { sizes, params, classes };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)

@@ -4,7 +4,7 @@ use std::array;
 
 use opendr_engine::target::Skeleton;
 use opendr_engine::{Error, Result};
-use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
+use opendr_perception_common::rotated_square::{RotatedSquare, angle_upwards};
 use opendr_vision::Similarity;
 
 /// Number of joints of a hand.
@@ -59,11 +59,11 @@ impl Hand {
 
     /// Returns the square of the hand in the next frame (MediaPipe's rectangle): twice the extent of the steady joints,
     /// with the fingers upwards.
-    pub fn next_square(&self) -> Option<TurnedSquare> {
+    pub fn next_square(&self) -> Option<RotatedSquare> {
         let [wrist, index, middle, ring] = [0, 5, 9, 13].map(|joint| self.joints[joint]);
         let knuckles = array::from_fn(|axis| ((index[axis] + ring[axis]) / 2.0 + middle[axis]) / 2.0);
         let steady = STEADY.iter().map(|joint| self.joints[*joint]);
-        TurnedSquare::around(steady, angle_upwards(wrist, knuckles)).map(|square| square.moved(-0.1, 2.0))
+        RotatedSquare::around(steady, angle_upwards(wrist, knuckles)).map(|square| square.moved(-0.1, 2.0))
     }
 
     /// Returns whether `other` is the same hand in another crop: the mean distance of joints is below a tenth of the hand's

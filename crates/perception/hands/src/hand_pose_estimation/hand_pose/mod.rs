@@ -18,10 +18,10 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
-use opendr_perception_common::picture_network::{PictureNetwork, input_of};
+use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
+use opendr_perception_common::rotated_square::RotatedSquare;
 use opendr_perception_common::suppression::iou;
-use opendr_perception_common::turned_square::TurnedSquare;
-use opendr_vision::{Anchor, Border};
+use opendr_vision::{Border, LetterboxAlign};
 
 use self::landmarks::{Hand, JOINTS};
 use self::palm::{Anchors, PalmScratch};
@@ -52,10 +52,10 @@ pub struct HandPoseParams {
 /// A loaded hand pose estimator.
 pub struct HandPose {
     params: HandPoseParams,
-    palms: PictureNetwork,
+    palms: ImageNetwork,
     palm_side: usize,
     anchors: Anchors,
-    hands: PictureNetwork,
+    hands: ImageNetwork,
     hand_side: usize,
     /// Indices of the outputs: joints, presence and handedness.
     outputs: [usize; 3],
@@ -66,16 +66,16 @@ pub struct HandPose {
 #[derive(Default)]
 struct Scratch {
     palms: PalmScratch,
-    found: Vec<TurnedSquare>,
+    found: Vec<RotatedSquare>,
     /// Squares to process, with the identity of a tracked hand.
-    squares: Vec<(TurnedSquare, Option<i64>)>,
+    squares: Vec<(RotatedSquare, Option<i64>)>,
 }
 
 /// State of a stream: the squares of its hands.
 #[derive(Default)]
 pub struct HandPoseState {
     size: [usize; 2],
-    tracks: Vec<(TurnedSquare, i64)>,
+    tracks: Vec<(RotatedSquare, i64)>,
     next_id: i64,
 }
 
@@ -98,13 +98,16 @@ impl Learner for HandPose {
     fn load(model: &Model, params: HandPoseParams, device: Device) -> Result<Self> {
         let [palm_file, hand_file] = FILES;
         let (mut palm_side, mut hand_side) = (0, 0);
-        let palms = PictureNetwork::open_file(model, palm_file, device, |input| {
-            let preprocess = input_of(input)?.letterbox(Anchor::Centre, 0.0).normalise([0.0; 3], [255.0; 3]);
+        let palms = ImageNetwork::open_file(model, palm_file, device, |input| {
+            let preprocess = preprocess_from_input(input)?
+                .letterbox(LetterboxAlign::Centre, 0.0)
+                .normalise([0.0; 3], [255.0; 3]);
             palm_side = square_side(preprocess.size())?;
             Ok(preprocess)
         })?;
-        let hands = PictureNetwork::open_file(model, hand_file, device, |input| {
-            let preprocess = input_of(input)?.border(Border::Repeat).normalise([0.0; 3], [255.0; 3]);
+        let hands = ImageNetwork::open_file(model, hand_file, device, |input| {
+            let preprocess =
+                preprocess_from_input(input)?.border(Border::Replicate).normalise([0.0; 3], [255.0; 3]);
             hand_side = square_side(preprocess.size())?;
             Ok(preprocess)
         })?;
@@ -180,7 +183,7 @@ impl HandPose {
         })?;
         for square in found.iter().filter(|square| square.is_in([image.width(), image.height()])) {
             let known =
-                |(other, _): &(TurnedSquare, _)| iou(&other.upright(), &square.upright()) > SAME_SQUARE;
+                |(other, _): &(RotatedSquare, _)| iou(&other.upright(), &square.upright()) > SAME_SQUARE;
             if squares.len() < max_hands && !squares.iter().any(known) {
                 squares.push((*square, None));
             }
@@ -189,7 +192,7 @@ impl HandPose {
     }
 
     /// Returns the hand in a square, if there is one.
-    fn hand(&self, image: &Image, square: &TurnedSquare) -> Result<Option<Hand>> {
+    fn hand(&self, image: &Image, square: &RotatedSquare) -> Result<Option<Hand>> {
         let crop = square.crop(self.hand_side);
         let mut hand = None;
         self.hands.run_crop(image, &crop, |outputs| {

@@ -1,8 +1,8 @@
 //! Decoding of the palm detector's outputs to squares around hands.
 
 use opendr_engine::{Error, Result};
+use opendr_perception_common::rotated_square::{RotatedSquare, angle_upwards};
 use opendr_perception_common::suppression::{Candidate, keep_best, merge_overlapping};
-use opendr_perception_common::turned_square::{TurnedSquare, angle_upwards};
 use opendr_vision::InputGeometry;
 
 /// Number of values of a palm: centre, size and seven keypoints, `x, y` each, in input pixels relative to the anchor.
@@ -51,7 +51,7 @@ impl Anchors {
         geometry: &InputGeometry,
         [threshold, overlap]: [f32; 2],
         scratch: &mut PalmScratch,
-        hands: &mut Vec<TurnedSquare>,
+        hands: &mut Vec<RotatedSquare>,
     ) -> Result<()> {
         let anchors = self.0.len();
         if rows.len() != anchors * ROW || logits.len() != anchors {
@@ -95,7 +95,7 @@ impl Anchors {
             let long = (high[0] - low[0]).max(high[1] - low[1]) * geometry.scale[0];
             let angle = angle_upwards(key(WRIST), key(MIDDLE));
             // From the palm to the hand: half its height up, 2.6 times as large (MediaPipe).
-            hands.push(TurnedSquare { centre, side: long, angle }.moved(-0.5, 2.6));
+            hands.push(RotatedSquare { centre, side: long, angle }.moved(-0.5, 2.6));
         });
         Ok(())
     }

@@ -7,7 +7,9 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::front_end::Sizes;
 use super::network::AudiovisualNetwork;
@@ -56,7 +58,7 @@ impl Fit for AudiovisualEmotion {
         let AudiovisualEmotionFitParams { training, mod_drop, side, width, dropout } = fit_params;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.num_class, "num_class")?;
-        let (sizes, device) = (Sizes::new(params, *side), begin(job, training)?);
+        let (sizes, device) = (Sizes::new(params, *side), seeded_device(job, training)?);
         let inner = (*width, *dropout);
         let network = AudiovisualNetwork::new(&sizes, params.fusion, classes.len(), inner, &device);
         let network = network_from_base(network, base)?;

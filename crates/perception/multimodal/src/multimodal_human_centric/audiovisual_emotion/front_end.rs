@@ -4,7 +4,7 @@ use opendr_engine::data::{Audio, Video};
 use opendr_engine::{Pool, Result};
 use opendr_perception_common::clip_frames::ClipFrames;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
-use opendr_sound::{Sound, standardise};
+use opendr_sound::{AudioInput, standardise};
 
 use super::AudiovisualEmotionParams;
 
@@ -74,7 +74,7 @@ impl FrontEnd {
     /// # Errors
     /// `InvalidInput` for audio of another sample rate, or a sample that is NaN.
     pub fn audio_into(&self, audio: &Audio, input: &mut Vec<f32>) -> Result<()> {
-        let samples = Sound::from(audio).samples(self.sizes.sample_rate)?;
+        let samples = AudioInput::from(audio).samples(self.sizes.sample_rate)?;
         let samples = samples.get(..self.sizes.samples).unwrap_or(&samples);
         let cepstra = &mut *self.cepstra.take();
         let count = self.mfcc.run_into(samples, cepstra).min(self.sizes.instants);

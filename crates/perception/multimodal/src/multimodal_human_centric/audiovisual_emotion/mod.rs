@@ -107,8 +107,8 @@ impl Learner for AudiovisualEmotion {
         .about("Recognises the emotion of a person from voice and face; trainable.")
         .without_effect(&[
             ("pretr_ef", "the network for frames is trained jointly"),
-            ("dampening", Spec::OF_TRAINING),
-            ("n_workers", Spec::OF_TRAINING),
+            ("dampening", Spec::TRAINING_ONLY),
+            ("n_workers", Spec::TRAINING_ONLY),
         ]);
     type Params = AudiovisualEmotionParams;
     type Input<'a> = AudiovisualInputs<'a>;

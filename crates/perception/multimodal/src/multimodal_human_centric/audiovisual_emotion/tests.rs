@@ -1,8 +1,8 @@
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_training::OptimizerKind;
 
 use super::network::AudiovisualNetwork;
@@ -106,6 +106,6 @@ fn one_modality_suffices_after_training() {
     let grey = Video::new(vec![0.5; 4], [1, 1, 2, 2]).unwrap();
     assert_eq!(told(&silence, Some(&grey)).unwrap_err().kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Persons.get(index).unwrap().data).collect();
-    check::<AudiovisualEmotion>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<AudiovisualEmotion>(&job.model(), &output.join("scratch"), calls);
     std::fs::remove_dir_all(&output).ok();
 }

@@ -8,7 +8,9 @@ use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::small_classifier::SmallClassifier;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::objective::RgbdObjective;
 use super::{CHANNELS, RgbdHandGesture, RgbdHandGestureParams};
@@ -56,7 +58,7 @@ impl Fit for RgbdHandGesture {
         let RgbdHandGestureFitParams { training, side, width, dropout, drop_depth } = fit_params;
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&*dataset, params.n_class, "n_class")?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = SmallClassifier::new(CHANNELS, classes.len(), *width, *dropout, &device);
         let network = network_from_base(network, base)?;
         let objective = RgbdObjective { params, classes, side: *side, drop_depth: *drop_depth };

@@ -106,7 +106,7 @@ impl Learner for RgbdHandGesture {
         .about("Recognises hand gestures from colour and depth; trainable.")
         .without_effect(&[
             ("pretrained", "there are no pretrained weights for the network"),
-            ("n_workers", Spec::OF_TRAINING),
+            ("n_workers", Spec::TRAINING_ONLY),
             ("test_mode", "OpenDR used it to shorten its own tests"),
         ]);
     type Params = RgbdHandGestureParams;

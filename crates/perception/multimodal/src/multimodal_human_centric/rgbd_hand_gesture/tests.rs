@@ -3,8 +3,8 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
 use opendr_perception_common::small_classifier::SmallClassifier;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 use super::objective::RgbdObjective;
 use super::*;
@@ -81,7 +81,7 @@ fn infer_loads_the_model_of_fit_and_depth_decides() {
     let refused = told(&mut handle, &depth, &image).unwrap_err();
     assert_eq!(refused.kind(), ErrorKind::InvalidInput);
     let calls = (0..3).map(|index| Hands.get(index).unwrap().data).collect();
-    check::<RgbdHandGesture>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<RgbdHandGesture>(&job.model(), &output.join("scratch"), calls);
     let params = RgbdHandGestureParams { n_class: Some(16), ..Default::default() };
     let mut other = Handle::<RgbdHandGesture>::new(params, Device::Cpu).unwrap();
     assert_eq!(other.load(job.model()).unwrap_err().kind(), ErrorKind::InvalidParam);

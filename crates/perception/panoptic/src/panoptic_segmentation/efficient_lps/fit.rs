@@ -8,7 +8,9 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::{RangeNetwork, STAGES};
 use super::objective::LabelledScans;
@@ -71,7 +73,7 @@ impl Fit for EfficientLps {
                 classes.len()
             )));
         }
-        let device = begin(job, &fit_params.training)?;
+        let device = seeded_device(job, &fit_params.training)?;
         let network = RangeNetwork::new(classes.len(), fit_params.width, &device);
         let network = network_from_base(network, base)?;
         let objective = LabelledScans { classes, things: params.things.clone(), view };

@@ -195,7 +195,7 @@ impl Learner for EfficientLps {
         depth.scores_mut(&[0, 0]);
         let points = instance.labels_mut(&[cloud.len()]).iter_mut().zip(semantic.labels_mut(&[cloud.len()]));
         for (point, (instance, semantic)) in points.enumerate() {
-            (*instance, *semantic) = match image.speaker(point) {
+            (*instance, *semantic) = match image.pixel_for(point) {
                 Some(pixel) => (objects.labels()[pixel], classes[pixel]),
                 None => (UNKNOWN * LABEL_DIVISOR, UNKNOWN),
             };

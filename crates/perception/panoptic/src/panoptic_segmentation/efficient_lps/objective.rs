@@ -3,7 +3,7 @@
 use burn::tensor::activation::log_softmax;
 use burn::tensor::{Device, Int, Tensor, TensorData};
 use opendr_clouds::object_detection_3d::Scan;
-use opendr_clouds::range_image::{NOWHERE, RangeImage, RangeView};
+use opendr_clouds::range_image::{NONE, RangeImage, RangeView};
 use opendr_datasets::loader::Collate;
 use opendr_engine::dataset::Sample;
 use opendr_engine::learner::Learner as _;
@@ -82,7 +82,7 @@ impl Collate for ScanCollator {
         fill_canvas(&image, scan.cloud(), &mut canvas);
         for point in image.points() {
             let class = match *point {
-                NOWHERE => UNKNOWN,
+                NONE => UNKNOWN,
                 point => labels[point as usize] / LABEL_DIVISOR,
             };
             if class != UNKNOWN && class as usize >= self.classes {

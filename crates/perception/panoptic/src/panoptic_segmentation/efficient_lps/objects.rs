@@ -1,8 +1,8 @@
 //! Grouping of points of a class into objects.
 
-use opendr_clouds::range_image::{NOWHERE, RangeImage};
+use opendr_clouds::range_image::{NONE, RangeImage};
 use opendr_engine::data::PointCloud;
-use opendr_vision::components::{Components, Touching};
+use opendr_vision::components::{Components, Connectivity};
 
 use super::{LABEL_DIVISOR, UNKNOWN};
 
@@ -43,20 +43,20 @@ impl Objects {
         let points = image.points();
         representatives.clear();
         representatives.extend((0..points.len()).map(|at| match points[at] {
-            NOWHERE if at % columns > 0 => points[at - 1],
+            NONE if at % columns > 0 => points[at - 1],
             own => own,
         }));
         // The class is that of the representing point's own pixel.
         let class = |at: usize| match points[at] {
-            NOWHERE => classes[at.saturating_sub(1)],
+            NONE => classes[at.saturating_sub(1)],
             _ => classes[at],
         };
         let (values, channels) = (cloud.as_slice(), cloud.channels());
         let place = |at: usize| &values[representatives[at] as usize * channels..][..3];
         let count = components.label(
             size,
-            Touching::Corners,
-            |at| representatives[at] != NOWHERE && rule.things.contains(&class(at)),
+            Connectivity::Eight,
+            |at| representatives[at] != NONE && rule.things.contains(&class(at)),
             |one, other| {
                 let apart = place(one).iter().zip(place(other)).map(|(a, b)| (a - b).powi(2)).sum::<f32>();
                 class(one) == class(other) && apart <= rule.gap * rule.gap
@@ -69,7 +69,7 @@ impl Objects {
         labels.clear();
         for (at, component) in components.labels().iter().enumerate() {
             let class = classes[at];
-            if *component == 0 || points[at] == NOWHERE {
+            if *component == 0 || points[at] == NONE {
                 labels.push(class * LABEL_DIVISOR);
                 continue;
             }

@@ -3,8 +3,8 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::HeatmapValues;
 use opendr_engine::{ErrorKind, Random, Value};
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 use opendr_simulation::street::StreetSegments;
 
 use super::network::RangeNetwork;
@@ -117,7 +117,7 @@ fn infer_loads_the_model_of_fit_and_boards_are_objects() {
     let strange = PointCloud::new(vec![f32::NAN, 1.0, 1.0, f32::INFINITY, 0.0, 0.0], [2, 3]).unwrap();
     assert_eq!(labels(&handle.infer(Scan::from(&strange)).unwrap().instance), [255_000; 2]);
     let calls = (0..3).map(|index| Boards.get(index).unwrap().data).collect();
-    check::<EfficientLps>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<EfficientLps>(&job.model(), &output.join("scratch"), calls);
     handle.set("projected", true.into()).unwrap();
     let found = handle.infer(Scan::from(cloud)).unwrap();
     assert_eq!((found.instance.shape(), found.depth.shape()), (&[ROWS, COLUMNS][..], &[ROWS, COLUMNS][..]));

@@ -6,7 +6,7 @@
 //! completely, smaller ones over larger ones. The remaining pixels are stuff.
 
 use opendr_segmentation::instance_segmentation::OwnerMap;
-use opendr_vision::components::{Components, Touching};
+use opendr_vision::components::{Components, Connectivity};
 
 /// A label is this times its class plus the index of the object within its class.
 pub(super) const LABEL_DIVISOR: u32 = 1000;
@@ -156,7 +156,7 @@ impl Fusion {
         let free = &*labels;
         self.components.label(
             predictions.size,
-            Touching::Sides,
+            Connectivity::Four,
             |at| free[at] == VOID && predictions.thing(at).is_some(),
             |one, other| predictions.thing(one) == predictions.thing(other),
         );

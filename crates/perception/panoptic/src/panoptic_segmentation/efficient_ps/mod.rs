@@ -98,17 +98,17 @@ impl Learner for EfficientPs {
         .about("Predicts class and instance of every pixel by fusing DeepLab, CenterNet and BodyPix.")
         .without_effect(&[
             ("config_file", "the learner has no network of its own"),
-            ("lr", Spec::OF_TRAINING),
-            ("iters", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
-            ("optimizer", Spec::OF_TRAINING),
-            ("lr_schedule", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("optimizer_config", Spec::OF_TRAINING),
-            ("checkpoint_after_iter", Spec::OF_TRAINING),
-            ("num_workers", Spec::OF_TRAINING),
-            ("seed", Spec::OF_TRAINING),
+            ("lr", Spec::TRAINING_ONLY),
+            ("iters", Spec::TRAINING_ONLY),
+            ("batch_size", Spec::TRAINING_ONLY),
+            ("optimizer", Spec::TRAINING_ONLY),
+            ("lr_schedule", Spec::TRAINING_ONLY),
+            ("momentum", Spec::TRAINING_ONLY),
+            ("weight_decay", Spec::TRAINING_ONLY),
+            ("optimizer_config", Spec::TRAINING_ONLY),
+            ("checkpoint_after_iter", Spec::TRAINING_ONLY),
+            ("num_workers", Spec::TRAINING_ONLY),
+            ("seed", Spec::TRAINING_ONLY),
         ]);
     type Params = EfficientPsParams;
     type Input<'a> = &'a Image;
@@ -171,7 +171,7 @@ impl Learner for EfficientPs {
         instance.classes.clone_from(&self.classes);
         semantic.classes.clone_from(&self.classes);
         let (things, stuff) = (labels(things)?, labels(stuff)?);
-        self.persons.look(image, |persons, _| {
+        self.persons.segment(image, |persons, _| {
             let predictions = Predictions {
                 size,
                 things,

@@ -171,7 +171,7 @@ impl Learner for HighResolutionPoseEstimation {
             self.network.find_with(&settings, view, params.first_pass_height, &mut poses.poses, |maps| {
                 let input = maps.grid();
                 grid.reset(input.columns, input.rows);
-                grid.mark(|column, row| maps.highest(column, row) > params.heatmap_threshold);
+                grid.mark(|column, row| maps.max_heat(column, row) > params.heatmap_threshold);
             })
         })?;
         let is_all = self.search.choose(params, size, &state.persons, &mut state.turns, looks);
@@ -182,7 +182,7 @@ impl Learner for HighResolutionPoseEstimation {
             found.clear();
             self.network.find_with(&settings, part, look.height, found, |_| {})?;
             for mut pose in found.drain(..) {
-                for joint in pose.keypoints.iter_mut().filter(|joint| joint.is_found()) {
+                for joint in pose.keypoints.iter_mut().filter(|joint| joint.is_detected()) {
                     (joint.x, joint.y) = (joint.x + x as f32, joint.y + y as f32);
                 }
                 add_person(&mut poses.poses, pose);
@@ -251,7 +251,7 @@ fn add_person(poses: &mut Vec<Pose>, pose: Pose) {
 fn is_same(a: &Pose, b: &Pose) -> bool {
     let extent = |pose: &Pose| pose.bounding_box().map_or(0.0, |[_, _, width, height]| width.max(height));
     let (mut sum, mut shared) = (0.0, 0.0);
-    for (a, b) in a.keypoints.iter().zip(&b.keypoints).filter(|(a, b)| a.is_found() && b.is_found()) {
+    for (a, b) in a.keypoints.iter().zip(&b.keypoints).filter(|(a, b)| a.is_detected() && b.is_detected()) {
         sum += (a.x - b.x).hypot(a.y - b.y);
         shared += 1.0;
     }

@@ -2,7 +2,7 @@
 
 use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
-use opendr_perception_common::regions::{CellGrid, CoarsePicture, Region, join_overlapping};
+use opendr_perception_common::regions::{CellBrightness, CellGrid, Region, merge_overlapping};
 
 use super::{HighResolutionPoseEstimationParams, RegionMethod};
 
@@ -23,7 +23,7 @@ pub(super) struct Search {
 struct Scratch {
     grid: CellGrid,
     detail: CellGrid,
-    coarse: CoarsePicture,
+    coarse: CellBrightness,
     regions: Vec<Region>,
     known: Vec<Look>,
 }
@@ -54,7 +54,7 @@ impl Search {
         first(grid)?;
         regions.clear();
         grid.take_regions(size, MOST_GROUPS, regions);
-        let all = regions.iter().copied().reduce(|a, b| a.joined(&b));
+        let all = regions.iter().copied().reduce(|a, b| a.union(&b));
         if params.method == RegionMethod::Primary {
             regions.clear();
             regions.extend(all);
@@ -99,7 +99,7 @@ impl Search {
         regions.clear();
         regions.extend(persons.iter().copied());
         grow(regions, params.percentage_around_crop, size);
-        looks.retain(|look| !regions.iter().any(|region| region.joined(&look.region) == *region));
+        looks.retain(|look| !regions.iter().any(|region| region.union(&look.region) == *region));
         known.clear();
         known
             .extend(regions.iter().map(|region| Look { region: *region, height: height_of(region, params) }));
@@ -155,12 +155,12 @@ fn take(looks: &mut Vec<Look>, share: &Share, turn: &mut usize) {
 fn mark_detail(
     view: ImageView<'_>,
     params: &HighResolutionPoseEstimationParams,
-    coarse: &mut CoarsePicture,
+    coarse: &mut CellBrightness,
     detail: &mut CellGrid,
 ) -> Result<()> {
     let rows = params.first_pass_height.div_ceil(CELL).max(1);
     let columns = (rows * view.width()).div_ceil(view.height().max(1)).clamp(1, 8 * rows);
-    coarse.look(view, columns, rows, CELL)?;
+    coarse.compute(view, columns, rows, CELL)?;
     detail.reset(columns, rows);
     detail.mark(|column, row| f32::from(coarse.range(column, row)) > params.detail_threshold);
     Ok(())
@@ -168,7 +168,7 @@ fn mark_detail(
 
 fn grow(regions: &mut Vec<Region>, share: f32, size: [usize; 2]) {
     regions.iter_mut().for_each(|region| *region = region.grown(share, size));
-    join_overlapping(regions);
+    merge_overlapping(regions);
 }
 
 fn height_of(region: &Region, params: &HighResolutionPoseEstimationParams) -> usize {

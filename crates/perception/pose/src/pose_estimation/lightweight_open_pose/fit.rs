@@ -8,9 +8,9 @@ use opendr_engine::learner::{Fit, FitJob};
 use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
-use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_processor};
+use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_cpu};
 use opendr_training::weights::{Rules, WeightTable};
-use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::{Network, NetworkConfig};
 use super::objective::{CONFIG, PoseObjective};
@@ -70,7 +70,7 @@ impl Fit for LightweightOpenPose {
         val_dataset: Option<DatasetRef<'_>>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        let device = begin(job, &fit_params.training)?;
+        let device = seeded_device(job, &fit_params.training)?;
         let (config, network) = match base {
             Some(base) => fit_params.network_of(base, &device)?,
             None => fit_params.new_network(&device)?,
@@ -87,7 +87,7 @@ impl Fit for LightweightOpenPose {
             side,
             base_height: params.base_height,
             augment: fit_params.augment,
-            frozen: (fit_params.freeze && is_on_processor(job)?).then(backbone).transpose()?,
+            frozen: (fit_params.freeze && is_on_cpu(job)?).then(backbone).transpose()?,
         };
         let dataset = open_for_training::<Self>(dataset, job)?;
         fit_learner::<Self, _>(&objective, network, params, &fit_params.training, &*dataset, val_dataset, job)

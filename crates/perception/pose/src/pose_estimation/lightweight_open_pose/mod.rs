@@ -26,10 +26,10 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::picture_network::PictureNetwork;
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
-use crate::pose_estimation::part_affinity::{Grid, Memory, PartAffinity, PartMaps, Person};
+use crate::pose_estimation::part_affinity::{Grid, PartAffinity, PartMaps, Person, Scratch};
 use crate::pose_estimation::pose_tracks::PoseTracks;
 
 /// Parameters of [`LightweightOpenPose`].
@@ -58,7 +58,7 @@ pub struct LightweightOpenPoseParams {
 /// A loaded Lightweight OpenPose.
 pub struct LightweightOpenPose {
     params: LightweightOpenPoseParams,
-    network: PictureNetwork,
+    network: ImageNetwork,
     size: InputSize,
     heat: usize,
     fields: usize,
@@ -67,7 +67,7 @@ pub struct LightweightOpenPose {
 
 #[derive(Default)]
 struct Scratch {
-    memory: Memory,
+    memory: Scratch,
     persons: Vec<Person>,
 }
 
@@ -109,11 +109,13 @@ impl Learner for LightweightOpenPose {
 
     fn load(model: &Model, params: LightweightOpenPoseParams, device: Device) -> Result<Self> {
         let mut size = InputSize::Free;
-        let network = PictureNetwork::open(model, device, |input| {
+        let network = ImageNetwork::open(model, device, |input| {
             size = InputSize::of_network(&input.dims);
             let [width, height] = size.of_picture([4, 3], params.base_height);
             // The padding is grey, as that of augmented images.
-            Preprocess::new(width, height).letterbox(Anchor::Centre, LEVEL).normalise([LEVEL; 3], [LEVEL; 3])
+            Preprocess::new(width, height)
+                .letterbox(LetterboxAlign::Centre, LEVEL)
+                .normalise([LEVEL; 3], [LEVEL; 3])
         })?;
         let [heat, fields] = OUTPUTS;
         let (heat, fields) = (network.output(heat)?, network.output(fields)?);
@@ -197,7 +199,7 @@ impl LightweightOpenPose {
 /// Converts a person to image pixels; joints in the padding are moved to the image's border.
 fn pose_in_image(person: &Person, geometry: &InputGeometry) -> Pose {
     let keypoint = |joint: &Keypoint| {
-        if !joint.is_found() {
+        if !joint.is_detected() {
             return Keypoint::MISSING;
         }
         let [x, y] = geometry.image_from_input([joint.x, joint.y]);

@@ -9,17 +9,17 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamValue;
 use opendr_engine::target::{BoundingBox, Keypoint, Pose, PoseList};
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::dynamic_sides::with_dynamic_sides;
 use opendr_perception_common::frozen_layers::FrozenLayers;
-use opendr_perception_common::joints::opendr_joints;
-use opendr_perception_common::open_sides::open_sides;
+use opendr_perception_common::joints::opendr_joints_from_pose;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
-use opendr_vision::{Anchor, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use super::network::{Maps, Network, NetworkConfig};
 use super::person_crop::PersonCrop;
 use super::{LEVEL, LightweightOpenPose, OUTPUTS, STRIDE};
-use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, Painter};
+use crate::pose_estimation::part_affinity::{FIELDS, Grid, HEAT_MAPS, JOINTS, MapEncoder};
 
 /// Training objective of Lightweight OpenPose. Samples are images with [`PoseList`]s of OpenDR's or COCO's joints.
 pub(super) struct PoseObjective {
@@ -93,7 +93,7 @@ impl Objective for PoseObjective {
         Ok(Container {
             manifest: self.manifest(),
             files: vec![
-                ("model.onnx".to_owned(), open_sides(&onnx)?),
+                ("model.onnx".to_owned(), with_dynamic_sides(&onnx)?),
                 (CONFIG.to_owned(), self.config.to_string().into_bytes()),
             ],
         })
@@ -116,7 +116,7 @@ impl PoseObjective {
 /// Collates samples with one image and its [`PoseList`] into [`PoseBatch`]es.
 pub(super) struct PoseBatches {
     preprocess: Preprocess,
-    painter: Painter,
+    painter: MapEncoder,
     grid: Grid,
 }
 
@@ -150,10 +150,10 @@ impl PoseBatches {
         Self {
             // The loader is parallel already.
             preprocess: Preprocess::new(side, side)
-                .letterbox(Anchor::Centre, LEVEL)
+                .letterbox(LetterboxAlign::Centre, LEVEL)
                 .normalise([LEVEL; 3], [LEVEL; 3])
                 .threads(1),
-            painter: Painter::default(),
+            painter: MapEncoder::default(),
             grid: Grid { rows: cells, columns: cells, stride: STRIDE as f32 },
         }
     }
@@ -163,7 +163,7 @@ impl PoseBatches {
         let crowd = |region: &BoundingBox| region.segment.as_ref().is_some_and(|segment| segment.iscrowd);
         let unknown = poses.poses.iter().filter_map(|pose| {
             let region = pose.region.as_deref()?;
-            let joints = pose.keypoints.iter().any(Keypoint::is_found);
+            let joints = pose.keypoints.iter().any(Keypoint::is_detected);
             (!joints || crowd(region)).then(|| region.corners())
         });
         for [x0, y0, x1, y1] in unknown {
@@ -208,7 +208,7 @@ impl Collate for PoseBatches {
         let geometry =
             self.preprocess.run_into(image.view(), last(pictures, *count, self.preprocess.len()))?;
         let joints = |pose: &Pose| -> [Keypoint; JOINTS] {
-            opendr_joints(pose).map(|joint| match joint.is_found() {
+            opendr_joints_from_pose(pose).map(|joint| match joint.is_detected() {
                 true => {
                     let [x, y] = geometry.input_from_image([joint.x, joint.y]);
                     Keypoint { x, y, ..joint }
@@ -218,7 +218,7 @@ impl Collate for PoseBatches {
         };
         let persons: Vec<_> = poses.poses.iter().map(joints).collect();
         let (heat, fields) = (last(heat, *count, HEAT_MAPS * cells), last(fields, *count, FIELDS * cells));
-        self.painter.paint(self.grid, &persons, heat, fields);
+        self.painter.encode(self.grid, &persons, heat, fields);
         let mask = last(mask, *count, cells);
         mask.fill(1.0);
         self.paint_mask(poses, &geometry, mask);

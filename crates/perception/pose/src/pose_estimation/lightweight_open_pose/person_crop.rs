@@ -1,6 +1,8 @@
 //! Augmentation: crops around persons.
 
-use opendr_datasets::augment::{Augment, Augmentation, Border, Others, PictureMap, picture_size, transform};
+use opendr_datasets::augment::{
+    AffineMap, Augment, Augmentation, Border, OtherSamples, image_size, transform,
+};
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result, Value};
@@ -38,8 +40,8 @@ impl Augmentation for PersonCrop {
 }
 
 impl Augment for PersonCrop {
-    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &Others<'_>) -> Result<()> {
-        let size = picture_size(sample)?;
+    fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
+        let size = image_size(sample)?;
         let ([centre_x, centre_y], extent) = person_of(sample, random).unwrap_or_else(|| {
             let [width, height] = size.map(|side| side as f32);
             let anywhere = [random.uniform(0.25, 0.75) * width, random.uniform(0.25, 0.75) * height];
@@ -55,7 +57,7 @@ impl Augment for PersonCrop {
         let (x, y) = (f64::from(centre_x), f64::from(centre_y));
         let matrix =
             [[across, down, to_x - across * x - down * y], [-down, across, to_y + down * x - across * y]];
-        transform(sample, &PictureMap::new(matrix, size, [self.size; 2]), &Border::default())
+        transform(sample, &AffineMap::new(matrix, size, [self.size; 2]), &Border::default())
     }
 }
 

@@ -168,17 +168,17 @@ fn persons_without_joints_are_ignored() {
 
 #[test]
 fn crops_contain_persons() {
-    use opendr_datasets::augment::{Augment as _, Others};
+    use opendr_datasets::augment::{Augment as _, OtherSamples};
     let crop = person_crop::PersonCrop { size: 64, ..Default::default() };
     for seed in 0..20 {
         let mut sample = figure(30.0);
-        crop.apply(&mut sample, &mut Random::new(seed), &Others::none()).unwrap();
+        crop.apply(&mut sample, &mut Random::new(seed), &OtherSamples::none()).unwrap();
         let (Some(Value::Image(image)), Some(Value::PoseList(poses))) = (sample.data.first(), &sample.target)
         else {
             unreachable!()
         };
         assert_eq!((image.width(), image.height(), image.format()), (64, 64, PixelFormat::Rgb));
-        let found = poses.poses[0].keypoints.iter().filter(|joint| joint.is_found()).count();
+        let found = poses.poses[0].keypoints.iter().filter(|joint| joint.is_detected()).count();
         assert!(found >= JOINTS / 2, "{found} joints with seed {seed}");
     }
 }

@@ -71,7 +71,7 @@ impl<'a> PartMaps<'a> {
     }
 
     /// Returns the maximum of a cell's heatmaps without the background.
-    pub fn highest(&self, column: usize, row: usize) -> f32 {
+    pub fn max_heat(&self, column: usize, row: usize) -> f32 {
         let cell = row * self.grid.columns + column;
         let joints = self.heat.chunks_exact(self.grid.cells()).take(JOINTS);
         joints.filter_map(|map| map.get(cell)).copied().fold(f32::NEG_INFINITY, f32::max)

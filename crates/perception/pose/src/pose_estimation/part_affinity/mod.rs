@@ -25,7 +25,7 @@ use limbs::Candidate;
 pub use limbs::LIMBS;
 pub use maps::{Grid, PartMaps};
 use opendr_engine::target::Keypoint;
-pub use paint::Painter;
+pub use paint::MapEncoder;
 use peaks::Peak;
 use persons::Growing;
 
@@ -78,7 +78,7 @@ impl Default for PartAffinity {
 
 /// Work memory of [`PartAffinity::decode`].
 #[derive(Debug, Clone, Default)]
-pub struct Memory {
+pub struct Scratch {
     peaks: Vec<Peak>,
     candidates: Vec<Candidate>,
     growing: Growing,
@@ -91,8 +91,8 @@ impl PartAffinity {
     /// Fills `persons`, highest score first. Nothing is allocated once `memory` and `persons` are large enough.
     ///
     /// At most 64 peaks per joint are used, the highest. NaN and infinite values have no peaks and no limbs.
-    pub fn decode(&self, maps: &PartMaps<'_>, memory: &mut Memory, persons: &mut Vec<Person>) {
-        let Memory { peaks, candidates, growing } = memory;
+    pub fn decode(&self, maps: &PartMaps<'_>, memory: &mut Scratch, persons: &mut Vec<Person>) {
+        let Scratch { peaks, candidates, growing } = memory;
         let ends = peaks::find(self, maps, peaks);
         limbs::find(self, maps, peaks, &ends, candidates);
         growing.grow(peaks, candidates);

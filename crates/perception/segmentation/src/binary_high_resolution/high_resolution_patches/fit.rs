@@ -7,7 +7,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics, ValueType};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, TrainingParams, begin, fit_learner};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, seeded_device};
 
 use super::network::PatchNetwork;
 use super::objective::Patches;
@@ -47,7 +47,7 @@ impl Fit for HighResolutionPatches {
     ) -> Result<Statistics> {
         let HighResolutionPatchesFitParams { training, patches } = fit_params;
         let dataset = open(dataset, job)?;
-        let network = PatchNetwork::new(params.architecture, &begin(job, training)?);
+        let network = PatchNetwork::new(params.architecture, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = Patches { params, most: *patches };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)

@@ -20,8 +20,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes, Heatmap};
 use opendr_engine::{Device, Error, Result, Task};
-use opendr_perception_common::category_scores::category_of_two;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::category_scores::binary_category;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::Preprocess;
 
 #[cfg(feature = "training")]
@@ -69,7 +69,7 @@ pub struct HighResolutionPatchesTargets {
 pub struct HighResolutionPatches {
     params: HighResolutionPatchesParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
 }
 
 /// Output of the network: logits `[1, 2, rows, columns]` of background and object.
@@ -93,7 +93,7 @@ impl Learner for HighResolutionPatches {
     type State = ();
 
     fn load(model: &Model, params: HighResolutionPatchesParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| preprocess(params.architecture.side()))?;
+        let network = ImageNetwork::open(model, device, |_| preprocess(params.architecture.side()))?;
         network.output(LOGITS)?;
         Ok(Self { params, classes: model.classes().clone(), network })
     }
@@ -140,7 +140,7 @@ impl Learner for HighResolutionPatches {
             }
             let best = scores.iter().copied().fold(0.0, f32::max);
             map.classes.clone_from(&self.classes);
-            category_of_two(category, best > 0.5, best, &self.classes);
+            binary_category(category, best > 0.5, best, &self.classes);
             Ok(())
         })
     }

@@ -10,8 +10,8 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::Params as _;
 use opendr_engine::target::BoundingBoxList;
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::dynamic_sides::with_dynamic_sides;
 use opendr_perception_common::labelled::{LabelledBatch, class_of};
-use opendr_perception_common::open_sides::open_sides;
 use opendr_perception_common::regions::Region;
 use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network};
 use opendr_training::export::{Input, onnx};
@@ -54,7 +54,7 @@ impl Objective for Patches<'_> {
         Ok(Container {
             manifest,
             files: vec![
-                ("model.onnx".to_owned(), open_sides(&model)?),
+                ("model.onnx".to_owned(), with_dynamic_sides(&model)?),
                 (TRAINABLE.to_owned(), bytes_from_network(network)?),
             ],
         })
@@ -124,7 +124,7 @@ impl PatchBatches {
             places.push((1, at(x.saturating_sub(width / 2), y.saturating_sub(height / 2))));
         }
         let count = places.len().max(1);
-        let mut random = Random::at([size[0] as u64, size[1] as u64, regions.len() as u64]);
+        let mut random = Random::from_key([size[0] as u64, size[1] as u64, regions.len() as u64]);
         for _ in 0..8 * count {
             let patch = at(random.below(size[0]), random.below(size[1]));
             let is_free = regions.iter().all(|region| !region.overlaps(&patch));

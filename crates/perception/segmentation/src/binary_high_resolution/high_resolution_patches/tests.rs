@@ -3,8 +3,8 @@ use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, HeatmapValues};
 use opendr_engine::{Random, Value};
 use opendr_perception_common::regions::Region;
+use opendr_perception_testing::learner_checks::check_trained_learner;
 use opendr_perception_testing::overfit::losses_on_one_batch;
-use opendr_perception_testing::promises::check;
 
 use super::objective::{PatchBatches, Patches};
 use super::*;
@@ -99,6 +99,6 @@ fn infer_loads_the_model_of_fit_and_detects_rings_in_large_images() {
     let tiny = handle.infer(&picture(3, [1, 1], &[])).unwrap();
     assert_eq!(tiny.map.shape(), [1, 1]);
     let calls = (0..3).map(|index| vec![Value::from(picture(index, [80, 70], &[[40, 40]]))]).collect();
-    check::<HighResolutionPatches>(&job.model(), &output.join("scratch"), calls);
+    check_trained_learner::<HighResolutionPatches>(&job.model(), &output.join("scratch"), calls);
     std::fs::remove_dir_all(&output).ok();
 }

@@ -13,8 +13,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
-use opendr_perception_common::picture_network::PictureNetwork;
 use opendr_vision::{InputGeometry, Preprocess};
 
 use super::OwnerMap;
@@ -47,7 +47,7 @@ pub struct BodyPixParams {
 pub struct BodyPix {
     params: BodyPixParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     /// Indices of the outputs: segments, heatmaps, short offsets, both displacements, long offsets.
     outputs: [usize; 6],
     work: Pool<Work>,
@@ -99,7 +99,7 @@ impl Learner for BodyPix {
     type State = ();
 
     fn load(model: &Model, params: BodyPixParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open(model, device, |_| {
+        let network = ImageNetwork::open(model, device, |_| {
             Preprocess::new(STRIDE + 1, STRIDE + 1).layout(Layout::Hwc).normalise([127.5; 3], [127.5; 3])
         })?;
         let mut outputs = [0; 6];
@@ -124,7 +124,7 @@ impl Learner for BodyPix {
     fn infer_into(&self, _: &mut (), image: &Image, found: &mut BoundingBoxList) -> Result<()> {
         found.classes.clone_from(&self.classes);
         found.boxes.clear();
-        self.look(image, |owners, persons| {
+        self.segment(image, |owners, persons| {
             for (number, person) in (1..).zip(persons) {
                 let score = person.score.min(1.0);
                 found.boxes.extend(owners.bounding_box(number, Name::Index(0), score)?);
@@ -141,14 +141,14 @@ impl BodyPix {
     ///
     /// # Errors
     /// `Format` when the network returns maps of other sizes; the errors of the runtime.
-    pub fn look<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
+    pub fn segment<T>(&self, image: &Image, each: impl FnOnce(&OwnerMap, &[Person]) -> T) -> Result<T> {
         let Work { planes, peaks, persons, squares, across, owners } = &mut *self.work.take();
         let params = &self.params;
         let size = [image.width(), image.height()];
         let tree = PartTree {
             peak_threshold: params.peak_threshold,
             radius: params.nms_radius,
-            most: params.max_detections,
+            max_persons: params.max_detections,
         };
         self.network.run_sized(image.view(), input_size(size, params.resolution), |outputs, geometry| {
             let ([rows, columns], maps) = self.maps(outputs)?;

@@ -7,7 +7,9 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{
+    OptimizerKind, ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device,
+};
 
 use super::network::BisenetNetwork;
 use super::objective::SegmentPixels;
@@ -64,7 +66,7 @@ impl Fit for Bisenet {
         }
         let dataset = open_for_training::<Self>(dataset, job)?;
         let classes = classes_to_train(&dataset, params.num_classes, "num_classes")?;
-        let device = begin(job, training)?;
+        let device = seeded_device(job, training)?;
         let network = BisenetNetwork::new(classes.len(), width, &device);
         let network = network_from_base(network, base)?;
         let objective = SegmentPixels { classes, size, crop, flip };

@@ -18,8 +18,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::described_input::described_input;
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 
@@ -43,7 +43,7 @@ pub struct BisenetParams {
 pub struct Bisenet {
     params: BisenetParams,
     classes: Classes,
-    network: PictureNetwork,
+    network: ImageNetwork,
     /// Number of classes in the network's output.
     count: usize,
     height: usize,
@@ -82,8 +82,8 @@ impl Learner for Bisenet {
     type State = ();
 
     fn load(model: &Model, params: BisenetParams, device: Device) -> Result<Self> {
-        let network = PictureNetwork::open_file(model, "model.onnx", device, |input| {
-            described_input(model, input, LEVEL)
+        let network = ImageNetwork::open_file(model, "model.onnx", device, |input| {
+            preprocess_from_manifest(model, input, LEVEL)
         })?;
         let [map] = network.outputs() else {
             let count = network.outputs().len();

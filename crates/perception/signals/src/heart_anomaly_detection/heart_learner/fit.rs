@@ -9,7 +9,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics, Value};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::objective::HeartObjective;
 use super::{HeartKind, HeartLearner, check_size};
@@ -68,7 +68,7 @@ impl<K: TrainableHeart> Fit for HeartLearner<K> {
             )));
         }
         let sizes = HeartSizes { shape, classes: classes.len(), dropout: heart.dropout };
-        let network = K::network(params, &sizes, &begin(job, training)?);
+        let network = K::network(params, &sizes, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = HeartObjective::<K> { sizes, params, class_weight, classes };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)

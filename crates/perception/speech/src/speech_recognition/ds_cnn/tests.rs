@@ -92,7 +92,7 @@ fn refused_input_leaves_a_stream_unchanged() {
         let piece = Audio::new(piece.to_vec(), 1, 16_000).unwrap();
         let other = Audio::new(vec![0.5; 800], 1, 8000).unwrap();
         let broken = Timeseries::new(vec![0.1, f32::NAN], [2, 1]).unwrap();
-        for wrong in [Sound::from(&other), Sound::from(&broken)] {
+        for wrong in [AudioInput::from(&other), AudioInput::from(&broken)] {
             let refused = stream.push(wrong, &mut |_| panic!()).unwrap_err();
             assert_eq!(refused.kind(), ErrorKind::InvalidInput);
         }

@@ -9,7 +9,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::objective::WordObjective;
 use super::{WordKind, WordLearner};
@@ -57,7 +57,7 @@ impl<K: TrainableWords> Fit for WordLearner<K> {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let requested = K::words(params).output_classes_n;
         let classes = classes_to_train(&*dataset, requested, "output_classes_n")?;
-        let network = K::network(params, classes.len(), *dropout, &begin(job, training)?);
+        let network = K::network(params, classes.len(), *dropout, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = WordObjective::<K> { params, classes, augment: *augment };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)

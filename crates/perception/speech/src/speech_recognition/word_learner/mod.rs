@@ -14,7 +14,7 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 use crate::speech_recognition::word_stream::{SpeechWindows, WordStream, WordStreamParams};
@@ -69,7 +69,7 @@ pub struct WordLearner<K: WordKind> {
 const FILE: &str = "model.onnx";
 
 impl<K: WordKind> WordLearner<K> {
-    fn category(&self, sound: Sound<'_>, category: &mut Category) -> Result<()> {
+    fn category(&self, sound: AudioInput<'_>, category: &mut Category) -> Result<()> {
         let input = &mut *self.inputs.take();
         self.front_end.input_into(sound, input)?;
         let input = TensorView::new(&[1, K::COEFFICIENTS, FRAMES], &input[..])?;
@@ -83,7 +83,7 @@ impl<K: WordKind> WordLearner<K> {
 impl<K: WordKind> Learner for WordLearner<K> {
     const SPEC: Spec = K::SPEC;
     type Params = K::Params;
-    type Input<'a> = Sound<'a>;
+    type Input<'a> = AudioInput<'a>;
     type Target = Category;
     type State = WordStream;
 
@@ -127,18 +127,23 @@ impl<K: WordKind> Learner for WordLearner<K> {
         self.classes.clone()
     }
 
-    fn infer_into(&self, _: &mut WordStream, sound: Sound<'_>, category: &mut Category) -> Result<()> {
+    fn infer_into(&self, _: &mut WordStream, sound: AudioInput<'_>, category: &mut Category) -> Result<()> {
         self.category(sound, category)
     }
 }
 
 /// Yields a prediction for every second of audio, each half a second after the one before.
 impl<K: WordKind> Streaming for WordLearner<K> {
-    fn push(&self, state: &mut WordStream, piece: Sound<'_>, emit: &mut dyn FnMut(Category)) -> Result<()> {
+    fn push(
+        &self,
+        state: &mut WordStream,
+        piece: AudioInput<'_>,
+        emit: &mut dyn FnMut(Category),
+    ) -> Result<()> {
         let samples = piece.samples(K::words(&self.params).sample_rate)?;
         self.windows.push(state, &samples, |second| {
             let mut category = Category::default();
-            self.category(Sound::Audio(second), &mut category)?;
+            self.category(AudioInput::Audio(second), &mut category)?;
             emit(category);
             Ok(())
         })
@@ -147,7 +152,7 @@ impl<K: WordKind> Streaming for WordLearner<K> {
     fn flush(&self, state: &mut WordStream, emit: &mut dyn FnMut(Category)) -> Result<()> {
         if let Some(rest) = self.windows.flush(state)? {
             let mut category = Category::default();
-            self.category(Sound::Audio(&rest), &mut category)?;
+            self.category(AudioInput::Audio(&rest), &mut category)?;
             emit(category);
         }
         Ok(())

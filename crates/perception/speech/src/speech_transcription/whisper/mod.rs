@@ -27,7 +27,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::WhisperTranscription;
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 use opendr_sound::resampler::resampled;
 
 use network::{EncoderOutput, Network};
@@ -131,7 +131,7 @@ impl Learner for Whisper {
             ("fp16", "the runtime computes in FP32; weights are stored as in the model's file"),
         ]);
     type Params = WhisperParams;
-    type Input<'a> = Sound<'a>;
+    type Input<'a> = AudioInput<'a>;
     type Target = WhisperTranscription;
     type State = WhisperStream;
 
@@ -156,7 +156,7 @@ impl Learner for Whisper {
     fn infer_into(
         &self,
         _: &mut WhisperStream,
-        sound: Sound<'_>,
+        sound: AudioInput<'_>,
         transcription: &mut WhisperTranscription,
     ) -> Result<()> {
         transcription.text.clear();

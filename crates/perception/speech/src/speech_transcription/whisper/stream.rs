@@ -3,7 +3,7 @@
 use opendr_engine::Result;
 use opendr_engine::learner::Streaming;
 use opendr_engine::target::WhisperTranscription;
-use opendr_sound::Sound;
+use opendr_sound::AudioInput;
 use opendr_sound::resampler::Resampler;
 
 use super::Whisper;
@@ -145,7 +145,7 @@ impl Streaming for Whisper {
     fn push(
         &self,
         stream: &mut WhisperStream,
-        piece: Sound<'_>,
+        piece: AudioInput<'_>,
         emit: &mut dyn FnMut(WhisperTranscription),
     ) -> Result<()> {
         let rate = piece.rate(RATE);

@@ -3,7 +3,7 @@
 use opendr_engine::data::Image;
 use opendr_engine::model::Model;
 use opendr_engine::{Device, Error, Result};
-use opendr_perception_common::picture_network::PictureNetwork;
+use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::Preprocess;
 
 /// Width and height of the input, an upright person, in pixels.
@@ -14,7 +14,7 @@ const STD: [f32; 3] = [58.395, 57.12, 57.375];
 
 /// A re-identification network: crops of persons to embeddings, compared by their cosine.
 pub(super) struct Appearance {
-    network: PictureNetwork,
+    network: ImageNetwork,
     length: usize,
 }
 
@@ -22,7 +22,7 @@ impl Appearance {
     pub fn open(model: &Model, device: Device) -> Result<Self> {
         let [width, height] = SIZE;
         let network =
-            PictureNetwork::open(model, device, |_| Preprocess::new(width, height).normalise(MEAN, STD))?;
+            ImageNetwork::open(model, device, |_| Preprocess::new(width, height).normalise(MEAN, STD))?;
         let length = match network.outputs() {
             [output] => output.dims.last().copied().flatten().filter(|length| *length > 0),
             _ => None,

@@ -10,14 +10,14 @@ mod gallery;
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Inputs, Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Name, TrackingAnnotationList};
 use opendr_engine::{Device, Result, Task};
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
 
 use super::TrackerInputs;
-use crate::tracking::{HeightFilter, Life, Pairing, SoundBox, sound_boxes};
+use crate::tracking::{HeightFilter, Life, SparseAssignment, ValidBox, valid_boxes};
 use appearance::Appearance;
 use gallery::Gallery;
 
@@ -71,11 +71,11 @@ pub struct DeepSortState {
     tracks: Vec<Track>,
     last_id: i64,
     frame: i64,
-    boxes: Vec<SoundBox>,
+    boxes: Vec<ValidBox>,
     /// Embeddings of the boxes, one after the other.
     embeddings: Vec<f32>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
     candidates: Vec<Candidate>,
     marks: Vec<bool>,
 }
@@ -98,12 +98,12 @@ impl Learner for DeepSort {
         .class("ObjectTracking2DDeepSortLearner")
         .about("DeepSORT tracks the persons that a detector detects and re-identifies them by appearance.")
         .without_effect(&[
-            ("lr", Spec::OF_TRAINING),
-            ("iters", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
-            ("optimizer", Spec::OF_TRAINING),
-            ("checkpoint_after_iter", Spec::OF_TRAINING),
-            ("checkpoint_load_iter", Spec::OF_TRAINING),
+            ("lr", Spec::TRAINING_ONLY),
+            ("iters", Spec::TRAINING_ONLY),
+            ("batch_size", Spec::TRAINING_ONLY),
+            ("optimizer", Spec::TRAINING_ONLY),
+            ("checkpoint_after_iter", Spec::TRAINING_ONLY),
+            ("checkpoint_load_iter", Spec::TRAINING_ONLY),
         ]);
     type Params = DeepSortParams;
     type Input<'a> = DeepSortInputs<'a>;
@@ -154,9 +154,9 @@ impl DeepSortState {
         appearance: &Appearance,
         input: &DeepSortInputs<'_>,
     ) -> Result<()> {
-        sound_boxes(input.detections, f64::from(params.min_confidence), &mut self.boxes);
+        valid_boxes(input.detections, f64::from(params.min_confidence), &mut self.boxes);
         self.candidates.clear();
-        let name = |found: &SoundBox| input.detections.boxes.get(found.index).map(|found| &found.name);
+        let name = |found: &ValidBox| input.detections.boxes.get(found.index).map(|found| &found.name);
         for (at, found) in self.boxes.iter().enumerate() {
             // The class index of a box is the index of the first box of its class.
             let first = self.boxes.iter().position(|other| !params.per_class || name(other) == name(found));
@@ -169,9 +169,9 @@ impl DeepSortState {
         }
         let suppression = Suppression {
             kind: SuppressionKind::Hard,
-            overlap: params.nms_max_overlap,
+            iou_threshold: params.nms_max_overlap,
             threshold: params.min_confidence,
-            most: MOST,
+            max_boxes: MOST,
         };
         suppression.run(&mut self.candidates, &mut self.marks);
         self.marks.clear();
@@ -214,7 +214,7 @@ impl DeepSortState {
         let least = 1.0 - f64::from(params.max_iou_distance);
         let by_place = |track: &Track| track.life.id.is_none() || track.life.away == 1;
         self.pair(params, input, length, by_place, |track, found, _| {
-            Some(image_overlap(track.expected, found.corners) - least)
+            Some(box_iou(track.expected, found.corners) - least)
         });
         self.tracks.retain(|track| {
             let patience = if track.life.id.is_some() { params.max_age } else { 0 };
@@ -230,9 +230,9 @@ impl DeepSortState {
         input: &TrackerInputs<'_>,
         length: usize,
         which: impl Fn(&Track) -> bool,
-        gain: impl Fn(&Track, &SoundBox, &[f32]) -> Option<f64>,
+        gain: impl Fn(&Track, &ValidBox, &[f32]) -> Option<f64>,
     ) {
-        self.pairing.begin();
+        self.pairing.clear();
         let open = |(_, track): &(usize, &Track)| track.seen.is_none() && which(track);
         for (row, track) in self.tracks.iter().enumerate().filter(open) {
             let embeddings = self.embeddings.chunks_exact(length.max(1));

@@ -88,15 +88,15 @@ impl Learner for NanoTrack {
         .class("SiamRPNLearner")
         .about("NanoTrack tracks one object of any class from a box in the first frame.")
         .without_effect(&[
-            ("n_epochs", Spec::OF_TRAINING),
-            ("num_workers", Spec::OF_TRAINING),
-            ("warmup_epochs", Spec::OF_TRAINING),
-            ("lr", Spec::OF_TRAINING),
-            ("weight_decay", Spec::OF_TRAINING),
-            ("momentum", Spec::OF_TRAINING),
-            ("cls_weight", Spec::OF_TRAINING),
-            ("loc_weight", Spec::OF_TRAINING),
-            ("batch_size", Spec::OF_TRAINING),
+            ("n_epochs", Spec::TRAINING_ONLY),
+            ("num_workers", Spec::TRAINING_ONLY),
+            ("warmup_epochs", Spec::TRAINING_ONLY),
+            ("lr", Spec::TRAINING_ONLY),
+            ("weight_decay", Spec::TRAINING_ONLY),
+            ("momentum", Spec::TRAINING_ONLY),
+            ("cls_weight", Spec::TRAINING_ONLY),
+            ("loc_weight", Spec::TRAINING_ONLY),
+            ("batch_size", Spec::TRAINING_ONLY),
         ]);
     type Params = NanoTrackParams;
     type Input<'a> = NanoTrackInputs<'a>;
@@ -222,7 +222,7 @@ impl NanoTrack {
     ) -> Result<()> {
         let [crop_side, _] = preprocess.size();
         let crop = Similarity::rotated_square(object.middle, side, 0.0, crop_side);
-        let preprocess = preprocess.clone().border(Border::Level(object.border_level));
+        let preprocess = preprocess.clone().border(Border::Constant(object.border_level));
         let (shape, count) = (preprocess.shape(), preprocess.len());
         let mut input = self.inputs.take();
         input.resize(count, 0.0);

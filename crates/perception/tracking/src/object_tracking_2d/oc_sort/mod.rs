@@ -9,14 +9,14 @@ mod motion;
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::image_overlap;
+use opendr_engine::overlap::box_iou;
 use opendr_engine::params::Params;
 use opendr_engine::target::TrackingAnnotationList;
 use opendr_engine::{Device, Result, Task};
 
 use super::TrackerInputs;
 use super::tracks::{Rules, Track, Tracks};
-use crate::tracking::SoundBox;
+use crate::tracking::ValidBox;
 use motion::{MOST_FRAMES_BACK, Motion};
 
 /// Parameters of [`OcSort`].
@@ -107,18 +107,18 @@ impl OcSortState {
         self.tracks.begin_frame(input, f64::from(params.threshold), Motion::predict)?;
         let inertia = f64::from(params.inertia);
         let span = params.delta_t.min(MOST_FRAMES_BACK);
-        let by_prediction = |track: &Track<Motion>, found: &SoundBox| {
-            let overlap = image_overlap(track.motion.expected, found.corners);
+        let by_prediction = |track: &Track<Motion>, found: &ValidBox| {
+            let overlap = box_iou(track.motion.expected, found.corners);
             let agreement =
                 || inertia * found.confidence.min(1.0) * track.motion.agreement(found.corners, span);
             // The inertia keeps the gain above 0 for any direction: a sufficient overlap matches unless there is a better one.
             (overlap >= f64::from(params.iou_threshold)).then(|| overlap + inertia + agreement())
         };
-        let by_observation = |track: &Track<Motion>, found: &SoundBox| {
-            let overlap = image_overlap(track.motion.last, found.corners);
+        let by_observation = |track: &Track<Motion>, found: &ValidBox| {
+            let overlap = box_iou(track.motion.last, found.corners);
             (overlap >= f64::from(params.iou_threshold)).then_some(overlap)
         };
-        let update = |motion: &mut Motion, found: &SoundBox, away: u32| {
+        let update = |motion: &mut Motion, found: &ValidBox, away: u32| {
             motion.update(found.corners, params.delta_t, away);
         };
         self.tracks.associate(rules, input, |_| true, by_prediction, update);

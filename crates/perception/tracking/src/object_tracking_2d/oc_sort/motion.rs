@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::tracking::AreaFilter;
-use crate::tracking::camera_motion::PlaneMotion;
+use crate::tracking::camera_motion::SimilarityMotion;
 
 /// Maximum number of frames over which directions are measured.
 pub(super) const MOST_FRAMES_BACK: usize = 10;
@@ -41,7 +41,7 @@ impl Motion {
     }
 
     /// Advances by one frame in which the camera moved by `camera`.
-    pub fn predict(&mut self, _: u32, camera: Option<&PlaneMotion>) {
+    pub fn predict(&mut self, _: u32, camera: Option<&SimilarityMotion>) {
         if let Some(camera) = camera {
             self.move_camera(camera);
         }
@@ -87,12 +87,12 @@ impl Motion {
     }
 
     /// Compensates a motion of the camera.
-    fn move_camera(&mut self, motion: &PlaneMotion) {
+    fn move_camera(&mut self, motion: &SimilarityMotion) {
         self.filter.move_camera(motion);
         self.filter_when_seen.move_camera(motion);
         self.last = motion.map_box(self.last);
         self.observed.iter_mut().flatten().for_each(|observed| *observed = motion.map_box(*observed));
-        self.direction = self.direction.and_then(|direction| unit(motion.turn(direction)));
+        self.direction = self.direction.and_then(|direction| unit(motion.map_direction(direction)));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::target::BoundingBox3D;
 
 use crate::tracking::{Constant, ConstantVelocity};
@@ -55,9 +55,9 @@ impl BoxFilter {
         self.rotation.value = wrapped(self.rotation.value);
     }
 
-    pub fn standing_box(&self) -> StandingBox {
+    pub fn standing_box(&self) -> UprightBox3D {
         let dimensions = self.dimensions.map(|side| side.value);
-        StandingBox::in_camera(dimensions, self.location.map(|axis| axis.position), self.rotation.value)
+        UprightBox3D::from_kitti(dimensions, self.location.map(|axis| axis.position), self.rotation.value)
     }
 
     /// Returns `found` with the filter's position, rotation and size.

@@ -8,14 +8,14 @@ mod box_filter;
 
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::overlap::StandingBox;
+use opendr_engine::overlap::UprightBox3D;
 use opendr_engine::params::Params;
 use opendr_engine::target::{
     BoundingBox3D, BoundingBox3DList, TrackingAnnotation3D, TrackingAnnotation3DList,
 };
 use opendr_engine::{Device, Result, Task};
 
-use crate::tracking::{Life, MOST_BOXES, Pairing};
+use crate::tracking::{Life, MAX_BOXES, SparseAssignment};
 use box_filter::BoxFilter;
 
 /// Parameters of [`Ab3dmot`].
@@ -47,9 +47,9 @@ pub struct Ab3dmotState {
     last_id: i64,
     frame: i64,
     /// Valid boxes of this step, with their indices in the list.
-    boxes: Vec<(usize, StandingBox)>,
+    boxes: Vec<(usize, UprightBox3D)>,
     is_taken: Vec<bool>,
-    pairing: Pairing,
+    pairing: SparseAssignment,
 }
 
 struct Track {
@@ -124,11 +124,11 @@ impl Ab3dmotState {
         let standing =
             list.boxes.iter().enumerate().filter_map(|(at, found)| Some((at, standing_box(found)?)));
         self.boxes.extend(standing);
-        if self.boxes.len() > MOST_BOXES {
+        if self.boxes.len() > MAX_BOXES {
             let score =
-                |(at, _): &(usize, StandingBox)| list.boxes.get(*at).map_or(0.0, |found| found.confidence);
+                |(at, _): &(usize, UprightBox3D)| list.boxes.get(*at).map_or(0.0, |found| found.confidence);
             self.boxes.sort_by(|a, b| score(b).total_cmp(&score(a)));
-            self.boxes.truncate(MOST_BOXES);
+            self.boxes.truncate(MAX_BOXES);
             self.boxes.sort_unstable_by_key(|(at, _)| *at);
         }
         for track in &mut self.tracks {
@@ -141,13 +141,13 @@ impl Ab3dmotState {
     }
 
     fn pair(&mut self, params: &Ab3dmotParams, list: &BoundingBox3DList) {
-        self.pairing.begin();
+        self.pairing.clear();
         for (row, track) in self.tracks.iter().enumerate() {
             let expected = track.filter.standing_box();
             for (column, (at, found)) in self.boxes.iter().enumerate() {
                 let is_same = list.boxes.get(*at).is_some_and(|found| found.name == track.found.name);
                 if is_same || !params.per_class {
-                    let overlap = expected.overlap(found);
+                    let overlap = expected.iou(found);
                     if overlap >= f64::from(params.iou_threshold) {
                         self.pairing.propose(row, column, overlap);
                     }
@@ -170,7 +170,7 @@ impl Ab3dmotState {
     fn begin(&mut self, params: &Ab3dmotParams, list: &BoundingBox3DList) {
         let needed = self.needed(params);
         for ((at, _), is_taken) in self.boxes.iter().zip(&self.is_taken) {
-            let begins = !is_taken && self.tracks.len() < MOST_BOXES;
+            let begins = !is_taken && self.tracks.len() < MAX_BOXES;
             let Some(found) = list.boxes.get(*at).filter(|_| begins) else { continue };
             let mut life = Life::default();
             life.hit(needed, &mut self.last_id);
@@ -187,12 +187,12 @@ impl Ab3dmotState {
 const LIMIT: f64 = 1e6;
 
 /// Returns the box as a volume; `None` for one that is not finite or has no volume.
-fn standing_box(found: &BoundingBox3D) -> Option<StandingBox> {
+fn standing_box(found: &BoundingBox3D) -> Option<UprightBox3D> {
     let (dimensions, location) = (found.dimensions.map(f64::from), found.location.map(f64::from));
     let is_sound = dimensions.iter().all(|side| *side > 0.0 && *side < LIMIT)
         && location.iter().all(|at| at.abs() < LIMIT)
         && found.rotation_y.is_finite();
-    is_sound.then(|| StandingBox::in_camera(dimensions, location, f64::from(found.rotation_y)))
+    is_sound.then(|| UprightBox3D::from_kitti(dimensions, location, f64::from(found.rotation_y)))
 }
 
 #[cfg(test)]

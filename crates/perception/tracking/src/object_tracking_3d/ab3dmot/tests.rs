@@ -57,7 +57,7 @@ fn shared_volume_by_hand() {
     let here = standing_box(&car(0.0, 20.0, 0.0)).unwrap();
     let mut other = car(2.0, 20.0, 0.0);
     other.location[1] += 0.5;
-    assert!((here.overlap(&standing_box(&other).unwrap()) - 0.2).abs() < 1e-6);
+    assert!((here.iou(&standing_box(&other).unwrap()) - 0.2).abs() < 1e-6);
     for (threshold, tracks) in [(0.19, 1), (0.21, 2)] {
         let (tracker, mut state) = (tracker(&[("iou_threshold", threshold)]), Ab3dmotState::default());
         run(&tracker, &mut state, vec![car(0.0, 20.0, 0.0)]);
@@ -129,7 +129,7 @@ fn hostile_boxes_never_panic_and_are_dropped() {
         for track in output.annotations {
             assert!(track.bounding_box_3d.location.iter().all(|at| at.is_finite()));
         }
-        assert!(state.track_count() <= MOST_BOXES);
+        assert!(state.track_count() <= MAX_BOXES);
     }
 }
 

@@ -6,7 +6,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::layout::VpitLayout;
 use super::network::VpitNetwork;
@@ -75,7 +75,7 @@ impl Fit for Vpit {
             objects: fit_params.objects,
             augment: fit_params.augment,
         };
-        let network = network_from_base(VpitNetwork::new(&begin(job, training)?), base)?;
+        let network = network_from_base(VpitNetwork::new(&seeded_device(job, training)?), base)?;
         let pairs = Pairs { dataset: &*dataset, apart: fit_params.apart, seed: training.seed };
         fit_learner::<Self, _>(&objective, network, params, training, &pairs, None, job)
     }

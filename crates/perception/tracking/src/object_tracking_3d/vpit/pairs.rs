@@ -27,7 +27,7 @@ impl DatasetIterator for Pairs<'_> {
 
     /// Returns data and annotation of the first and data of the second as data, and the annotation of the second.
     fn get(&self, index: usize) -> Result<Sample> {
-        let later = index + 1 + Random::at([self.seed, index as u64]).below(self.apart);
+        let later = index + 1 + Random::from_key([self.seed, index as u64]).below(self.apart);
         let sequence = self.dataset.sequence(index);
         let is_same = |other: &usize| {
             *other < self.len() && sequence.is_some() && self.dataset.sequence(*other) == sequence
@@ -193,7 +193,7 @@ impl Collate for VpitBatches {
             tracks.annotations.iter().find(|track| track.id == id).map(|track| track.bounding_box_3d.clone())
         };
         let stamp = before.header.stamp_ns.unwrap_or_default() as u64;
-        let mut random = Random::at([stamp, scans[0].cloud().len() as u64]);
+        let mut random = Random::from_key([stamp, scans[0].cloud().len() as u64]);
         let mut ids: Vec<i64> =
             before.annotations.iter().map(|track| track.id).filter(|id| *id >= 0).collect();
         random.shuffle(&mut ids);

@@ -2,7 +2,7 @@
 
 use opendr_vision::Similarity;
 
-use super::PlaneMotion;
+use super::SimilarityMotion;
 
 /// Minimum number of points.
 const FEWEST: usize = 8;
@@ -32,12 +32,12 @@ impl Consensus {
     }
 
     /// Fits the median shift first, then a similarity to the points that agree, with a decreasing tolerance.
-    pub fn motion(&mut self, size: [usize; 2]) -> PlaneMotion {
+    pub fn motion(&mut self, size: [usize; 2]) -> SimilarityMotion {
         if self.pairs.len() < FEWEST {
-            return PlaneMotion::NONE;
+            return SimilarityMotion::NONE;
         }
         let shift = [0, 1].map(|axis| self.median(axis));
-        let mut motion = PlaneMotion::new([1.0, 0.0], shift.map(f64::from));
+        let mut motion = SimilarityMotion::new([1.0, 0.0], shift.map(f64::from));
         let agreement = size[0].max(size[1]) as f32 * AGREEMENT;
         for round in 0..ROUNDS {
             let tolerance = agreement * (FIRST / (1 << (2 * round)) as f32).max(1.0);
@@ -53,7 +53,7 @@ impl Consensus {
             let is_majority = self.from.len() >= FEWEST.max(self.pairs.len() / 3);
             match Similarity::from_points(&self.from, &self.to).filter(|_| is_majority) {
                 Some(found) => motion = motion_of(&found),
-                None => return PlaneMotion::NONE,
+                None => return SimilarityMotion::NONE,
             }
         }
         motion
@@ -68,9 +68,9 @@ impl Consensus {
 }
 
 /// Converts a similarity of images to a motion: the crop is the current frame.
-fn motion_of(found: &Similarity) -> PlaneMotion {
+fn motion_of(found: &Similarity) -> SimilarityMotion {
     let scale = 1.0 / f64::from(found.scale());
     let (sine, cosine) = (-f64::from(found.angle())).sin_cos();
     let [x, y] = found.crop_from_image([0.0, 0.0]).map(f64::from);
-    PlaneMotion::new([scale * cosine, scale * sine], [x, y])
+    SimilarityMotion::new([scale * cosine, scale * sine], [x, y])
 }

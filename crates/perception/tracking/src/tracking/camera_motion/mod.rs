@@ -15,9 +15,9 @@ use opendr_engine::Result;
 use opendr_engine::data::Image;
 use opendr_vision::{ChannelOrder, Preprocess};
 
-pub use plane_motion::PlaneMotion;
+pub use plane_motion::SimilarityMotion;
 
-use super::SoundBox;
+use super::ValidBox;
 use consensus::Consensus;
 use corners::Corners;
 use pyramid::Pyramid;
@@ -49,11 +49,11 @@ impl CameraMotion {
     ///
     /// # Errors
     /// As [`Preprocess::run_into`].
-    pub fn next(&mut self, image: &Image, objects: &[SoundBox]) -> Result<PlaneMotion> {
+    pub fn update(&mut self, image: &Image, objects: &[ValidBox]) -> Result<SimilarityMotion> {
         let size = [image.width(), image.height()];
         if size.into_iter().min() < Some(SMALLEST_SIDE) {
             *self = Self::default();
-            return Ok(PlaneMotion::NONE);
+            return Ok(SimilarityMotion::NONE);
         }
         if self.preprocess.as_ref().is_none_or(|(known, _)| *known != size) {
             *self = Self::default();
@@ -66,7 +66,7 @@ impl CameraMotion {
         let level = self.now.size();
         let scale = [0, 1].map(|axis| size[axis] as f32 / level[axis] as f32);
         let motion = match self.corners.points() {
-            [] => PlaneMotion::NONE,
+            [] => SimilarityMotion::NONE,
             points => {
                 self.consensus.begin();
                 for point in points {

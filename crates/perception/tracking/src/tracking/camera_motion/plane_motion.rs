@@ -2,13 +2,13 @@
 
 /// Scale, rotation and shift that map points of one frame to the next, in pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlaneMotion {
+pub struct SimilarityMotion {
     /// Scale times cosine and sine of the angle, from x to y.
     turn: [f64; 2],
     shift: [f64; 2],
 }
 
-impl PlaneMotion {
+impl SimilarityMotion {
     /// No motion.
     pub const NONE: Self = Self { turn: [1.0, 0.0], shift: [0.0, 0.0] };
 
@@ -19,12 +19,12 @@ impl PlaneMotion {
 
     /// Maps a point.
     pub fn map(&self, point: [f64; 2]) -> [f64; 2] {
-        let [x, y] = self.turn(point);
+        let [x, y] = self.map_direction(point);
         [x + self.shift[0], y + self.shift[1]]
     }
 
     /// Maps a direction, such as a velocity.
-    pub fn turn(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn map_direction(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [a, b] = self.turn;
         [a * x - b * y, b * x + a * y]
     }

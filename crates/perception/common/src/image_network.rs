@@ -10,13 +10,13 @@ use opendr_vision::{InputGeometry, Preprocess, Similarity};
 const FILE: &str = "model.onnx";
 
 /// A session with the pre-processing of its only input, an image, and reused input memory.
-pub struct PictureNetwork {
+pub struct ImageNetwork {
     session: Session,
     preprocess: Preprocess,
     inputs: Pool<Vec<f32>>,
 }
 
-impl PictureNetwork {
+impl ImageNetwork {
     /// Opens the container's network `model.onnx`. `preprocess` returns the pre-processing for the network's input.
     pub fn open(
         model: &Model,
@@ -136,7 +136,7 @@ impl PictureNetwork {
 ///
 /// # Errors
 /// `Format` for other shapes, and for a dynamic size.
-pub fn input_of(input: &TensorInfo) -> Result<Preprocess> {
+pub fn preprocess_from_input(input: &TensorInfo) -> Result<Preprocess> {
     match input.dims[..] {
         [_, Some(3), Some(height), Some(width)] => Ok(Preprocess::new(width, height)),
         [_, Some(height), Some(width), Some(3)] => Ok(Preprocess::new(width, height).layout(Layout::Hwc)),

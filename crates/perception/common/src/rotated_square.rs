@@ -6,7 +6,7 @@ use opendr_vision::Similarity;
 
 /// A rotated square in an image; its upper side points along `angle`, in radians, clockwise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct TurnedSquare {
+pub struct RotatedSquare {
     /// Centre, x and y in pixels.
     pub centre: [f32; 2],
     /// Length of a side in pixels.
@@ -15,7 +15,7 @@ pub struct TurnedSquare {
     pub angle: f32,
 }
 
-impl TurnedSquare {
+impl RotatedSquare {
     /// Returns the square around the points. Its side is the longer side of the smallest rectangle rotated by `angle`.
     /// `None` without points, or where one is not finite.
     pub fn around(points: impl Iterator<Item = [f32; 2]>, angle: f32) -> Option<Self> {
@@ -80,7 +80,7 @@ mod tests {
     #[test]
     fn angle_upwards_points_up() {
         for (low, high) in [([10.0, 20.0], [10.0, 5.0]), ([4.0, 4.0], [9.0, 4.0]), ([4.0, 4.0], [1.0, 9.0])] {
-            let square = TurnedSquare { centre: low, side: 20.0, angle: angle_upwards(low, high) };
+            let square = RotatedSquare { centre: low, side: 20.0, angle: angle_upwards(low, high) };
             let [x, y] = square.crop(20).crop_from_image(high);
             assert!((x - 10.0).abs() < 1e-3 && y < 9.0, "{x} {y}");
         }
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn points_lie_within() {
         let points = [[10.0, 10.0], [50.0, 30.0], [20.0, 44.0]];
-        let square = TurnedSquare::around(points.into_iter(), 0.7).unwrap();
+        let square = RotatedSquare::around(points.into_iter(), 0.7).unwrap();
         for point in points {
             let crop = square.crop(100).crop_from_image(point);
             assert!(crop.iter().all(|at| (-0.01..=100.01).contains(at)), "{crop:?}");
@@ -98,18 +98,18 @@ mod tests {
         assert_eq!(moved.side, 2.0 * square.side);
         let [x, y] = square.crop(100).crop_from_image(moved.centre);
         assert!((x - 50.0).abs() < 0.01 && (y - 40.0).abs() < 0.01);
-        assert!(TurnedSquare::around(std::iter::empty(), 0.0).is_none());
-        assert!(TurnedSquare::around([[f32::NAN, 0.0]].into_iter(), 0.0).is_none());
+        assert!(RotatedSquare::around(std::iter::empty(), 0.0).is_none());
+        assert!(RotatedSquare::around([[f32::NAN, 0.0]].into_iter(), 0.0).is_none());
     }
 
     #[test]
     fn only_useful_squares_are_in() {
-        let square = TurnedSquare { centre: [50.0, 50.0], side: 20.0, angle: 1.0 };
+        let square = RotatedSquare { centre: [50.0, 50.0], side: 20.0, angle: 1.0 };
         assert!(square.is_in([100, 100]));
         assert!(!square.is_in([20, 20]));
-        assert!(!TurnedSquare { side: f32::NAN, ..square }.is_in([100, 100]));
-        assert!(!TurnedSquare { side: 0.5, ..square }.is_in([100, 100]));
-        assert!(!TurnedSquare { side: 900.0, ..square }.is_in([100, 100]));
-        assert!(!TurnedSquare { angle: f32::INFINITY, ..square }.is_in([100, 100]));
+        assert!(!RotatedSquare { side: f32::NAN, ..square }.is_in([100, 100]));
+        assert!(!RotatedSquare { side: 0.5, ..square }.is_in([100, 100]));
+        assert!(!RotatedSquare { side: 900.0, ..square }.is_in([100, 100]));
+        assert!(!RotatedSquare { angle: f32::INFINITY, ..square }.is_in([100, 100]));
     }
 }

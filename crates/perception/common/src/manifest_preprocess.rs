@@ -6,15 +6,15 @@ use opendr_inference::TensorInfo;
 use opendr_vision::{ChannelOrder, Preprocess};
 use serde_json::Value;
 
-use crate::picture_network::input_of;
+use crate::image_network::preprocess_from_input;
 
 /// Returns the pre-processing for the network's `input`: its size and layout, and the normalisation `(level - mean) / std`
 /// of levels 0..=255 from the manifest. `mean` and `std` default to `usual`, `colour` to RGB.
 ///
 /// # Errors
 /// `Format` when the network's input is not an image of a fixed size, or when the manifest's values are invalid.
-pub fn described_input(model: &Model, input: &TensorInfo, usual: f32) -> Result<Preprocess> {
-    let preprocess = input_of(input)?;
+pub fn preprocess_from_manifest(model: &Model, input: &TensorInfo, usual: f32) -> Result<Preprocess> {
+    let preprocess = preprocess_from_input(input)?;
     let described = model.manifest().inputs.get("image");
     let entry = |key: &str| described.and_then(|image| image.get(key));
     let mean = entry("mean").map_or(Ok([usual; 3]), three)?;

@@ -10,7 +10,7 @@ const OUTPUT_SIDES: [&str; 2] = ["rows", "columns"];
 
 /// Makes height and width of inputs and outputs `[1, channels, height, width]` dynamic. The network may only have operators
 /// that do not fix height and width, such as convolution, addition and concatenation.
-pub fn open_sides(onnx: &[u8]) -> Result<Vec<u8>> {
+pub fn with_dynamic_sides(onnx: &[u8]) -> Result<Vec<u8>> {
     let mut model = model_from_bytes(onnx)?;
     let Some(graph) = &mut model.graph else {
         return Err(Error::internal("the exported model has no graph; please report it"));

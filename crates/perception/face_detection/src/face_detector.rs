@@ -23,11 +23,11 @@ opendr_engine::choices! {
 }
 
 /// A face detector with five points per face.
-pub struct FaceFinder {
+pub struct FaceDetector {
     detector: Yunet,
 }
 
-impl FaceFinder {
+impl FaceDetector {
     /// Opens the part `detector` of `model`, with `threshold` as the minimum score of faces.
     pub fn open(model: &Model, threshold: f32, device: Device) -> Result<Self> {
         let params = YunetParams { threshold, ..YunetParams::default() };
@@ -35,7 +35,7 @@ impl FaceFinder {
     }
 
     /// Fills `faces` with the faces in `image` that have an area and five finite points, highest score first.
-    pub fn find(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
+    pub fn detect(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
         self.detector.infer_into(&mut (), image, faces)?;
         let is_finite = |point: &[f32; 2]| point.iter().all(|value| value.is_finite());
         faces.boxes.retain(|face| {
@@ -46,7 +46,7 @@ impl FaceFinder {
 }
 
 /// Returns the face with the largest area.
-pub fn largest(faces: &BoundingBoxList) -> Option<&BoundingBox> {
+pub fn largest_face(faces: &BoundingBoxList) -> Option<&BoundingBox> {
     faces.boxes.iter().max_by(|one, other| one.area().total_cmp(&other.area()))
 }
 
@@ -64,7 +64,7 @@ pub fn square_around(face: &BoundingBox, scale: f32, angle: f32, side: usize) ->
 }
 
 /// Returns the whole image as a crop of `side` pixels; its longer side fills it.
-pub fn whole_picture(image: &Image, side: usize) -> Similarity {
+pub fn whole_image(image: &Image, side: usize) -> Similarity {
     let [width, height] = [image.width(), image.height()].map(|side| side as f32);
     Similarity::rotated_square([width / 2.0, height / 2.0], width.max(height), 0.0, side)
 }
