@@ -5,7 +5,7 @@ use ort::session::{Session, SessionInputValue};
 use ort::value::{DynValue, Outlet, TensorElementType, TensorRef, ValueType};
 use smallvec::SmallVec;
 
-use super::words;
+use super::message::message_of;
 use crate::runtime::{Engine, Sink};
 use crate::tensor::{Element, ElementType, MAX_RANK, TensorData, TensorInfo, TensorView};
 
@@ -40,7 +40,7 @@ impl Engine for OnnxRuntimeEngine {
     fn run(&mut self, inputs: &[TensorView<'_>], sink: &mut Sink<'_>) -> Result<()> {
         let inputs = inputs.iter().map(value_from_tensor).collect::<Result<SmallVec<[_; 4]>>>()?;
         let values = self.session.run(&inputs[..]).map_err(|error| {
-            Error::internal("ONNX Runtime cannot run the model").with_source(words(&error))
+            Error::internal("ONNX Runtime cannot run the model").with_source(message_of(&error))
         })?;
         let outputs = (self.outputs.iter().enumerate())
             .map(|(index, info)| tensor_from_value(&values[index], info))
@@ -84,7 +84,8 @@ fn value_from_tensor<'a>(tensor: &'a TensorView<'a>) -> Result<SessionInputValue
         TensorData::Bool(data) => TensorRef::from_array_view((shape, data)).map(Into::into),
     };
     value.map_err(|error: ort::Error| {
-        Error::invalid_input(format!("ONNX Runtime does not accept {tensor:?}")).with_source(words(&error))
+        Error::invalid_input(format!("ONNX Runtime does not accept {tensor:?}"))
+            .with_source(message_of(&error))
     })
 }
 
@@ -102,7 +103,7 @@ fn tensor_from_value<'a>(value: &'a DynValue, info: &TensorInfo) -> Result<Tenso
 fn typed<T: Element + ort::value::PrimitiveTensorElementType>(value: &DynValue) -> Result<TensorView<'_>> {
     let (shape, data) = value.try_extract_tensor::<T>().map_err(|error| {
         Error::internal("ONNX Runtime returned an output of another type than declared")
-            .with_source(words(&error))
+            .with_source(message_of(&error))
     })?;
     let shape: SmallVec<[usize; MAX_RANK]> =
         shape.iter().map(|&dim| usize::try_from(dim).unwrap_or(0)).collect();

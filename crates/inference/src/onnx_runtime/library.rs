@@ -9,7 +9,16 @@ use opendr_engine::{Error, Result, cache_dir};
 use ort::environment::Environment;
 use ort::logging::LogLevel;
 
-use super::{OnnxRuntime, python, words};
+use super::message::message_of;
+use super::python;
+
+/// Oldest supported version.
+pub(super) const MIN_VERSION: &str = "1.23";
+
+/// Returns the folder within a cache folder that is searched for the library.
+pub(super) fn cache_folder(cache: &Path) -> PathBuf {
+    cache.join("onnxruntime")
+}
 
 /// A version of ONNX Runtime.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -51,11 +60,7 @@ pub(super) fn find(skipped: &mut Vec<String>) -> Option<Library> {
     }
     files.extend(python::onnxruntime_folders().iter().flat_map(|folder| libraries_in(folder)));
     files.extend(
-        cache_dir()
-            .ok()
-            .map(|cache| OnnxRuntime::cache_folder(&cache))
-            .iter()
-            .flat_map(|folder| libraries_in(folder)),
+        cache_dir().ok().map(|cache| cache_folder(&cache)).iter().flat_map(|folder| libraries_in(folder)),
     );
     for file in files {
         match load(&file) {
@@ -134,7 +139,7 @@ fn start(path: &Path) -> Result<Environment> {
     })?;
     let environment = builder.with_name("opendr").with_telemetry(false).build().map_err(|error| {
         Error::internal(format!("ONNX Runtime at {} failed to start", path.display()))
-            .with_source(words(&error))
+            .with_source(message_of(&error))
     })?;
     // Messages on standard error are also returned as errors.
     if env::var_os("ORT_LOG").is_none() {
@@ -147,7 +152,7 @@ fn too_old(version: &str, path: &Path) -> Error {
     Error::unsupported(format!(
         "ONNX Runtime {version} at {} is older than {}; update it or run \"opendr runtime install\"",
         path.display(),
-        OnnxRuntime::MIN_VERSION
+        MIN_VERSION
     ))
 }
 

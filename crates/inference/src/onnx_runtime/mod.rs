@@ -2,6 +2,7 @@
 
 mod engine;
 mod library;
+mod message;
 mod provider;
 mod python;
 mod suited;
@@ -20,6 +21,7 @@ use crate::runtime::{Engine, Runtime, SessionOptions};
 use crate::tensor::TensorInfo;
 use engine::OnnxRuntimeEngine;
 use library::{Library, Version};
+use message::message_of;
 use suited::suited;
 
 /// Time for which idle threads of ONNX Runtime spin before they sleep; versions without this option ignore it.
@@ -93,7 +95,7 @@ impl OnnxRuntime {
     }
 
     /// Oldest supported version.
-    pub const MIN_VERSION: &str = "1.23";
+    pub const MIN_VERSION: &str = library::MIN_VERSION;
 
     /// Returns whether a version, e.g. `"1.31.1"`, is supported.
     pub fn is_supported(version: &str) -> bool {
@@ -102,7 +104,7 @@ impl OnnxRuntime {
 
     /// Returns the folder within a cache folder that is searched for the library.
     pub fn cache_folder(cache: &Path) -> PathBuf {
-        cache.join("onnxruntime")
+        library::cache_folder(cache)
     }
 
     /// Returns whether a file name is that of the ONNX Runtime library on this system: `libonnxruntime.so.1.31.1`,
@@ -138,7 +140,7 @@ impl OnnxRuntime {
             Ok(builder.with_intra_threads(threads)?)
         };
         build().map_err(|error| {
-            Error::internal("ONNX Runtime rejects the session options").with_source(words(&error))
+            Error::internal("ONNX Runtime rejects the session options").with_source(message_of(&error))
         })
     }
 
@@ -152,7 +154,7 @@ impl OnnxRuntime {
                 ort::ErrorCode::NotImplemented => Error::unsupported(message),
                 _ => Error::format(message),
             }
-            .with_source(words(&error))
+            .with_source(message_of(&error))
         })
     }
 
@@ -162,8 +164,10 @@ impl OnnxRuntime {
         Some(provider::providers_from_device(device))
             .filter(|_| provider::is_built_in(device))
             .ok_or_else(|| self.no_provider(device))
-            .and_then(|providers| builder.with_execution_providers(providers).map_err(|error| words(&error)))
-            .and_then(|mut builder| builder.commit_from_memory(model).map_err(|error| words(&error)))
+            .and_then(|providers| {
+                builder.with_execution_providers(providers).map_err(|error| message_of(&error))
+            })
+            .and_then(|mut builder| builder.commit_from_memory(model).map_err(|error| message_of(&error)))
             .map_err(|reason| {
                 let devices: Vec<_> = self.devices().iter().map(ToString::to_string).collect();
                 Error::device(format!(
@@ -247,13 +251,6 @@ fn is_small(inputs: &[TensorInfo], bytes: usize) -> bool {
     };
     let all = inputs.iter().try_fold(0_usize, |all, input| all.checked_add(numbers(input)?));
     all.and_then(|all| all.checked_mul(bytes)).is_some_and(|work| work < ONE_THREAD)
-}
-
-/// Returns the message of ONNX Runtime without its source location.
-fn words<R>(error: &ort::Error<R>) -> String {
-    let text = error.message();
-    let said = text.split_once("[ONNXRuntimeError] : ").and_then(|(_, text)| text.splitn(3, " : ").nth(2));
-    said.unwrap_or(text).trim().to_owned()
 }
 
 #[cfg(test)]

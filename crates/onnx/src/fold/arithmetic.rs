@@ -2,8 +2,8 @@
 
 use super::super::array::{Array, Data, element_count};
 use super::super::proto::DataType;
+use super::indexing::{MAX_ELEMENTS, broadcast, broadcast_strides, strided};
 use super::movement::partial_values;
-use super::{MAX_ELEMENTS, broadcast, broadcast_strides, strided};
 
 /// Broadcasts both operands to their common dimensions.
 fn spread<A: Clone, B: Clone>(x: (&Array, &[A]), y: (&Array, &[B])) -> Option<(Vec<usize>, Vec<A>, Vec<B>)> {

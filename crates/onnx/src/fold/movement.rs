@@ -1,7 +1,7 @@
 //! Operators that only move elements.
 
 use super::super::array::{Array, Data, element_count, map_data};
-use super::{MAX_ELEMENTS, axis_in, broadcast, broadcast_strides, strided, strides};
+use super::indexing::{MAX_ELEMENTS, axis_in, broadcast, broadcast_strides, strided, strides};
 
 pub(super) fn reshape(x: &Array, shape: &[i64]) -> Option<Array> {
     let mut dims = Vec::with_capacity(shape.len());

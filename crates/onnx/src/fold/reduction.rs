@@ -2,7 +2,7 @@
 
 use super::super::array::{Array, Data, element_count};
 use super::super::operator::Operator;
-use super::axis_in;
+use super::indexing::{axis_in, strided, strides};
 
 type IntFold = fn(i64, i64) -> Option<i64>;
 
@@ -13,11 +13,11 @@ pub(super) fn reduce(operator: &Operator, x: &Array, axes: &[i64]) -> Option<Arr
     // Stride of the reduced array per axis of `x`: zero on reduced axes.
     let kept: Vec<usize> =
         (0..rank).map(|axis| if axes.contains(&axis) { 1 } else { x.dims()[axis] }).collect();
-    let own = super::strides(&kept);
+    let own = strides(&kept);
     let strides: Vec<isize> =
         (0..rank).map(|axis| if axes.contains(&axis) { 0 } else { own[axis] as isize }).collect();
     let targets: Vec<usize> = (0..element_count(&kept)?).collect();
-    let targets = super::strided(&targets, x.dims(), &strides, 0)?;
+    let targets = strided(&targets, x.dims(), &strides, 0)?;
     let name = operator.name();
     let data = match x.data() {
         Data::Float(values) => {
