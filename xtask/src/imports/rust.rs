@@ -160,7 +160,10 @@ impl Tree<'_> {
         let module = &mut self.modules[id];
         let first = tokens[at];
         let before = at.checked_sub(1).and_then(|before| tokens.get(before));
-        module.names.insert(first.text.to_owned());
+        // The name after a dot is that of a field or method.
+        if before.is_none_or(|before| !before.is(".")) && first.text != "_" {
+            module.names.insert(first.text.to_owned());
+        }
         let mut segments = vec![first.text.to_owned()];
         while let [separator, next, ..] = &tokens[at + 2 * segments.len() - 1..] {
             if !separator.is("::") || next.kind != Kind::Name {
@@ -457,6 +460,7 @@ mod tests {
             ["lib -> a: pub use a::A"]
         );
         assert_eq!(of(&[("lib.rs", "mod a; use a::A;"), child]), ["lib -> a: use a::A"]);
+        assert!(of(&[("lib.rs", "mod a; pub use a::A; fn f(b: B) { b.A }"), child]).is_empty());
     }
 
     #[test]

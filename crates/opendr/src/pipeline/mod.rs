@@ -1,6 +1,7 @@
 //! Pipelines: learners in sequence, such as a detector, a tracker and a recogniser of the tracks.
 
 mod adapter;
+mod adapters;
 mod each_box;
 #[cfg(feature = "actions")]
 mod skeletons;

@@ -2,7 +2,8 @@
 
 use opendr_engine::learner::{Output, Port};
 
-use super::adapter::{Make, adapter};
+use super::adapter::Make;
+use super::adapters::adapter;
 
 /// Source of a port's value.
 #[derive(Debug, Clone)]

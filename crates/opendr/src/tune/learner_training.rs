@@ -9,6 +9,7 @@ use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Progress, Result, ResultExt as _, Silent};
 use opendr_tuning::Training;
 
+use super::data::nothing_measured;
 use super::until::Until;
 use super::{TuneData, TuneOptions};
 use crate::{FitData, FitEnvironments, FitOptions, PolicyController, eval_in, fit, fit_policy};
@@ -34,7 +35,7 @@ impl<'a> LearnerTraining<'a> {
     /// Creates a training that has not begun, with a folder of its own below `work`.
     ///
     /// # Errors
-    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::Answers`], which trains nothing.
+    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::Inference`], which trains nothing.
     pub fn new(
         entry: &'static Entry,
         data: TuneData<'a>,
@@ -106,7 +107,7 @@ impl<'a> LearnerTraining<'a> {
                 let options = self.data.eval_options();
                 let outcome = options.run(&mut self.learner, self.entry, dataset, &Silent)?;
                 let (name, _) = options.metric_for(self.entry)?.numbers[0];
-                outcome.report.statistics.get(name).ok_or_else(|| super::nothing_measured(name))
+                outcome.report.statistics.get(name).ok_or_else(|| nothing_measured(name))
             }
         }
     }

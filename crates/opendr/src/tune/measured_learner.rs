@@ -10,6 +10,7 @@ use opendr_evaluation::EvalOptions;
 use opendr_tuning::Training;
 
 use super::MakeLearner;
+use super::data::nothing_measured;
 use super::until::Until;
 
 /// One configuration of a learner's own parameters, without training and therefore without a checkpoint.
@@ -33,7 +34,7 @@ impl Training for MeasuredLearner<'_> {
         }
         let (name, _) = self.options.metric_for(self.entry)?.numbers[0];
         let value = outcome.report.statistics.get(name);
-        value.map(Some).ok_or_else(|| super::nothing_measured(name))
+        value.map(Some).ok_or_else(|| nothing_measured(name))
     }
 
     fn save(&self, _: &Path) -> Result<()> {

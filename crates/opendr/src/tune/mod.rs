@@ -1,22 +1,20 @@
 //! Hyperparameter search for any learner: for its training, or for the parameters of inference.
 
+mod data;
 mod learner_training;
 mod measured_learner;
+mod options;
 mod search;
 mod tuned;
 mod until;
 
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use opendr_engine::dataset::DatasetRef;
-use opendr_engine::environment::EnvironmentSource;
-use opendr_engine::learner::{AnyLearner, Entry};
+use opendr_engine::learner::Entry;
 use opendr_engine::params::ParamMap;
-use opendr_engine::{Device, Error, Progress, Result, ResultExt as _, Unit};
-use opendr_evaluation::EvalOptions;
-use opendr_rl::EvaluationProtocol;
+use opendr_engine::{Error, Progress, Result, ResultExt as _, Unit};
 use opendr_runlog::{svg_from_figure, write_atomically};
 use opendr_tuning::{
     Asha, Budget, Direction, Hyperband, Median, NoPruner, Plan, Progress as Going, Storage, Study,
@@ -24,76 +22,12 @@ use opendr_tuning::{
     importance_from_study,
 };
 
+pub use data::{MakeLearner, TuneData};
 pub use learner_training::LearnerTraining;
 use measured_learner::MeasuredLearner;
+pub use options::TuneOptions;
 pub use search::search_space;
 pub use tuned::Tuned;
-
-/// Data on which configurations are trained and evaluated.
-#[derive(Clone, Copy)]
-pub enum TuneData<'a> {
-    /// Policies in environments, evaluated by the success rate if there is one, else by the mean return.
-    Environment {
-        /// Source of the environments.
-        env: &'a dyn EnvironmentSource,
-        /// Episodes of the evaluation.
-        protocol: &'a EvaluationProtocol,
-    },
-    /// Learners of a data set, evaluated by the main value of their task's metric on another split.
-    Dataset {
-        /// To train on.
-        dataset: DatasetRef<'a>,
-        /// To measure on.
-        val_dataset: DatasetRef<'a>,
-        /// The part to train on.
-        split: Option<&'a str>,
-        /// The part to measure on.
-        val_split: Option<&'a str>,
-    },
-    /// Learners without training: their own parameters, evaluated on a data set.
-    Inference {
-        /// Loads a learner with the given parameters.
-        make: &'a MakeLearner<'a>,
-        /// To measure on.
-        dataset: DatasetRef<'a>,
-        /// The part to measure on.
-        split: Option<&'a str>,
-        /// Metric (default: that of the task).
-        metric: Option<&'a str>,
-    },
-}
-
-/// Loads a learner with the parameters of a trial and the fixed ones.
-pub type MakeLearner<'a> = dyn Fn(&ParamMap) -> Result<Box<dyn AnyLearner>> + Sync + 'a;
-
-/// Options of a search.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TuneOptions {
-    /// Parameters to search, of the training or of the learner, as `NAME`, `NAME=LOW..HIGH` or `NAME=A,B,C`.
-    pub search: Vec<String>,
-    /// Fixed parameters of the training.
-    pub fit_params: ParamMap,
-    /// Fixed parameters of the learner.
-    pub params: ParamMap,
-    /// Total number of configurations, including those of earlier calls.
-    pub trials: usize,
-    /// Number of seeds of each configuration that completes.
-    pub seeds: usize,
-    /// Steps of a complete training.
-    pub steps: u64,
-    /// Steps between two evaluations.
-    pub interval: u64,
-    /// Pruner: `"asha"`, `"median"`, `"hyperband"` or `"none"`.
-    pub pruner: String,
-    /// Number of trials that run in parallel.
-    pub jobs: usize,
-    /// Time after which no trial starts.
-    pub timeout: Option<Duration>,
-    /// Seed of all random numbers.
-    pub seed: u64,
-    /// Device of the trainings.
-    pub device: Device,
-}
 
 /// Name of the study in the output folder, a journal that Optuna reads.
 const STUDY: &str = "study.log";
@@ -222,21 +156,4 @@ fn study(entry: &Entry, data: TuneData<'_>, options: &TuneOptions, output: &Path
             )));
         }
     })
-}
-
-impl TuneData<'_> {
-    /// Returns the evaluation options of a trial on a data set.
-    fn eval_options(&self) -> EvalOptions {
-        let (split, metric) = match *self {
-            Self::Environment { .. } => (None, None),
-            Self::Dataset { val_split, .. } => (val_split, None),
-            Self::Inference { split, metric, .. } => (split, metric),
-        };
-        let [split, metric] = [split, metric].map(|name| name.map(str::to_owned));
-        EvalOptions { split, metric, resamples: Some(0), ..EvalOptions::default() }
-    }
-}
-
-fn nothing_measured(name: &str) -> Error {
-    Error::invalid_input(format!("there is no value of {name} on these data; check that they are annotated"))
 }

@@ -47,6 +47,7 @@ mod lowering;
 mod matrix;
 mod normalization;
 mod operation_name;
+mod operations;
 mod output;
 mod pooling;
 mod rearrangement;

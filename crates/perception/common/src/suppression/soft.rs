@@ -1,4 +1,4 @@
-use super::{Candidate, by_score, iou};
+use super::candidate::{Candidate, by_score, iou};
 
 /// Sigma of the Gaussian that lowers scores.
 const SIGMA: f32 = 0.5;
