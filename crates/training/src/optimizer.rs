@@ -4,21 +4,7 @@ use burn::optim::decay::WeightDecayConfig;
 use burn::optim::momentum::MomentumConfig;
 use burn::optim::{AdamConfig, AdamWConfig, ModuleOptimizer, RmsPropConfig, SgdConfig};
 
-use crate::TrainingParams;
-
-opendr_engine::choices! {
-    /// Optimiser.
-    pub enum OptimizerKind {
-        /// Adam with decoupled weight decay (Loshchilov and Hutter, ICLR 2019).
-        Adamw = "adamw",
-        /// Adam (Kingma and Ba, ICLR 2015).
-        Adam = "adam",
-        /// Stochastic gradient descent with momentum.
-        Sgd = "sgd",
-        /// RMSProp (Tieleman and Hinton, 2012).
-        Rmsprop = "rmsprop",
-    }
-}
+use crate::params::{OptimizerKind, TrainingParams};
 
 /// Epsilon in the denominators of the adaptive optimisers, as in PyTorch.
 const EPSILON: f32 = 1e-8;

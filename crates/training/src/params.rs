@@ -2,8 +2,33 @@
 
 use opendr_engine::params::Params;
 
-use crate::optimizer::OptimizerKind;
-use crate::schedule::ScheduleKind;
+opendr_engine::choices! {
+    /// Optimiser.
+    pub enum OptimizerKind {
+        /// Adam with decoupled weight decay (Loshchilov and Hutter, ICLR 2019).
+        Adamw = "adamw",
+        /// Adam (Kingma and Ba, ICLR 2015).
+        Adam = "adam",
+        /// Stochastic gradient descent with momentum.
+        Sgd = "sgd",
+        /// RMSProp (Tieleman and Hinton, 2012).
+        Rmsprop = "rmsprop",
+    }
+}
+
+opendr_engine::choices! {
+    /// Learning rate schedule after the warm-up.
+    pub enum ScheduleKind {
+        /// Constant.
+        Constant = "constant",
+        /// Multiplied by `lr_gamma` at each epoch of `lr_steps`.
+        Step = "step",
+        /// Half a cosine down to `lr_min` (SGDR without restarts, Loshchilov and Hutter, ICLR 2017, Eq. 5).
+        Cosine = "cosine",
+        /// Linear down to `lr_min`.
+        Linear = "linear",
+    }
+}
 
 /// Parameters common to all trainings. Learners include them with their own defaults:
 /// `#[param(flatten, lr = 0.001, epochs = 120)]`.

@@ -2,21 +2,7 @@
 
 use std::f64::consts::PI;
 
-use crate::TrainingParams;
-
-opendr_engine::choices! {
-    /// Learning rate schedule after the warm-up.
-    pub enum ScheduleKind {
-        /// Constant.
-        Constant = "constant",
-        /// Multiplied by `lr_gamma` at each epoch of `lr_steps`.
-        Step = "step",
-        /// Half a cosine down to `lr_min` (SGDR without restarts, Loshchilov and Hutter, ICLR 2017, Eq. 5).
-        Cosine = "cosine",
-        /// Linear down to `lr_min`.
-        Linear = "linear",
-    }
-}
+use crate::params::{ScheduleKind, TrainingParams};
 
 /// Learning rate of every step. It depends on the step alone, so a resumed training has the same rates.
 #[derive(Debug, Clone)]

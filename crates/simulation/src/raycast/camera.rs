@@ -2,8 +2,7 @@
 
 use opendr_engine::{Error, Result};
 
-use super::paint::paint;
-use super::{LANES, Pose, Scene, Vector, dot, length, minus};
+use super::{LANES, Pose, Vector, dot, length, minus};
 
 /// A camera with square pixels and the optical axis through the image centre.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +20,7 @@ pub struct Camera {
 /// Depth and body of each pixel.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct DepthBuffer {
-    width: usize,
+    pub(super) width: usize,
     pub(super) packets: Vec<[f32; LANES]>,
     pub(super) bodies: Vec<[u32; LANES]>,
 }
@@ -80,25 +79,8 @@ impl Camera {
         (ahead > 0.0).then(|| [place(self.width, left), place(self.height, up)])
     }
 
-    /// Renders depth and bodies of a scene, up to `range` metres ahead (along the optical axis, as depth cameras measure).
-    ///
-    /// Bodies are drawn one by one into the pixels that they may cover; the nearest is kept.
-    pub fn render_depth(&self, scene: &Scene, pose: &Pose, range: f32, buffer: &mut DepthBuffer) {
-        let packets = self.columns.len() * self.height;
-        buffer.width = self.width;
-        buffer.packets.clear();
-        buffer.packets.resize(packets, [range; LANES]);
-        buffer.bodies.clear();
-        buffer.bodies.resize(packets, [u32::MAX; LANES]);
-        for (body, number) in scene.bodies().iter().zip(0..) {
-            if let Some(patch) = self.patch(pose, body.position(), body.shape().reach(), range) {
-                paint(self, pose, body, number, patch, buffer);
-            }
-        }
-    }
-
     /// Returns the pixels that a ball may cover.
-    fn patch(&self, pose: &Pose, centre: Vector, radius: f32, range: f32) -> Option<Patch> {
+    pub(super) fn patch(&self, pose: &Pose, centre: Vector, radius: f32, range: f32) -> Option<Patch> {
         let aside = minus(centre, pose.position);
         let [ahead, left, up] = pose.axes.map(|axis| dot(axis, aside));
         let all = Patch { rows: 0..self.height, packets: 0..self.columns.len() };

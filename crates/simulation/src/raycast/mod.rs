@@ -10,6 +10,7 @@ mod mesh;
 mod packet;
 mod paint;
 mod pose;
+mod render;
 mod scene;
 mod shading;
 mod shape;

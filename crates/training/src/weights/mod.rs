@@ -12,6 +12,7 @@
 //! # }
 //! ```
 
+mod apply;
 mod fill;
 mod layer;
 mod names;
@@ -19,6 +20,7 @@ mod onnx;
 mod order;
 mod pattern;
 mod pytorch;
+mod read;
 mod report;
 mod rules;
 mod safetensors;

@@ -4,13 +4,13 @@ use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
 use opendr_onnx::model_from_bytes;
-use opendr_onnx::proto::{AttributeProto, GraphProto, NodeProto};
+use opendr_onnx::proto::{GraphProto, NodeProto};
 
 use crate::weights::WeightTable;
 
 mod constants;
 
-use constants::{Constant, Constants};
+use constants::{Constant, Constants, attribute};
 
 /// Returns the weights in the order of the graph's nodes, under their initialiser's name without `.weight`: convolutions,
 /// linear layers (also a product followed by a sum), batch normalisations, slopes and recurrent layers. Quantised integers are
@@ -156,8 +156,4 @@ impl<'g> Walk<'g> {
         }
         Ok(())
     }
-}
-
-fn attribute<'n>(node: &'n NodeProto, name: &str) -> Option<&'n AttributeProto> {
-    node.attribute.iter().find(|attribute| attribute.name == name)
 }

@@ -3,10 +3,8 @@
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::proto::{DataType, GraphProto, NodeProto, TensorProto};
+use opendr_onnx::proto::{AttributeProto, DataType, GraphProto, NodeProto, TensorProto};
 use opendr_onnx::{FloatType, element_count};
-
-use super::attribute;
 
 /// Maximum length of a chain of nodes from a constant.
 const MAX_CHAIN: usize = 4;
@@ -171,4 +169,9 @@ fn integers(tensor: &TensorProto) -> Option<Vec<i32>> {
         DataType::Int32 => raw.as_chunks().0.iter().map(|b| i32::from_le_bytes(*b)).collect(),
         _ => return None,
     })
+}
+
+/// Returns the attribute of a node by name.
+pub(super) fn attribute<'n>(node: &'n NodeProto, name: &str) -> Option<&'n AttributeProto> {
+    node.attribute.iter().find(|attribute| attribute.name == name)
 }
