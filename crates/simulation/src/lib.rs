@@ -26,6 +26,7 @@ mod drawing;
 mod film;
 mod numpy_random;
 mod registered_source;
+mod registration;
 mod registry;
 mod sine_cosine;
 
@@ -40,4 +41,5 @@ pub mod wrappers;
 pub use film::Recording;
 pub use numpy_random::NumpyRandom;
 pub use registered_source::RegisteredSource;
-pub use registry::{RegisteredEnvironment, Registration, Registry, make, make_vec};
+pub use registration::{RegisteredEnvironment, Registration};
+pub use registry::{Registry, make, make_vec};

@@ -4,7 +4,8 @@ use opendr_engine::Result;
 use opendr_engine::environment::{Environment, EnvironmentSource};
 use opendr_engine::params::ParamMap;
 
-use crate::registry::{Registration, Registry};
+use crate::registration::Registration;
+use crate::registry::Registry;
 
 /// Creates environments of one id and one set of parameters.
 #[derive(Clone)]

@@ -1,19 +1,14 @@
 //! The learner of end-to-end planning.
 
 use opendr_engine::data::Observation;
-use opendr_engine::environment::{EnvironmentSource, Space};
-use opendr_engine::learner::{FitJob, Learner, LearnerRl, Spec};
+use opendr_engine::environment::Space;
+use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params as _;
 use opendr_engine::target::RlTarget;
-use opendr_engine::{Device, Error, Random, Result, Statistics, Task};
+use opendr_engine::{Device, Error, Random, Result, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{
-    ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation,
-};
+use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, numbers_from_observation};
 use opendr_simulation::uav_corridor::FlightMemory;
-
-use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
 
 /// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`). The policy, trained by PPO,
 /// receives the memory of the flight and corrects the proposal of a planner with a horizon of two steps.
@@ -100,20 +95,5 @@ impl Learner for EndToEndPlanningRl {
         target.values.clear();
         target.values.extend_from_slice(&action);
         Ok(())
-    }
-}
-
-impl LearnerRl for EndToEndPlanningRl {
-    type FitParams = EndToEndPlanningFitParams;
-
-    fn fit(
-        base: Option<&Model>,
-        params: &PolicyParams,
-        fit_params: &EndToEndPlanningFitParams,
-        env: &dyn EnvironmentSource,
-        val_env: Option<&dyn EnvironmentSource>,
-        job: &FitJob<'_>,
-    ) -> Result<Statistics> {
-        fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, env, val_env, job)
     }
 }

@@ -1,11 +1,14 @@
 //! The training of end-to-end planning.
 
-use opendr_engine::Result;
-use opendr_engine::environment::{Environment, EnvironmentSpec};
-use opendr_engine::learner::{Learner as _, Spec};
+use opendr_engine::environment::{Environment, EnvironmentSource, EnvironmentSpec};
+use opendr_engine::learner::{FitJob, Learner as _, LearnerRl, Spec};
+use opendr_engine::model::Model;
 use opendr_engine::params::Params;
+use opendr_engine::{Result, Statistics};
 use opendr_kernels::Compute;
-use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
+use opendr_rl::{
+    Algorithm as _, Method, Policy, PolicyParams, Ppo, PpoConfig, RlTrainingParams, Schedule, fit_policy,
+};
 use opendr_simulation::uav_corridor::FlightMemoryWrapper;
 
 use super::{DenseObstacles, EndToEndPlanningRl, TrainingRewards};
@@ -83,5 +86,20 @@ impl Method for PpoInCorridors {
         let mut ppo = Ppo::new(&config, spec)?.with_compute(compute);
         base.map_or(Ok(()), |base| ppo.set_policy(base))?;
         Ok(ppo)
+    }
+}
+
+impl LearnerRl for EndToEndPlanningRl {
+    type FitParams = EndToEndPlanningFitParams;
+
+    fn fit(
+        base: Option<&Model>,
+        params: &PolicyParams,
+        fit_params: &EndToEndPlanningFitParams,
+        env: &dyn EnvironmentSource,
+        val_env: Option<&dyn EnvironmentSource>,
+        job: &FitJob<'_>,
+    ) -> Result<Statistics> {
+        fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, env, val_env, job)
     }
 }

@@ -7,6 +7,7 @@ mod likelihood;
 mod network_config;
 mod observation_encoder;
 mod observation_normaliser;
+mod sampling;
 mod space_record;
 mod trunk;
 

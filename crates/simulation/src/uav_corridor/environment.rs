@@ -290,6 +290,6 @@ impl Environment for UavDepthCorridor {
 
     fn render(&mut self) -> Result<Option<Image>> {
         self.place.ok_or_else(|| not_begun(&self.spec))?;
-        super::picture::picture(self).map(Some)
+        super::picture::picture(self.world.scene(), self.pose(), &self.path).map(Some)
     }
 }

@@ -4,8 +4,8 @@ use opendr_engine::Result;
 use opendr_engine::data::{Image, PixelFormat};
 use opendr_vision::draw::{Canvas, Point};
 
-use super::{CAMERA_HEIGHT, FINISH, HALF_WIDTH, RANGE, SIDE, START, UavDepthCorridor};
-use crate::raycast::{Camera, DepthBuffer, Pose, Scene, Shading, along};
+use super::{CAMERA_HEIGHT, FINISH, HALF_WIDTH, RANGE, SIDE, START};
+use crate::raycast::{Camera, DepthBuffer, Pose, Scene, Shading, Vector, along};
 
 const WIDTH: usize = 600;
 const HALF_HEIGHT: usize = 200;
@@ -18,9 +18,8 @@ const ABOVE: f32 = 120.0;
 const HALF_MAP: f32 = 17.0;
 const FAR: f32 = 60.0;
 
-/// Renders 600 x 400 pixels.
-pub(super) fn picture(corridor: &UavDepthCorridor) -> Result<Image> {
-    let (scene, pose) = (corridor.world().scene(), corridor.pose());
+/// Renders the world, the drone's pose and the path so far in 600 x 400 pixels.
+pub(super) fn picture(scene: &Scene, pose: Pose, path: &[Vector]) -> Result<Image> {
     let eye = Pose { position: along(pose.position, pose.axes[2], CAMERA_HEIGHT), ..pose };
     let shading = Shading::default();
     let wide = Camera::new(COLOUR, HALF_HEIGHT, HALF_WIDTH * COLOUR as f32 / HALF_HEIGHT as f32)?;
@@ -28,7 +27,7 @@ pub(super) fn picture(corridor: &UavDepthCorridor) -> Result<Image> {
     let mut canvas = vec![255; 3 * WIDTH * 2 * HALF_HEIGHT];
     paste(&mut canvas, &ahead, [0, 0]);
     paste(&mut canvas, &depth_picture(scene, &eye)?, [COLOUR, 0]);
-    paste(&mut canvas, &map(corridor, &shading)?, [0, HALF_HEIGHT]);
+    paste(&mut canvas, &map(scene, path, &shading)?, [0, HALF_HEIGHT]);
     Image::from_rgb8(canvas, WIDTH, 2 * HALF_HEIGHT)
 }
 
@@ -43,14 +42,13 @@ fn depth_picture(scene: &Scene, eye: &Pose) -> Result<Image> {
     Image::from_rgb8(pixels.collect(), DEPTH, DEPTH)
 }
 
-fn map(corridor: &UavDepthCorridor, shading: &Shading) -> Result<Image> {
+fn map(scene: &Scene, path: &[Vector], shading: &Shading) -> Result<Image> {
     let camera = Camera::new(WIDTH, HALF_HEIGHT, HALF_MAP / ABOVE)?;
     // Seen from above, with the corridor from left to right.
     let axes = [[0.0, 0.0, -1.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     let pose = Pose { position: [(START + FINISH) / 2.0, 0.0, ABOVE], axes };
-    let mut image = shading.render(&camera, corridor.world().scene(), &pose, 2.0 * ABOVE)?;
-    let points: Vec<Point> =
-        corridor.path().iter().filter_map(|point| camera.project(&pose, *point)).collect();
+    let mut image = shading.render(&camera, scene, &pose, 2.0 * ABOVE)?;
+    let points: Vec<Point> = path.iter().filter_map(|point| camera.project(&pose, *point)).collect();
     let mut canvas = Canvas::over(&mut image);
     for ends in points.windows(2) {
         canvas.line(ends[0], ends[1], 2.0, [220, 40, 40], 1.0);

@@ -5,7 +5,7 @@ use opendr_engine::params::{ParamMap, Params};
 
 use super::{CorridorForm, CorridorOptions, UavDepthCorridor, UavDepthCorridorParams};
 use crate::Registration;
-use crate::registry::checked;
+use crate::registration::checked;
 
 /// `UavDepthCorridor-discrete-v1`: seven discrete actions.
 #[derive(Debug, Clone, Params)]

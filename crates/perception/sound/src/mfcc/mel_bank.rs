@@ -1,7 +1,11 @@
 //! Mel bands: overlapping triangular filters over a spectrum.
 
+use opendr_kernels::FOURIER_FRAMES;
+
 use crate::mfcc::options::{MelBands, MelScale, Sides};
-use crate::mfcc::transform::Frames;
+
+/// One value of each frame of a group that is transformed together.
+pub(super) type Frames = [f32; FOURIER_FRAMES];
 
 /// Weights of each band, without the zeros.
 pub(super) struct MelBank {
@@ -99,8 +103,6 @@ impl MelScale {
 
 #[cfg(test)]
 mod tests {
-    use opendr_kernels::FOURIER_FRAMES;
-
     use super::*;
 
     /// Expected values of `librosa.hz_to_mel`, and of TensorFlow's constants.

@@ -2,15 +2,10 @@
 
 use std::f64::consts::PI;
 
-use opendr_kernels::{
-    Compute, FOURIER_FRAMES, FourierScratch, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum,
-};
+use opendr_kernels::{Compute, FourierScratch, Isa, Matrix, MatrixMut, Product, RealFourier, Spectrum};
 
-use crate::mfcc::mel_bank::MelBank;
+use crate::mfcc::mel_bank::{Frames, MelBank};
 use crate::mfcc::options::{CosineScale, Edges, MfccOptions};
-
-/// One value of each frame of a group that is transformed together.
-pub(super) type Frames = [f32; FOURIER_FRAMES];
 
 /// Window function and Fourier transform of several frames at a time.
 pub(super) struct FrameSpectrum {

@@ -88,11 +88,8 @@ struct Scratch {
     dropped: Vec<bool>,
 }
 
-/// Files of the container: the layer over points, and the network over pillars.
-const POINT_FILE: &str = "vfe.onnx";
+/// File of the network over pillars in every container.
 const PILLAR_FILE: &str = "rpn.onnx";
-/// Points per call of the layer over points.
-const CHUNK: usize = 4096;
 /// Maximum number of channels of the canvas.
 const MOST_CHANNELS: usize = 1024;
 /// Outputs of the network over pillars.

@@ -13,8 +13,9 @@ use opendr_training::{Container, Loss, Objective};
 use super::layout::PillarLayout;
 use super::loss::PillarLoss;
 use super::network::{CHANNELS, PillarNetwork};
+use super::point_features::{CHUNK, POINT_FILE};
 use super::targets::{PillarBatch, PillarBatches};
-use super::{CHUNK, OUTPUTS, PILLAR_FILE, POINT_FILE, VoxelObjectDetection3d};
+use super::{OUTPUTS, PILLAR_FILE, VoxelObjectDetection3d};
 use crate::pillars::{PillarPoint, Voxeliser};
 
 /// Training objective of PointPillars.

@@ -5,8 +5,12 @@ use opendr_engine::model::Model;
 use opendr_engine::{Device, Error, Result};
 use opendr_inference::{Session, TensorView};
 
-use super::{CHUNK, POINT_FILE};
 use crate::pillars::{PillarGrid, PillarPoint, Voxeliser};
+
+/// File of the layer over points in every container.
+pub(super) const POINT_FILE: &str = "vfe.onnx";
+/// Points per call of the layer over points.
+pub(super) const CHUNK: usize = 4096;
 
 /// Runs the layer over points in chunks.
 pub(super) struct PointFeatures {

@@ -6,7 +6,7 @@ use opendr_perception_common::clip_frames::ClipFrames;
 use opendr_sound::mfcc::{Mfcc, MfccOptions};
 use opendr_sound::{AudioInput, standardise};
 
-use super::AudiovisualEmotionParams;
+use super::params::AudiovisualEmotionParams;
 
 /// Sizes of the network's input.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,6 +15,7 @@ mod front_end;
 mod network;
 #[cfg(feature = "training")]
 mod objective;
+mod params;
 #[cfg(test)]
 #[cfg(feature = "training")]
 mod tests;
@@ -24,25 +25,13 @@ pub use fit::AudiovisualEmotionFitParams;
 use opendr_engine::data::{Audio, Video};
 use opendr_engine::learner::{Inputs, Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
 
 use self::front_end::{FrontEnd, Sizes};
-
-opendr_engine::choices! {
-    /// Fusion of the two branches.
-    pub enum AudiovisualFusion {
-        /// Between the halves of the branches: attention weights the time steps of the other branch.
-        IntermediateAttention = "ia",
-        /// Between the halves of the branches: the attended features of the other branch are added.
-        IntermediateTransformer = "it",
-        /// At the ends of the branches: each continues with the attended features of the other.
-        LateTransformer = "lt",
-    }
-}
+pub use self::params::{AudiovisualEmotionParams, AudiovisualFusion};
 
 opendr_engine::choices! {
     /// Dropout of modalities in training.
@@ -52,25 +41,6 @@ opendr_engine::choices! {
         /// No dropout.
         None = "nodrop",
     }
-}
-
-/// Parameters of [`AudiovisualEmotion`]. The sizes apply to the network that is trained; a loaded model has its own.
-#[derive(Debug, Clone, Params)]
-pub struct AudiovisualEmotionParams {
-    /// Number of classes. None: the number of classes in the data set.
-    #[param(range = 2..=10_000)]
-    pub num_class: Option<usize>,
-    /// Number of frames of the face, sampled evenly from the video.
-    #[param(default = 15, range = 2..=256)]
-    pub seq_length: usize,
-    /// Fusion of the two branches.
-    pub fusion: AudiovisualFusion,
-    /// Sample rate of the audio.
-    #[param(default = 22_050, range = 8000..=48_000, unit = "Hz")]
-    pub sample_rate: u32,
-    /// Duration of the audio that is used, from its start; shorter audio is padded.
-    #[param(default = 3.6, range = 0.2..=60.0, unit = "s")]
-    pub seconds: f64,
 }
 
 /// Audio and video of a speaking person.

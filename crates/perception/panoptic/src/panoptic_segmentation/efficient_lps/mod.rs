@@ -29,7 +29,7 @@ use serde::{Deserialize, Serialize};
 
 #[cfg(feature = "training")]
 pub use fit::EfficientLpsFitParams;
-use objects::{ObjectRule, Objects};
+use objects::{LABEL_DIVISOR, ObjectRule, Objects, UNKNOWN};
 
 /// Parameters of [`EfficientLps`].
 #[derive(Debug, Clone, Params)]
@@ -85,10 +85,6 @@ const FILE: &str = "model.onnx";
 const CHANNELS: usize = 5;
 /// Divisors of these channels.
 const SCALES: [f32; CHANNELS] = [50.0, 50.0, 50.0, 5.0, 1.0];
-/// A label is this times its class plus the index of the object, as in Cityscapes.
-const LABEL_DIVISOR: u32 = 1000;
-/// Class of void.
-const UNKNOWN: u32 = 255;
 
 /// Description of the network's input in a container.
 #[derive(Debug, Serialize, Deserialize)]

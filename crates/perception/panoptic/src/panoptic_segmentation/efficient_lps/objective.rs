@@ -16,9 +16,8 @@ use opendr_training::export::{Input, onnx};
 use opendr_training::{Container, Loss, Objective};
 
 use super::network::RangeNetwork;
-use super::{
-    CHANNELS, Described, EfficientLps, EfficientLpsParams, FILE, LABEL_DIVISOR, UNKNOWN, fill_canvas, project,
-};
+use super::objects::{LABEL_DIVISOR, UNKNOWN};
+use super::{CHANNELS, Described, EfficientLps, EfficientLpsParams, FILE, fill_canvas, project};
 
 /// Training objective: weighted cross-entropy per pixel.
 pub(super) struct LabelledScans {

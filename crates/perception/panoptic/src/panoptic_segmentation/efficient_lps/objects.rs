@@ -4,7 +4,10 @@ use opendr_clouds::range_image::{NONE, RangeImage};
 use opendr_engine::data::PointCloud;
 use opendr_vision::components::{Components, Connectivity};
 
-use super::{LABEL_DIVISOR, UNKNOWN};
+/// A label is this times its class plus the index of the object, as in Cityscapes.
+pub(super) const LABEL_DIVISOR: u32 = 1000;
+/// Class of void.
+pub(super) const UNKNOWN: u32 = 255;
 
 /// Criteria of an object.
 pub(super) struct ObjectRule<'a> {

@@ -4,36 +4,20 @@
 //! tracks the persons. The first posture of a person is valid at once; another replaces it after `hold` seconds, so a
 //! single wrong pose neither raises nor ends an alarm.
 
+mod params;
 mod pose_finder;
 mod verdicts;
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Learner, Spec, Targets};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes, PoseList};
 use opendr_engine::{Device, Result, Task};
 
+pub use self::params::FallDetectorParams;
 use self::pose_finder::{PoseFinder, PoseFinderState};
 use self::verdicts::Verdicts;
 use super::Posture;
-
-/// Parameters of [`FallDetector`].
-#[derive(Debug, Clone, Params)]
-pub struct FallDetectorParams {
-    /// Time after which a new posture replaces the previous one.
-    #[param(default = 0.5, range = 0.0..=60.0, unit = "s", live)]
-    pub hold: f32,
-    /// Score below which persons are dropped.
-    #[param(default = 0.1, range = 0.0..=1.0, live)]
-    pub threshold: f32,
-    /// Score below which joints are missing.
-    #[param(default = 0.1, range = 0.01..=1.0, live)]
-    pub keypoint_threshold: f32,
-    /// Height of the input of LightweightOpenPose; larger values detect smaller persons. MoveNet has its own size.
-    #[param(default = 368, range = 64..=2048, unit = "px", live)]
-    pub base_height: usize,
-}
 
 /// Predictions for an image.
 #[derive(Default, Targets)]

@@ -6,7 +6,7 @@ use opendr_engine::model::Model;
 use opendr_engine::target::PoseList;
 use opendr_engine::{Device, Result};
 
-use super::FallDetectorParams;
+use super::params::FallDetectorParams;
 use crate::pose_estimation::{
     LightweightOpenPose, LightweightOpenPoseParams, LightweightOpenPoseState, Movenet, MovenetParams,
     PoseTracks,
