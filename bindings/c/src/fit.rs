@@ -98,7 +98,8 @@ pub unsafe extern "C" fn opendr_fit_in(
         };
         let options = options_from_json(options)?;
         let environments = FitEnvironments { env: &source, val_env: None };
-        let fitted = opendr::fit_policy(loaded.lock().as_mut(), loaded.entry, environments, &options, &listener)?;
+        let fitted =
+            opendr::fit_policy(loaded.lock().as_mut(), loaded.entry, environments, &options, &listener)?;
         out.set(Text::of_json(&fitted)?);
         Ok(())
     })

@@ -3,7 +3,7 @@
 use std::mem::MaybeUninit;
 
 use opendr::data::{Image, PixelFormat};
-use opendr::vision::{LetterboxAlign, ChannelOrder, Preprocess};
+use opendr::vision::{ChannelOrder, LetterboxAlign, Preprocess};
 use opendr::{Error, Result};
 
 use crate::data::{FORMATS, LAYOUTS, from_number};

@@ -10,7 +10,7 @@ use opendr::learner::{AnyLearner, AnyStream, Entry, Outputs, Port, Ports};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
 use opendr::{
-    PolicyController, Device, Error, FitData, FitEnvironments, FitOptions, Pool, Statistics, Value, ValueType,
+    Device, Error, FitData, FitEnvironments, FitOptions, PolicyController, Pool, Statistics, Value, ValueType,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;

@@ -88,7 +88,8 @@ impl Study {
 
     /// Sets a user attribute, given as JSON, of a trial.
     fn note(&self, py: Python<'_>, number: usize, key: &str, value: &str) -> PyResult<()> {
-        py.detach(|| self.study.set_user_attribute(number, key, from_json(value, "invalid user attribute")?)).to_python(py)
+        py.detach(|| self.study.set_user_attribute(number, key, from_json(value, "invalid user attribute")?))
+            .to_python(py)
     }
 
     /// Finishes a trial: with its value, as pruned without one, or as failed with the reason.

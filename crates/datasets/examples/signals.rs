@@ -9,8 +9,8 @@ use std::fs;
 use std::path::Path;
 
 use opendr_datasets::{
-    NpyFile, OpenOptions, Problems, WavEncoding, WriteOptions, find_format, npy_from_f32, open, open_mot_results,
-    open_wav, open_wfdb_record, wav_from_audio, write_mot_results,
+    NpyFile, OpenOptions, Problems, WavEncoding, WriteOptions, find_format, npy_from_f32, open,
+    open_mot_results, open_wav, open_wfdb_record, wav_from_audio, write_mot_results,
 };
 use opendr_engine::data::{Image, Pixels};
 use opendr_engine::dataset::{DatasetIterator, ExternalDataset};

@@ -22,9 +22,7 @@ pub fn contact_sheet(dataset: &dyn DatasetIterator, problems: &Problems) -> Resu
     let mut pictures = Vec::new();
     for at in 0..dataset.len() {
         match dataset.get(at) {
-            Ok(sample) => {
-                pictures.extend(draw_sample(&sample).map(|picture| (picture, dataset.name(at))))
-            }
+            Ok(sample) => pictures.extend(draw_sample(&sample).map(|picture| (picture, dataset.name(at)))),
             Err(error) => {
                 problems.report(Problem::of(&error, dataset, at))?;
             }

@@ -1,7 +1,7 @@
 //! Parallel loader: the samples of a data set in batches, in an order that does not depend on the number of
 //! threads.
 //!
-//! Threads read samples, augment them and fill batches ahead of the training, at most [`LoaderOptions::ahead`]
+//! Threads read samples, augment them and fill batches ahead of the training, at most [`LoaderOptions::prefetch`]
 //! batches, which bounds memory. The order and every random number depend on seed, epoch and sample index only.
 
 mod collate;
@@ -36,8 +36,8 @@ pub struct LoaderOptions {
     #[param(default = 2, range = 0..=1024)]
     pub threads: usize,
     /// Largest number of batches that are prepared in advance.
-    #[param(default = 4, range = 1..=100_000)]
-    pub ahead: usize,
+    #[param(default = 4, range = 1..=100_000, alias = "ahead")]
+    pub prefetch: usize,
     /// Whether the order of samples is random, a different one in each epoch.
     #[param(default = true)]
     pub shuffle: bool,

@@ -170,8 +170,10 @@ mod tests {
 
     #[test]
     fn keys_have_independent_generators() {
-        let mut first: Vec<u64> =
-            (0..1000).flat_map(|i| [Random::from_key([0, i]), Random::from_key([i, 1])]).map(|mut r| r.bits()).collect();
+        let mut first: Vec<u64> = (0..1000)
+            .flat_map(|i| [Random::from_key([0, i]), Random::from_key([i, 1])])
+            .map(|mut r| r.bits())
+            .collect();
         first.push(Random::from_key([0]).bits());
         first.push(Random::from_key([0, 0, 0]).bits());
         first.sort_unstable();

@@ -52,8 +52,11 @@ impl Groups {
     /// Returns the group of a unit.
     pub fn of(&mut self, unit: usize) -> &mut dyn AnyMetric {
         let count = self.groups.len();
-        let group =
-            if self.units <= count { unit % count } else { Random::from_key([SEED, unit as u64]).below(count) };
+        let group = if self.units <= count {
+            unit % count
+        } else {
+            Random::from_key([SEED, unit as u64]).below(count)
+        };
         self.groups[group].as_mut()
     }
 

@@ -17,8 +17,8 @@ use crate::bootstrap::Groups;
 use crate::classes::{AnnotatedClasses, MapLabels, annotated_classes};
 use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::shown::{ScoredSample, ContactSheetSamples};
-use crate::{FilePredictions, ClassMap, ClassMatching, Outcome, Predictor};
+use crate::shown::{ContactSheetSamples, ScoredSample};
+use crate::{ClassMap, ClassMatching, FilePredictions, Outcome, Predictor};
 
 /// Number of samples with the lowest scores that are listed, and of those spaced evenly over the data set.
 const LISTED: usize = 24;

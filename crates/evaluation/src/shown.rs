@@ -44,9 +44,8 @@ impl ContactSheetSamples {
 
     /// Adds a sample; keeps a copy if it is among the lowest scores or evenly spaced.
     pub fn add(&mut self, sample: &ScoredSample) {
-        let order = |other: &ScoredSample| {
-            other.score.total_cmp(&sample.score).then(other.index.cmp(&sample.index))
-        };
+        let order =
+            |other: &ScoredSample| other.score.total_cmp(&sample.score).then(other.index.cmp(&sample.index));
         let at = self.worst.partition_point(|other| order(other) == Ordering::Less);
         if at < self.limit {
             self.worst.insert(at, sample.clone());
@@ -75,9 +74,7 @@ pub fn contact_sheet(
     for ScoredSample { index, name, score, prediction } in samples {
         let sample = dataset.get(*index)?;
         let predicted = Sample { target: Some(confident(prediction, least)), ..sample.clone() };
-        if let (Some(truth), Some(predicted)) =
-            (draw_sample(&sample), draw_sample(&predicted))
-        {
+        if let (Some(truth), Some(predicted)) = (draw_sample(&sample), draw_sample(&predicted)) {
             images.push((truth, name.clone()));
             images.push((predicted, format!("predicted, {score:.2}")));
         }

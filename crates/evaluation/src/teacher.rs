@@ -11,7 +11,7 @@ use opendr_engine::{Error, Progress, Result, ResultExt, Unit, Value, ValueType};
 
 use crate::journal::{Heading, Journal, Line, SampleResult};
 use crate::predictor::predict_samples;
-use crate::{ClassMap, ClassMatching, Subject, LabelledDataset};
+use crate::{ClassMap, ClassMatching, LabelledDataset, Subject};
 
 /// Advice for classes that do not match.
 const REMEDY: &str = "Map them with teacher_map (--teacher-map TEACHER=CLASS,...), or take their numbers as they are with \

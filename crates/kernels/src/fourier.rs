@@ -299,7 +299,8 @@ mod tests {
                 };
                 part(f64::cos).powi(2) + part(f64::sin).powi(2)
             };
-            let (fourier, mut work, mut power) = (RealFourier::new(size), FourierScratch::default(), Vec::new());
+            let (fourier, mut work, mut power) =
+                (RealFourier::new(size), FourierScratch::default(), Vec::new());
             for isa in Isa::available() {
                 fourier.run(isa, Spectrum::Power, &samples, &mut work, &mut power);
                 let mut magnitude = Vec::new();

@@ -13,8 +13,8 @@ use std::io::{BufRead, Write, stdin, stdout};
 
 use opendr_engine::{Error, Result};
 use opendr_messages::{
-    Message, MessageType, RosService, StdSrvsEmpty, StdSrvsSetBool, StdSrvsTrigger, WireFormat, cdr_from_message,
-    message_from_cdr, message_from_ros1, ros1_from_message,
+    Message, MessageType, RosService, StdSrvsEmpty, StdSrvsSetBool, StdSrvsTrigger, WireFormat,
+    cdr_from_message, message_from_cdr, message_from_ros1, ros1_from_message,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -184,7 +184,8 @@ impl Metric for Classification {
         ("maximum_calibration_error", "Largest of these differences."),
         ("samples", "Number of samples."),
     ];
-    const LOWER_IS_BETTER: &'static [&'static str] = &["expected_calibration_error", "maximum_calibration_error"];
+    const LOWER_IS_BETTER: &'static [&'static str] =
+        &["expected_calibration_error", "maximum_calibration_error"];
     type Params = ClassificationParams;
     type Prediction = Category;
     type Truth = Category;

@@ -118,7 +118,8 @@ impl Identity {
         let sequence = &mut self.sequences.open;
         sequence.objects += frame.truth().len() as u64;
         sequence.predictions += frame.predictions().len() as u64;
-        let pairs = frame.truth().iter().flat_map(|id| frame.predictions().iter().map(move |track| (*id, *track)));
+        let pairs =
+            frame.truth().iter().flat_map(|id| frame.predictions().iter().map(move |track| (*id, *track)));
         for (pair, overlap) in pairs.zip(frame.overlaps()) {
             if self.params.distance(*overlap).is_finite() {
                 *sequence.matches.entry(pair).or_default() += 1;

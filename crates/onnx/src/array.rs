@@ -90,7 +90,9 @@ impl Data {
     pub fn kind(&self) -> ElementType {
         match self {
             Self::Float(_) => ElementType::Float,
-            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => ElementType::Int,
+            Self::Int(_) | Self::Partial(_) | Self::Int8(_) | Self::UInt8(_) | Self::Int32(_) => {
+                ElementType::Int
+            }
             Self::Bool(_) => ElementType::Bool,
         }
     }

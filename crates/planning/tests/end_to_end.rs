@@ -8,7 +8,9 @@ use opendr_engine::learner::{FitJob, Handle, Learner as _};
 use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::{Device, ErrorKind, Result};
 use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
-use opendr_rl::{EvaluationProtocol, POLICY_FILE, PolicyParams, evaluate_controller, observation_from_numbers};
+use opendr_rl::{
+    EvaluationProtocol, POLICY_FILE, PolicyParams, evaluate_controller, observation_from_numbers,
+};
 use opendr_simulation::make;
 
 struct Folder(PathBuf);

@@ -6,7 +6,8 @@ use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Result};
 use opendr_rl::{EvaluationProtocol, evaluate_controller};
 use opendr_simulation::uav_corridor::{
-    ObservationController, CorridorController, PotentialField, ReactiveController, StraightController, UavDepthCorridor, UavDepthCorridorParams,
+    CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
+    UavDepthCorridor, UavDepthCorridorParams,
 };
 use opendr_simulation::{RegisteredEnvironment as _, Registry, make};
 

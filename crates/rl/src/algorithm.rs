@@ -138,7 +138,8 @@ pub trait Algorithm {
     {
         while self.report().timesteps < total_timesteps {
             self.iterate(environments, total_timesteps)?;
-            let event = IterationEvent { learner: &*self, environments: &*environments, report: self.report() };
+            let event =
+                IterationEvent { learner: &*self, environments: &*environments, report: self.report() };
             if observer(event)?.is_break() {
                 break;
             }

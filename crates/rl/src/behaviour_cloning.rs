@@ -215,7 +215,7 @@ mod tests {
     use opendr_engine::environment::Space;
 
     use super::*;
-    use crate::policy::{ParameterInit, Bounds, NetworkConfig};
+    use crate::policy::{Bounds, NetworkConfig, ParameterInit};
 
     fn demonstrations(spec: &EnvironmentSpec, act: impl Fn(f32, f32) -> f32) -> Demonstrations {
         let mut random = Random::new(4);

@@ -65,8 +65,8 @@ pub use learner::{
 pub use off_policy::OffPolicyConfig;
 pub use onnx::onnx_from_policy;
 pub use policy::{
-    ActionMode, ParameterInit, Bounds, Head, ActivationFn, NetworkConfig, ObservationEncoder, ObservationNormaliser,
-    ImageNetwork, Policy, PolicyMemory,
+    ActionMode, ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, ObservationEncoder,
+    ObservationNormaliser, ParameterInit, Policy, PolicyMemory,
 };
 pub use ppo::{Ppo, PpoConfig, Trajectory, generalised_advantages};
 pub use preset::Preset;

@@ -4,7 +4,7 @@ use opendr_engine::environment::StateReader;
 use opendr_engine::{Random, Result};
 use opendr_kernels::{Adam, AdamOptions, Compute, Network, Tape, polyak_update};
 
-use crate::policy::{ParameterInit, Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder};
+use crate::policy::{Extractor, ExtractorMemory, NetworkConfig, ObservationEncoder, ParameterInit};
 use crate::saved_state::SavedState;
 
 /// Names of the arrays of saved critics and of their shared extractor: parameters, target and moments of Adam of each.
@@ -260,7 +260,7 @@ impl TwinCritics {
 
 impl SharedExtractor {
     fn new(encoder: &ObservationEncoder, config: &NetworkConfig, random: &mut Random) -> Result<Self> {
-        let extractor = Extractor::new(encoder, config.picture_network)?;
+        let extractor = Extractor::new(encoder, config.image_network)?;
         let count = extractor.parameters();
         let mut parameters = vec![0.0; count];
         extractor.initialise(ParameterInit::Uniform, random, &mut parameters);

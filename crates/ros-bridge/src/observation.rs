@@ -50,7 +50,8 @@ impl FromToMessage<opendr_msgs::Observation> for Observation {
 impl FromToMessage<Float32MultiArrayStamped> for Observation {
     fn from_message(message: Float32MultiArrayStamped, bridge: &RosBridge) -> Result<Self> {
         let header = header_from_message(&message.header);
-        Ok(<Self as FromToMessage<Float32MultiArray>>::from_message(message.array, bridge)?.with_header(header))
+        Ok(<Self as FromToMessage<Float32MultiArray>>::from_message(message.array, bridge)?
+            .with_header(header))
     }
 
     fn to_message(&self, bridge: &RosBridge) -> Result<Float32MultiArrayStamped> {

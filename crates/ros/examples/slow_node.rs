@@ -13,7 +13,7 @@ use opendr_engine::model::{Manifest, Model, ModelWriter};
 use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::Category;
 use opendr_engine::{Device, Result, Task, learners};
-use opendr_ros::{SharedSubscriptions, LearnerNode, Names, Ros2, Ros2Options, Severity, default_topics};
+use opendr_ros::{LearnerNode, Names, Ros2, Ros2Options, Severity, SharedSubscriptions, default_topics};
 
 /// Parameters of the learner.
 #[derive(Debug, Clone, Params)]
@@ -64,7 +64,13 @@ fn main() -> Result<()> {
     learner.load(&folder)?;
     std::fs::remove_dir_all(&folder)?;
     let mut graph = Ros2::new(&Ros2Options::default())?.node(Names::new("/", "slow", [""; 0])?)?;
-    let node = LearnerNode::new(&mut *graph, entry, learner, default_topics(entry), &mut SharedSubscriptions::default())?;
+    let node = LearnerNode::new(
+        &mut *graph,
+        entry,
+        learner,
+        default_topics(entry),
+        &mut SharedSubscriptions::default(),
+    )?;
     graph.start()?;
     graph.log()(Severity::Info, "SlowLearner is ready as /slow");
     node.run(&|| false);

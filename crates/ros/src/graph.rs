@@ -102,8 +102,13 @@ pub trait Graph: Send {
     ///
     /// # Errors
     /// As [`Graph::advertise`].
-    fn subscribe(&mut self, topic: &str, message_type: MessageType, qos: Qos, deliver: MessageCallback)
-    -> Result<()>;
+    fn subscribe(
+        &mut self,
+        topic: &str,
+        message_type: MessageType,
+        qos: Qos,
+        deliver: MessageCallback,
+    ) -> Result<()>;
 
     /// Serves a `std_srvs/Trigger`.
     ///

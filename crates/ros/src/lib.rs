@@ -26,9 +26,9 @@ mod ros2;
 mod ros_args;
 
 pub use environment_node::{EnvironmentNode, EnvironmentOptions, ObservationWriter};
-pub use graph::{Clock, MessageCallback, Graph, Log, Publisher, Qos, Severity, TriggerHandler};
+pub use graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, Severity, TriggerHandler};
 pub use names::Names;
-pub use node::{SharedSubscriptions, LearnerNode, NodeOptions, NodeParams, TopicOptions, default_topics};
+pub use node::{LearnerNode, NodeOptions, NodeParams, SharedSubscriptions, TopicOptions, default_topics};
 pub use parameter_table::ParameterTable;
 pub use ros_args::{RosArgs, ros_args_from_ros1};
 pub use ros1::Ros1Node;

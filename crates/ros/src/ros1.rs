@@ -13,7 +13,7 @@ use opendr_ros1::{
 };
 
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, MessageCallback, Graph, Log, Publisher, Qos, Severity, TriggerHandler, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, Severity, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};
 
 /// Maximum wait for a master that is being started.
@@ -41,8 +41,8 @@ impl Ros1Node {
         let full_name = names.full();
         let log = terminal_log(&full_name);
         let logger = log.clone();
-        let mut options = NodeOptions::new(names.node())
-            .on_error(move |error| logger(Severity::Warn, &error.to_string()));
+        let mut options =
+            NodeOptions::new(names.node()).on_error(move |error| logger(Severity::Warn, &error.to_string()));
         options.namespace = Some(names.namespace().to_owned());
         options.wait_for_master = PATIENCE_WITH_MASTER;
         let node = Arc::new(Node::new(options)?);

@@ -109,7 +109,8 @@ impl SpinningLidar {
         let mut returns = Vec::with_capacity(hits.len());
         for (direction, hit) in directions.iter().zip(&hits) {
             let Some(hit) = hit else { continue };
-            let SurfaceResponse { noise, lost, reflectance } = echo(hit, along([0.0; 3], *direction, hit.distance));
+            let SurfaceResponse { noise, lost, reflectance } =
+                echo(hit, along([0.0; 3], *direction, hit.distance));
             if random.chance(lost) {
                 continue;
             }
@@ -149,7 +150,8 @@ mod tests {
         let nearest = returns.iter().map(|hit| hit.point[0].hypot(hit.point[1])).fold(f32::MAX, f32::min);
         assert!((nearest - 3.744).abs() < 1e-2, "{nearest}");
         assert!(returns.iter().all(|seen| (seen.point[2] + 1.73).abs() < 1e-3 && seen.point[0] > 0.0));
-        let half = lidar.scan(&scene, &mut Random::new(1), |_, _| SurfaceResponse { lost: 0.5, ..CLEAR }).unwrap();
+        let half =
+            lidar.scan(&scene, &mut Random::new(1), |_, _| SurfaceResponse { lost: 0.5, ..CLEAR }).unwrap();
         assert!((half.len() as f64 / returns.len() as f64 - 0.5).abs() < 0.05);
     }
 

@@ -8,7 +8,7 @@ use opendr_datasets::UnlabelledImages;
 use opendr_datasets::loader::{ImageBatch, ImageBatches};
 use opendr_engine::{Result, learner::FitJob, model::Manifest};
 use opendr_training::export::{self, Input};
-use opendr_training::{Container, Loss, Objective, TrainingParams, seeded_device, fit_network};
+use opendr_training::{Container, Loss, Objective, TrainingParams, fit_network, seeded_device};
 use opendr_vision::Preprocess;
 
 const SIDE: usize = 64;

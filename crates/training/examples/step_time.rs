@@ -18,7 +18,9 @@ use opendr_engine::learner::FitJob;
 use opendr_engine::model::Manifest;
 use opendr_engine::{Device as Place, Error, Progress, Random, Result, Unit, Value};
 use opendr_training::layers::{Gru, GruConfig, MobileNetV1, MobileNetV1Config, ResNet18, ResNet18Config};
-use opendr_training::{Container, Loss, Objective, OptimizerKind, TrainingParams, seeded_device, fit_network};
+use opendr_training::{
+    Container, Loss, Objective, OptimizerKind, TrainingParams, fit_network, seeded_device,
+};
 
 const CLASSES: usize = 10;
 /// Number of warm-up steps, which are not measured.

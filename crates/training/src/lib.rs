@@ -40,4 +40,4 @@ pub use objective::{Container, Loss, Objective};
 pub use optimizer::OptimizerKind;
 pub use params::TrainingParams;
 pub use schedule::{Schedule, ScheduleKind};
-pub use training::{Score, Validate, seeded_device, fit_network};
+pub use training::{Score, Validate, fit_network, seeded_device};

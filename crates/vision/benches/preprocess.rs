@@ -8,7 +8,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use opendr_engine::data::{Image, Layout, PixelFormat};
-use opendr_vision::{LetterboxAlign, ChannelOrder, InputSample, Preprocess, Similarity};
+use opendr_vision::{ChannelOrder, InputSample, LetterboxAlign, Preprocess, Similarity};
 
 fn frame(width: usize, height: usize, layout: Layout) -> Image {
     let samples: Vec<u8> =
@@ -38,7 +38,8 @@ fn preprocess(criterion: &mut Criterion) {
     case::<f32>(criterion, "nanodet_1080p", &nanodet, &camera);
     let letterbox = nanodet.letterbox(LetterboxAlign::Centre, 0.0);
     case::<f32>(criterion, "nanodet_letterbox_1080p", &letterbox, &camera);
-    let posenet = Preprocess::new(385, 385).letterbox(LetterboxAlign::Centre, 0.0).normalise([127.5; 3], [127.5; 3]);
+    let posenet =
+        Preprocess::new(385, 385).letterbox(LetterboxAlign::Centre, 0.0).normalise([127.5; 3], [127.5; 3]);
     case::<f32>(criterion, "posenet_1080p", &posenet, &camera);
     let yunet = Preprocess::new(640, 640).letterbox(LetterboxAlign::TopLeft, 0.0).order(ChannelOrder::Bgr);
     case::<f32>(criterion, "yunet_1080p", &yunet, &camera);

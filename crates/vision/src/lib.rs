@@ -39,7 +39,7 @@ mod yuv422;
 
 pub use bayer::{BayerPattern, rgb_from_bayer};
 pub use codec::{Decoder, Encoder, decode, encode_depth_png, encode_png, open, save, save_depth};
-pub use preprocess::{LetterboxAlign, Border, ChannelOrder, InputGeometry, InputSample, Preprocess};
+pub use preprocess::{Border, ChannelOrder, InputGeometry, InputSample, LetterboxAlign, Preprocess};
 pub use resize::resize;
 pub use similarity::Similarity;
 pub use source::{Frame, Source, SourceOptions, VideoInfo};

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::{Card, Import, ItemKind, Variant};
 use crate::embedded::classes;
-use crate::source::{Package, FilePlaces, Source};
+use crate::source::{FilePlaces, Package, Source};
 
 /// Maximum size of a file or package, in bytes.
 const MAX_BYTES: u64 = 2 << 30;

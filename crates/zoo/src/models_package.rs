@@ -9,7 +9,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::CardFile;
 use crate::loaded_from::loaded_from;
-use crate::source::{Package, FilePlaces};
+use crate::source::{FilePlaces, Package};
 
 /// Name of the package in the Python package index.
 pub(crate) const PACKAGE: &str = "opendr-rs-models";

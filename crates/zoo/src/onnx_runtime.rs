@@ -45,8 +45,11 @@ pub struct InstalledRuntime {
 
 impl fmt::Display for InstalledRuntime {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let did =
-            if self.was_cached { "already in the cache" } else { "downloaded with pip and loaded as a check" };
+        let did = if self.was_cached {
+            "already in the cache"
+        } else {
+            "downloaded with pip and loaded as a check"
+        };
         let megabytes = self.size as f64 / 1e6;
         write!(f, "ONNX Runtime {}, {did}: {} ({megabytes:.1} MB)", self.version, self.path.display())
     }

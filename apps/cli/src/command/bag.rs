@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use clap::builder::PossibleValuesParser;
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::bags::{RecordingWriter, Bag, BagFormat, Compression, Conversion, Recording, Topic, WriteOptions};
+use opendr::bags::{
+    Bag, BagFormat, Compression, Conversion, Recording, RecordingWriter, Topic, WriteOptions,
+};
 use opendr::{Error, Progress, Result, ValueType};
 use serde_json::json;
 

@@ -11,7 +11,7 @@ use opendr::learner::Entry;
 use opendr::metrics::{self, MetricEntry};
 use opendr::params::ParamMap;
 use opendr::rl::EvaluationProtocol;
-use opendr::{PolicyController, Pipeline, Progress, Result, Statistics};
+use opendr::{Pipeline, PolicyController, Progress, Result, Statistics};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;
@@ -118,7 +118,12 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
 }
 
 /// Evaluates a policy in the named environment, or in the one it was trained in.
-fn in_environment(spec: &str, entry: &'static Entry, matches: &ArgMatches, bar: &ProgressBar) -> Result<Outcome> {
+fn in_environment(
+    spec: &str,
+    entry: &'static Entry,
+    matches: &ArgMatches,
+    bar: &ProgressBar,
+) -> Result<Outcome> {
     let learner = loading::load(spec, &learner_flags::params(entry, matches)?, matches, bar)?;
     let source = environment_flags::source(matches, Some(learner.as_ref()))?;
     let mut environment = source.make()?;

@@ -101,8 +101,10 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let opening = |annotated| DatasetOpener { entry, annotated, problems: &problems, progress: &bar };
     let [images, dataset] = ["calibration", "validation"].map(|name| external(name, matches));
     let split = |name| matches.get_one::<String>(data_ids(name)[2]).map(String::as_str);
-    let calibration = images.as_ref().map(|data| opening(false).open_training(data.into(), split("calibration")));
-    let validation = dataset.as_ref().map(|data| opening(true).open_validation(data.into(), split("validation")));
+    let calibration =
+        images.as_ref().map(|data| opening(false).open_training(data.into(), split("calibration")));
+    let validation =
+        dataset.as_ref().map(|data| opening(true).open_validation(data.into(), split("validation")));
     let (calibration, validation) = (calibration.transpose()?, validation.transpose()?);
     let output = matches.get_one::<PathBuf>("out").map_or(Path::new(""), PathBuf::as_path);
     let report = OptimizeJob {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::dataset::ExternalDataset;
 use opendr::datasets::{self, OpenOptions, Problems};
-use opendr::evaluation::{self, FilePredictions, ClassMatching, Evaluation, Lines, Subject};
+use opendr::evaluation::{self, ClassMatching, Evaluation, FilePredictions, Lines, Subject};
 use opendr::metrics::{self, MetricEntry};
 use opendr::{Error, Result, inference};
 
@@ -69,7 +69,10 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     let dataset = evaluation::open_for_metric(metric, &external, split, &problems)?;
     let answers = match path.extension().and_then(|extension| extension.to_str()) {
         Some("jsonl") => FilePredictions::Lines(Lines::open(&path, dataset.as_ref(), &problems)?),
-        _ => FilePredictions::from_dataset(open(&path, &external, metric, matches, &problems)?, dataset.as_ref()),
+        _ => FilePredictions::from_dataset(
+            open(&path, &external, metric, matches, &problems)?,
+            dataset.as_ref(),
+        ),
     };
     let subject = Subject { learner: path.display().to_string(), ..Subject::default() };
     let evaluation = Evaluation {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Arg, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller, Environment, EnvironmentSource, ResetOptions, Space, Step};
 use opendr::simulation::{Recording, RegisteredSource, Registry};
-use opendr::{PolicyController, Error, Progress, Random, Result, Unit};
+use opendr::{Error, PolicyController, Progress, Random, Result, Unit};
 
 use crate::exit::Outcome;
 use crate::progress_bar::ProgressBar;

@@ -132,9 +132,13 @@ impl Opened {
         let further = values.filter_map(|(port, value)| Some((port, value?))).collect();
         let path = self.path.clone();
         let datum = match first {
-            Value::Image(image) => {
-                Datum::Frame(Frame { image, path, item_index: index, frame_index: number, video: Some(self.info.clone()) })
-            }
+            Value::Image(image) => Datum::Frame(Frame {
+                image,
+                path,
+                item_index: index,
+                frame_index: number,
+                video: Some(self.info.clone()),
+            }),
             value => Datum::Value { value: Box::new(value), path, index, number, is_of_stream: true },
         };
         let messages = messages.into_iter().flatten().collect();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::ArgMatches;
-use opendr::bags::{RecordingWriter, BagFormat, WriteOptions, is_recording};
+use opendr::bags::{BagFormat, RecordingWriter, WriteOptions, is_recording};
 use opendr::learner::{Entry, Outputs};
 use opendr::ros::default_topics;
 use opendr::target::Classes;
@@ -78,7 +78,7 @@ impl RecordingSink {
     /// Creates the file. Nothing is written before, so that a command that fails earlier leaves no file.
     ///
     /// # Errors
-    /// As [`Answers::create`].
+    /// As [`RecordingWriter::create`].
     pub fn begin(&mut self) -> Result<()> {
         self.answers = Some(RecordingWriter::create(&self.out, self.options)?);
         Ok(())
@@ -130,7 +130,12 @@ impl RecordingSink {
     }
 }
 
-fn record_input(entry: &'static Entry, answers: &mut RecordingWriter, item: &Item, time_ns: i64) -> Result<()> {
+fn record_input(
+    entry: &'static Entry,
+    answers: &mut RecordingWriter,
+    item: &Item,
+    time_ns: i64,
+) -> Result<()> {
     if let Some(recorded) = &item.recorded {
         return recorded.messages.iter().try_for_each(|message| answers.copy(&recorded.recording, message));
     }

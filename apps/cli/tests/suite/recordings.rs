@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::place::Place;
-use opendr::bags::{RecordingWriter, BagFormat, PortTopic, Recording, SyncedSets};
+use opendr::bags::{BagFormat, PortTopic, Recording, RecordingWriter, SyncedSets};
 use opendr::data::{Audio, Image, Timeseries};
 use opendr::model::{Manifest, ModelWriter};
 use opendr::target::{BoundingBox, BoundingBoxList};

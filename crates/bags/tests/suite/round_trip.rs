@@ -215,7 +215,8 @@ fn mcap_keeps_the_time_of_publishing() {
     let folder = tempdir().unwrap();
     let mut writer = BagWriter::create(folder.path().join("a.mcap"), BagFormat::Mcap).unwrap();
     let channel = writer.add_channel(channels(BagFormat::Mcap).remove(0)).unwrap();
-    let message = RecordedMessage { channel: 9, log_time_ns: 7, publish_time_ns: Some(3), bytes: "hi".into() };
+    let message =
+        RecordedMessage { channel: 9, log_time_ns: 7, publish_time_ns: Some(3), bytes: "hi".into() };
     writer.copy(channel, &message).unwrap();
     writer.finish().unwrap();
     let read = read(&Bag::open(folder.path().join("a.mcap")).unwrap(), &Selection::default());

@@ -18,9 +18,9 @@ pub use augmentation::{Augment, AugmentEntry, Augmentation};
 pub use cloud::{CloudFlip, CloudRotate, CloudScale, DropPoints, JitterPoints, PasteObjects};
 pub use others::OtherSamples;
 pub use picture::{
-    Affine, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop, Letterbox, MixUp,
-    Mosaic, AffineMap, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate, image_size,
-    transform,
+    Affine, AffineMap, Blur, Border, CentreCrop, Colour, CutOut, Flip, FlipDirection, Grey, IouCrop,
+    Letterbox, MixUp, Mosaic, PixelNoise, RandomCrop, RandomResizedCrop, RandomScale, Resize, Rotate,
+    image_size, transform,
 };
 pub use pipeline::Pipeline;
 pub use registry::{augmentations, find_augmentation};

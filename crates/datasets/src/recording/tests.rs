@@ -1,7 +1,7 @@
 use opendr_engine::data::Image;
 use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Header, ValueRef};
-use opendr_recordings::{RecordingWriter, BagFormat, WriteOptions};
+use opendr_recordings::{BagFormat, RecordingWriter, WriteOptions};
 
 use super::*;
 use crate::folder::TemporaryFolder;

@@ -6,4 +6,4 @@ mod rotated;
 mod upright;
 
 pub use rotated::{RotatedRectangle, UprightBox3D};
-pub use upright::{box_ioa, box_diou, box_giou, box_iou};
+pub use upright::{box_diou, box_giou, box_ioa, box_iou};

@@ -71,10 +71,7 @@ mod tests {
         let around = 24.0 - (16.0 + 8.0 - 4.0);
         assert_eq!(box_giou(a, b), 4.0 / 20.0 - around / 24.0);
         let point = [1.0, 1.0, 1.0, 1.0];
-        assert_eq!(
-            (box_giou(point, point), box_diou(point, point)),
-            (-1.0, 0.0)
-        );
+        assert_eq!((box_giou(point, point), box_diou(point, point)), (-1.0, 0.0));
         let touching = [4.0, 0.0, 8.0, 4.0];
         assert_eq!((box_iou(a, touching), box_ioa(a, touching)), (0.0, 0.0));
     }

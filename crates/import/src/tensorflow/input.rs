@@ -9,7 +9,13 @@ use super::value::Value;
 
 /// Adds an input of TensorFlow's dimensions `dims` (zero or negative where open). Images become `1x3xHxW` floats,
 /// whatever element type TensorFlow declares; other inputs are unchanged.
-pub fn input(ctx: &mut Lowering, options: &ImportOptions, name: &str, kind: ElementType, dims: &[i64]) -> Value {
+pub fn input(
+    ctx: &mut Lowering,
+    options: &ImportOptions,
+    name: &str,
+    kind: ElementType,
+    dims: &[i64],
+) -> Value {
     let mut dims: Vec<Dim> =
         dims.iter().map(|&dim| usize::try_from(dim).ok().filter(|&dim| dim > 0)).collect();
     if let Some(batch) = dims.first_mut() {

@@ -193,7 +193,9 @@ impl Runtime for OnnxRuntime {
     }
 
     fn version(&self) -> String {
-        self.0.version.map_or_else(|| format!("{} or later", Self::MIN_VERSION), |version| version.to_string())
+        self.0
+            .version
+            .map_or_else(|| format!("{} or later", Self::MIN_VERSION), |version| version.to_string())
     }
 
     fn devices(&self) -> Vec<Device> {

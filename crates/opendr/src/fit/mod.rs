@@ -165,7 +165,8 @@ impl Preparation<'_> {
             DatasetRef::Iterator(_) => String::new(),
         };
         let name = self.options.name.clone().unwrap_or(path);
-        let samples = self.opening(teacher.is_none()).open_training(dataset, self.options.split.as_deref())?;
+        let samples =
+            self.opening(teacher.is_none()).open_training(dataset, self.options.split.as_deref())?;
         let mut samples = limited(samples, self.options.limit);
         run_folder::make(self.output)?;
         self.progress.note(&format!("output: {}", self.output.display()));

@@ -1,6 +1,6 @@
 //! Opening of training and validation samples.
 
-use opendr_datasets::{FormatEntry, OpenOptions, UnlabelledImages, Problems, format_of};
+use opendr_datasets::{FormatEntry, OpenOptions, Problems, UnlabelledImages, format_of};
 use opendr_engine::dataset::{DatasetIterator, DatasetRef, ExternalDataset, Subset};
 use opendr_engine::learner::Entry;
 use opendr_engine::{Error, ErrorKind, Progress, Result, ValueType};
@@ -69,7 +69,7 @@ impl DatasetOpener<'_> {
     /// Opens the validation samples.
     ///
     /// # Errors
-    /// As [`Opening::to_train`].
+    /// As [`DatasetOpener::open_training`].
     pub fn open_validation<'d>(&self, dataset: DatasetRef<'d>, split: Option<&str>) -> Result<Samples<'d>> {
         match dataset {
             DatasetRef::Iterator(samples) => Ok(Box::new(samples)),

@@ -11,7 +11,7 @@ use opendr_tuning::Training;
 
 use super::until::Until;
 use super::{TuneData, TuneOptions};
-use crate::{PolicyController, FitData, FitEnvironments, FitOptions, eval_in, fit, fit_policy};
+use crate::{FitData, FitEnvironments, FitOptions, PolicyController, evaluate_policy, fit, fit_policy};
 
 /// Training of one configuration with one seed, which stops with a checkpoint at each evaluation and resumes.
 pub struct LearnerTraining<'a> {
@@ -34,7 +34,7 @@ impl<'a> LearnerTraining<'a> {
     /// Creates a training that has not begun, with a folder of its own below `work`.
     ///
     /// # Errors
-    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::Answers`], which trains nothing.
+    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::RecordingWriter`], which trains nothing.
     pub fn new(
         entry: &'static Entry,
         data: TuneData<'a>,
@@ -97,7 +97,8 @@ impl<'a> LearnerTraining<'a> {
         match self.data {
             TuneData::Environment { env, protocol } => {
                 let mut environment = env.make()?;
-                let mut acting = PolicyController::new(self.learner.stream()?, self.entry, environment.spec())?;
+                let mut acting =
+                    PolicyController::new(self.learner.stream()?, self.entry, environment.spec())?;
                 let report = evaluate_policy(&mut acting, environment.as_mut(), protocol, &Silent)?;
                 Ok(report.success.map_or(report.mean_return, |success| success.rate))
             }

@@ -60,7 +60,8 @@ fn suppressed(found: &BoundingBoxList, kind: SuppressionKind, overlap: f32) -> B
         index: index as u32,
     };
     let mut candidates: Vec<_> = found.boxes.iter().enumerate().map(candidate).collect();
-    Suppression { kind, iou_threshold: overlap, threshold: 0.01, max_boxes: 400 }.run(&mut candidates, &mut Vec::new());
+    Suppression { kind, iou_threshold: overlap, threshold: 0.01, max_boxes: 400 }
+        .run(&mut candidates, &mut Vec::new());
     let boxes = candidates.iter().map(|candidate| BoundingBox {
         confidence: candidate.score,
         ..found.boxes[candidate.index as usize].clone()
@@ -78,7 +79,7 @@ fn main() -> Result<()> {
         variant: NmsVariant::Light,
         classes: vec!["person".to_owned()],
         detector: Some(detector.clone()),
-        versions: 8,
+        augmented_versions: 8,
         dropout: 0.1,
         ..Default::default()
     };

@@ -118,7 +118,9 @@ mod tests {
         assert!(AudioInput::from(&wide).samples(16_000).is_err());
         let broken = Timeseries::new(vec![0.0, f32::NAN], [2, 1]).unwrap();
         assert!(AudioInput::from(&broken).samples(16_000).is_err());
-        let Ok(AudioInput::Series(_)) = AudioInput::from_ports(&Ports::default().with("audio", &row)) else { panic!() };
+        let Ok(AudioInput::Series(_)) = AudioInput::from_ports(&Ports::default().with("audio", &row)) else {
+            panic!()
+        };
         assert!(AudioInput::from_ports(&Ports::default()).is_err());
     }
 }

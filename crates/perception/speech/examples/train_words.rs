@@ -14,9 +14,9 @@ use opendr_engine::dataset::{DatasetIterator, ExternalDataset, Subset};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{Device, Error, Result, Value};
 use opendr_speech::speech_recognition::{
-    EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams, MatchboxNetFitParams,
-    MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams, QuadraticSelfOnnKind,
-    QuadraticSelfOnnParams, AudioInput, TrainableWords, WordFitParams, WordLearner,
+    AudioInput, EdgeSpeechNet, EdgeSpeechNetsFitParams, EdgeSpeechNetsKind, EdgeSpeechNetsParams,
+    MatchboxNetFitParams, MatchboxNetKind, MatchboxNetParams, QuadraticSelfOnnFitParams,
+    QuadraticSelfOnnKind, QuadraticSelfOnnParams, TrainableWords, WordFitParams, WordLearner,
 };
 use opendr_training::{OptimizerKind, ScheduleKind, TrainingParams};
 

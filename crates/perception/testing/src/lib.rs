@@ -5,6 +5,6 @@
 //! program contains it. Begin with [`test_models::test_data`].
 #![allow(clippy::unwrap_used)]
 
-pub mod overfit;
 pub mod learner_checks;
+pub mod overfit;
 pub mod test_models;

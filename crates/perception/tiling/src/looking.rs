@@ -119,7 +119,8 @@ mod tests {
         };
         for workers in [1, 2] {
             let jobs: Vec<usize> = (0..1000).collect();
-            let error = run_within_budget(workers, &jobs, TimeBudget::from_milliseconds(0.0), work).unwrap_err();
+            let error =
+                run_within_budget(workers, &jobs, TimeBudget::from_milliseconds(0.0), work).unwrap_err();
             assert!(error.to_string().contains("three"));
         }
     }

@@ -105,7 +105,9 @@ pub fn merge_pieces(pieces: &mut Vec<Piece>, overlap: f32) {
     join(pieces);
     // Whole boxes first, then those with more of their object.
     pieces.sort_by(|a, b| {
-        let rank = |piece: &Piece| if piece.is_cut() { piece.bounding_box.area() } else { piece.bounding_box.confidence };
+        let rank = |piece: &Piece| {
+            if piece.is_cut() { piece.bounding_box.area() } else { piece.bounding_box.confidence }
+        };
         a.is_cut().cmp(&b.is_cut()).then(rank(b).total_cmp(&rank(a)))
     });
     let mut kept = 0;
@@ -119,7 +121,10 @@ pub fn merge_pieces(pieces: &mut Vec<Piece>, overlap: f32) {
                 && (iou(&whole, &corners) > overlap || (piece.is_cut() && cover(&corners, &whole) > COVERED))
         });
         match same {
-            Some(other) => other.bounding_box.confidence = other.bounding_box.confidence.max(piece.bounding_box.confidence),
+            Some(other) => {
+                other.bounding_box.confidence =
+                    other.bounding_box.confidence.max(piece.bounding_box.confidence)
+            }
             None => {
                 pieces.swap(kept, at);
                 kept += 1;
@@ -236,8 +241,10 @@ mod tests {
 
     #[test]
     fn whole_boxes_replace_cut_ones() {
-        let whole =
-            Piece { bounding_box: BoundingBox::from_corners(1, [180.0, 50.0, 260.0, 130.0], 0.4), cut: [false; 4] };
+        let whole = Piece {
+            bounding_box: BoundingBox::from_corners(1, [180.0, 50.0, 260.0, 130.0], 0.4),
+            cut: [false; 4],
+        };
         let cut = BoundingBox::from_corners(1, [180.0, 50.0, 200.0, 130.0], 0.9);
         let cut = Piece::new(cut, &Region { x: 0, y: 0, width: 200, height: 200 }, SIZE);
         assert_eq!(cut.cut, [false, false, true, false]);

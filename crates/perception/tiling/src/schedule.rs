@@ -55,7 +55,7 @@ impl Tiles {
     /// one, so that no previous result is valid.
     ///
     /// # Errors
-    /// As [`CoarsePicture::look`].
+    /// As [`CellBrightness::compute`].
     pub fn plan(
         &mut self,
         params: &TilingParams,
@@ -129,7 +129,8 @@ impl Tiles {
     pub fn is_valid(&self, index: usize, memory: u32) -> bool {
         self.tiles.get(index).is_some_and(|tile| {
             let age = |changed| self.pictures.saturating_sub(changed);
-            tile.last_processed.is_some() && tile.changed.is_none_or(|changed| age(changed) <= u64::from(memory))
+            tile.last_processed.is_some()
+                && tile.changed.is_none_or(|changed| age(changed) <= u64::from(memory))
         })
     }
 
@@ -396,7 +397,8 @@ mod tests {
         let few = params(&[("rotation", 0.0), ("max_tiles", 1.0)]);
         let all = params(&[("rotation", 0.0)]);
         process(&mut tiles, &all, &scene(&[[300, 200]]));
-        let index = (1..tiles.tiles().len()).find(|index| tiles.tiles()[*index].last_processed.is_some()).unwrap();
+        let index =
+            (1..tiles.tiles().len()).find(|index| tiles.tiles()[*index].last_processed.is_some()).unwrap();
         for picture in 0..5 {
             tiles.plan(&few, scene(&[[0, 400]]).view(), |_, _| false).unwrap();
             assert_eq!(tiles.is_valid(index, 3), picture < 3, "{picture}");

@@ -8,7 +8,9 @@ use opendr_engine::params::Params as _;
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Statistics, Task};
 use opendr_kernels::Compute;
-use opendr_rl::{ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation};
+use opendr_rl::{
+    ActionMode, POLICY_FILE, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation,
+};
 use opendr_simulation::uav_corridor::FlightMemory;
 
 use super::method::{EndToEndPlanningFitParams, PpoInCorridors};

@@ -5,7 +5,7 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList};
 use opendr_engine::{Header, Value, ValueType};
 
 use super::*;
-use crate::{RecordingWriter, BagFormat, Recording};
+use crate::{BagFormat, Recording, RecordingWriter};
 
 const STEP: i64 = 100_000_000;
 const START: i64 = 1_700_000_000_000_000_000;
@@ -75,7 +75,8 @@ fn a_message_without_a_stamp_has_the_time_of_its_recording() {
     answers.finish().unwrap();
     let recording = Recording::open(&path).unwrap();
     for topic in ["/stamped", "/bare"] {
-        let mut sets = SyncedSets::open(&recording, vec![PortTopic::new(topic, ValueType::Timeseries)]).unwrap();
+        let mut sets =
+            SyncedSets::open(&recording, vec![PortTopic::new(topic, ValueType::Timeseries)]).unwrap();
         let set = sets.next().unwrap().unwrap();
         assert_eq!(set.values[0].as_ref().unwrap().header().stamp_ns, Some(START));
         assert_eq!(set.stamp_ns, START);

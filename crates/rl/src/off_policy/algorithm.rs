@@ -7,7 +7,7 @@ use opendr_simulation::vector::VecEnvironment;
 
 use super::{Experience, OffPolicyConfig};
 use crate::algorithm::{Algorithm, Report, not_begun, snapshot_of};
-use crate::policy::{ParameterInit, Head, NetworkConfig, Policy};
+use crate::policy::{Head, NetworkConfig, ParameterInit, Policy};
 use crate::saved_state::SavedState;
 
 /// What DQN, TD3 and SAC have in common: settings, policy, random numbers, collected steps and report.

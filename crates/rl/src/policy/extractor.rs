@@ -6,7 +6,7 @@ use opendr_engine::{Random, Result};
 use opendr_kernels::{Activation, Compute, Conv2d, Dense, Layer, Network, Tape};
 
 use super::observation_encoder::{ObservationEncoder, PartKind};
-use super::{ParameterInit, ImageNetwork};
+use super::{ImageNetwork, ParameterInit};
 
 /// Computes features from encoded observations: each image passes through a network of its own, other numbers are
 /// copied (`CombinedExtractor` of Stable-Baselines3). Without images, the features are the encoded observation.

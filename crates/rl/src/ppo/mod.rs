@@ -22,7 +22,7 @@ use rollout::Rollout;
 
 use crate::algorithm::Report;
 use crate::interaction::Interaction;
-use crate::policy::{ParameterInit, ExtractorMemory, Head, Policy, Trunk};
+use crate::policy::{ExtractorMemory, Head, ParameterInit, Policy, Trunk};
 use crate::schedule::remaining;
 
 /// PPO: collects a rollout, then makes several passes over it that keep the policy close to the one that collected it.
@@ -95,8 +95,9 @@ impl Ppo {
         let of_values = crate::policy::NetworkConfig { net_arch: of_values, ..config.network.clone() };
         let critic = of_values.trunk(policy.extractor.outputs(), 1)?;
         let mut random = Random::from_key([config.seed, 0]);
-        let beginning =
-            |output| if config.ortho_init { ParameterInit::Orthogonal(output) } else { ParameterInit::Uniform };
+        let beginning = |output| {
+            if config.ortho_init { ParameterInit::Orthogonal(output) } else { ParameterInit::Uniform }
+        };
         policy.initialise(beginning(0.01), config.log_std_init, &mut random);
         let mut critic_parameters = vec![0.0; critic.parameters()];
         critic.initialise(beginning(1.0).of_output(), &mut random, &mut critic_parameters);

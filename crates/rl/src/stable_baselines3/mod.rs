@@ -12,7 +12,7 @@ use serde::Deserialize;
 
 use archive::{Archive, Tensor};
 
-use crate::policy::{Bounds, Head, ActivationFn, NetworkConfig, ImageNetwork, Policy};
+use crate::policy::{ActivationFn, Bounds, Head, ImageNetwork, NetworkConfig, Policy};
 
 /// The parts of the JSON member `data` that are read; serialised objects are skipped.
 #[derive(Deserialize)]
@@ -51,7 +51,13 @@ const FAMILIES: &[Family] = &[
         second: Some("actor.log_std"),
         activation: ActivationFn::Relu,
     },
-    Family { name: "TD3 or DDPG", hidden: "actor.mu", output: None, second: None, activation: ActivationFn::Relu },
+    Family {
+        name: "TD3 or DDPG",
+        hidden: "actor.mu",
+        output: None,
+        second: None,
+        activation: ActivationFn::Relu,
+    },
     Family { name: "DQN", hidden: "q_net.q_net", output: None, second: None, activation: ActivationFn::Relu },
 ];
 
@@ -89,7 +95,7 @@ fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
     let config = NetworkConfig {
         net_arch: sizes.map(|layer| layer.outputs()).collect(),
         activation_fn: family.activation_of(&settings.policy_kwargs)?,
-        picture_network: ImageNetwork::Flat,
+        image_network: ImageNetwork::Flat,
         gru_size: None,
     };
     let mut policy = Policy::new(spec, family.head(spec)?, &config, None)?;

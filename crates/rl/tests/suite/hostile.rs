@@ -7,7 +7,8 @@ use opendr_engine::environment::{
 use opendr_engine::{Error, ErrorKind, Result};
 use opendr_kernels::Compute;
 use opendr_rl::{
-    ActionMode, Algorithm, Dqn, DqnConfig, Policy, PolicyMemory, Ppo, PpoConfig, Sac, SacConfig, Td3, Td3Config,
+    ActionMode, Algorithm, Dqn, DqnConfig, Policy, PolicyMemory, Ppo, PpoConfig, Sac, SacConfig, Td3,
+    Td3Config,
 };
 use opendr_simulation::make;
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};

@@ -4,8 +4,8 @@ use crate::support::assert_resumes;
 use crate::support::dots::dots;
 use opendr_kernels::Compute;
 use opendr_rl::{
-    ActionMode, Algorithm, NetworkConfig, OffPolicyConfig, Policy, PolicyMemory, Sac, SacConfig, Td3, Td3Config,
-    onnx_from_policy,
+    ActionMode, Algorithm, NetworkConfig, OffPolicyConfig, Policy, PolicyMemory, Sac, SacConfig, Td3,
+    Td3Config, onnx_from_policy,
 };
 
 fn small(config: OffPolicyConfig, learning_starts: u64) -> OffPolicyConfig {

@@ -6,7 +6,7 @@ use opendr_engine::target::{BoundingBox3D, BoundingBox3DList, Classes};
 use opendr_engine::{Error, Header, Random, Result};
 
 use super::{Street, StreetKind, StreetObject};
-use crate::lidar::{SurfaceResponse, LidarReturn, SpinningLidar};
+use crate::lidar::{LidarReturn, SpinningLidar, SurfaceResponse};
 use crate::raycast::{Hit, Scene, Vector};
 
 /// Scans of random streets, each with the boxes of its cars, pedestrians and trucks.
@@ -82,7 +82,11 @@ impl StreetScans {
     }
 
     /// Returns the boxes of the visible objects, each with the index of its object in the street.
-    pub(super) fn boxes(&self, street: &Street, returns: &[LidarReturn]) -> Result<Vec<(usize, BoundingBox3D)>> {
+    pub(super) fn boxes(
+        &self,
+        street: &Street,
+        returns: &[LidarReturn],
+    ) -> Result<Vec<(usize, BoundingBox3D)>> {
         let mut counts = vec![0_usize; street.objects.len()];
         for label in returns.iter().map(|hit| usize::from(hit.label)) {
             counts.get_mut(label).into_iter().for_each(|count| *count += 1);

@@ -6,7 +6,8 @@ use opendr_engine::environment::{Snapshot, Space, StateReader};
 use super::lookahead::Lookahead;
 use super::way_costs::WayCosts;
 use super::{
-    CAMERA_HEIGHT, CorridorObservation, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
+    CAMERA_HEIGHT, CorridorObservation, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET,
+    TURN,
 };
 use crate::sine_cosine::sine_cosine;
 

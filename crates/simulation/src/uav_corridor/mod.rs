@@ -21,7 +21,9 @@ mod variants;
 mod way_costs;
 mod world;
 
-pub use controllers::{ObservationController, CorridorController, PotentialField, ReactiveController, StraightController};
+pub use controllers::{
+    CorridorController, ObservationController, PotentialField, ReactiveController, StraightController,
+};
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};

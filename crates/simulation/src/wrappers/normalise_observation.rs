@@ -33,7 +33,12 @@ impl<E: Environment> NormaliseObservation<E> {
             )));
         };
         spec.observation = Space::uniform(f32::NEG_INFINITY, f32::INFINITY, shape)?;
-        Ok(Self { inner, moments: RunningMoments::new(spec.observation.len()), spec, update_statistics: true })
+        Ok(Self {
+            inner,
+            moments: RunningMoments::new(spec.observation.len()),
+            spec,
+            update_statistics: true,
+        })
     }
 
     fn normalise(&mut self, observation: &mut [f32]) {

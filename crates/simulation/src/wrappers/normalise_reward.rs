@@ -36,7 +36,14 @@ impl<E: Environment> NormaliseReward<E> {
             reward_threshold: None,
             ..inner.spec().clone()
         };
-        Ok(Self { inner, spec, discount, discounted: 0.0, moments: RunningMoments::new(1), update_statistics: true })
+        Ok(Self {
+            inner,
+            spec,
+            discount,
+            discounted: 0.0,
+            moments: RunningMoments::new(1),
+            update_statistics: true,
+        })
     }
 }
 

@@ -12,7 +12,7 @@ use crate::turn;
 use opendr_engine::learner::FitJob;
 use opendr_engine::model::Model;
 use opendr_engine::{Device, ErrorKind, Progress, Random, Result, Statistics, Unit};
-use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, seeded_device, fit_network};
+use opendr_training::{OptimizerKind, ScheduleKind, Score, TrainingParams, fit_network, seeded_device};
 
 /// Environment variable with the output folder of the process that is killed.
 const CHILD: &str = "OPENDR_TEST_TRAINS_INTO";

@@ -107,11 +107,8 @@ impl Study {
             if !undrawn.is_empty() {
                 let drawn = self.sampler.draw(study, number, &undrawn)?;
                 chosen.extend(undrawn.into_iter().zip(drawn.numbers));
-                operations.extend(drawn.system_attributes.into_iter().map(|(key, value)| Operation::NoteOfTrial {
-                    trial: id,
-                    notes: Notes::System,
-                    key,
-                    value,
+                operations.extend(drawn.system_attributes.into_iter().map(|(key, value)| {
+                    Operation::NoteOfTrial { trial: id, notes: Notes::System, key, value }
                 }));
             }
             for (parameter, number) in chosen {

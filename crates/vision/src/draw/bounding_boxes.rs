@@ -35,7 +35,8 @@ pub fn draw_bounding_boxes(image: &mut Image, boxes: &BoundingBoxList, style: &S
     for found in &boxes.boxes {
         let Some(corners) = whole_corners(found.corners()) else { continue };
         let name = boxes.label(found).map_or_else(|| found.name.to_string(), str::to_owned);
-        let text = if style.show_confidences { format!("{name} {:.2}", found.confidence) } else { name.clone() };
+        let text =
+            if style.show_confidences { format!("{name} {:.2}", found.confidence) } else { name.clone() };
         labels.draw(&mut canvas, [&text, &name], corners, [unit, thickness], colour(found));
     }
 }

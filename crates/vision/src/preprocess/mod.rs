@@ -25,7 +25,7 @@ use crate::similarity::Similarity;
 use crate::workers;
 use band::{Band, MAX_BANDS, Row};
 use geometry::Placement;
-pub use geometry::{LetterboxAlign, InputGeometry};
+pub use geometry::{InputGeometry, LetterboxAlign};
 use plan::{Plan, Plans, Sizes};
 pub use sample::InputSample;
 use source::Source;

@@ -125,7 +125,10 @@ fn every_combination_is_the_reference() {
                 check(&stretched, image.view());
                 let normalised = stretched.normalise([103.5, 116.3, 123.7], [57.4, 57.1, 58.4]);
                 check(&normalised.clone().letterbox(LetterboxAlign::Centre, 114.0), image.view());
-                check(&normalised.letterbox(LetterboxAlign::TopLeft, 0.0), image.view().crop(5, 3, 21, 30).unwrap());
+                check(
+                    &normalised.letterbox(LetterboxAlign::TopLeft, 0.0),
+                    image.view().crop(5, 3, 21, 30).unwrap(),
+                );
             }
         }
     }
@@ -177,7 +180,9 @@ fn smallest_pictures_and_inputs() {
             for target in [[1, 1], [1, 9], [7, 2], [8, 8], [9, 1], [33, 2]] {
                 check(&Preprocess::new(target[0], target[1]), image.view());
                 check(
-                    &Preprocess::new(target[0], target[1]).letterbox(LetterboxAlign::Centre, 1.0).layout(Layout::Hwc),
+                    &Preprocess::new(target[0], target[1])
+                        .letterbox(LetterboxAlign::Centre, 1.0)
+                        .layout(Layout::Hwc),
                     image.view(),
                 );
             }

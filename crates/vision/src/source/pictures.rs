@@ -93,7 +93,13 @@ impl Iterator for Pictures {
         state.waiting_bytes -= bytes_of(&image);
         drop(state);
         self.shared.changed.notify_all();
-        Some(image.map(|image| Frame { image, path: Arc::clone(path), item_index: 0, frame_index: 0, video: None }))
+        Some(image.map(|image| Frame {
+            image,
+            path: Arc::clone(path),
+            item_index: 0,
+            frame_index: 0,
+            video: None,
+        }))
     }
 }
 

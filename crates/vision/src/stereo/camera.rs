@@ -27,7 +27,8 @@ impl StereoCamera {
 
     /// Returns the 3D position of the pixel with its centre at `[x, y]`, `depth` metres in front of the camera.
     pub fn point(&self, [x, y]: [f32; 2], depth: f32) -> [f32; 3] {
-        let [right, down] = [x - self.principal_point[0], y - self.principal_point[1]].map(|off| off * depth / self.focal_length);
+        let [right, down] = [x - self.principal_point[0], y - self.principal_point[1]]
+            .map(|off| off * depth / self.focal_length);
         [right, down, depth]
     }
 

@@ -130,7 +130,12 @@ fn pairs_of_two_sizes_and_too_large_ones_are_refused() {
 
 #[test]
 fn metres_follow_from_disparities() {
-    let camera = StereoCamera { focal_length: 1000.0, baseline: 0.2, principal_point: [80.0, 40.0], principal_point_offset: 10.0 };
+    let camera = StereoCamera {
+        focal_length: 1000.0,
+        baseline: 0.2,
+        principal_point: [80.0, 40.0],
+        principal_point_offset: 10.0,
+    };
     assert_eq!([0.0, 10.0, 30.0, f32::NAN].map(|d| camera.depth(d)), [0.0, 10.0, 5.0, 0.0]);
     let depths = [0.0, 10.0, 5.0, 400.0];
     let image = grey(2, 2, |x, y| (10 * y + x) as u8);

@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use opendr::environment::{Controller as _, Environment, EnvironmentSource as _, ResetOptions};
 use opendr::inference::{SessionOptions, describe};
 use opendr::learner::{AnyLearner, Entry, Ports};
-use opendr::{PolicyController, Error, Progress, Result, Unit};
+use opendr::{Error, PolicyController, Progress, Result, Unit};
 use serde::Serialize;
 
 use self::workload::{Input, Workload};

@@ -7,7 +7,8 @@ use opendr::Result;
 use opendr::learner::AnyLearner;
 use opendr::params::Params as _;
 use opendr::ros::{
-    SharedSubscriptions, Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, ros_args_from_ros1,
+    Graph, LearnerNode, Names, NodeParams, Ros1Node, Ros2, RosArgs, Severity, SharedSubscriptions,
+    ros_args_from_ros1,
 };
 
 use super::node::{node_grammar, options, set_parameters};
@@ -102,7 +103,12 @@ fn parse(ros: Ros, words: &[OsString]) -> Result<Result<ArgMatches, Outcome>> {
     }))
 }
 
-fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &mut SharedSubscriptions) -> Result<Running> {
+fn start_ros2(
+    ros2: &Ros2,
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut SharedSubscriptions,
+) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = ros2.node(names)?;
     let node = learner_node(&mut *graph, matches, &args.parameters, feeds)?;
@@ -113,7 +119,11 @@ fn start_ros2(ros2: &Ros2, matches: &ArgMatches, ros_words: &[String], feeds: &m
     Ok((graph, node))
 }
 
-fn start_ros1(matches: &ArgMatches, ros_words: &[String], feeds: &mut SharedSubscriptions) -> Result<Running> {
+fn start_ros1(
+    matches: &ArgMatches,
+    ros_words: &[String],
+    feeds: &mut SharedSubscriptions,
+) -> Result<Running> {
     let (names, args) = names(matches, ros_words)?;
     let mut graph = Ros1Node::new(names)?;
     // Parameters of the command line override those of a launch file.

@@ -4,7 +4,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, AffineMap, image_size, transform};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
 use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Crops the centre of an image; a smaller image is padded with grey on all sides.
@@ -30,6 +30,10 @@ impl Augment for CentreCrop {
     fn apply(&self, sample: &mut Sample, _: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let (size, output_size) = (image_size(sample)?, [self.width, self.height]);
         let corner = [0, 1].map(|axis| (size[axis] as i64 - output_size[axis] as i64).div_euclid(2));
-        transform(sample, &AffineMap::crop(size, corner, output_size), &Border::with_min_visible(self.min_visible))
+        transform(
+            sample,
+            &AffineMap::crop(size, corner, output_size),
+            &Border::with_min_visible(self.min_visible),
+        )
     }
 }

@@ -4,7 +4,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, AffineMap, image_size, transform};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
 use crate::augment::{Augment, Augmentation, OtherSamples};
 
 opendr_engine::choices! {

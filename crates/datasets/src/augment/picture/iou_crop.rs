@@ -5,7 +5,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{Random, Result, Value};
 
-use crate::augment::picture::{Border, AffineMap, image_size, transform};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
 use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Smallest IoU of the crop with an object, one of which is drawn; `None` keeps the whole image.

@@ -7,7 +7,7 @@ use opendr_engine::target::Category;
 use opendr_engine::{Error, Random, Result, Value};
 
 use crate::augment::picture::pixels::make_interleaved;
-use crate::augment::picture::{Border, AffineMap, image_size, transform};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
 use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Blends an image with another, which is resized to its size. Boxes and poses of both are kept; classes become the

@@ -4,7 +4,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, AffineMap, image_size, transform};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
 use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Crops a window of fixed size at a random place; a smaller image is placed at random on grey.
@@ -33,6 +33,10 @@ impl Augment for RandomCrop {
             let place = random.below(size[axis].abs_diff(output_size[axis]) + 1) as i64;
             if size[axis] < output_size[axis] { -place } else { place }
         });
-        transform(sample, &AffineMap::crop(size, corner, output_size), &Border::with_min_visible(self.min_visible))
+        transform(
+            sample,
+            &AffineMap::crop(size, corner, output_size),
+            &Border::with_min_visible(self.min_visible),
+        )
     }
 }

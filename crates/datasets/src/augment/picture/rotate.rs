@@ -4,7 +4,7 @@ use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result};
 
-use crate::augment::picture::{Border, AffineMap, image_size, transform};
+use crate::augment::picture::{AffineMap, Border, image_size, transform};
 use crate::augment::{Augment, Augmentation, OtherSamples};
 
 /// Rotates an image about its centre. The size is kept.
@@ -27,8 +27,7 @@ impl Augment for Rotate {
     fn apply(&self, sample: &mut Sample, random: &mut Random, _: &OtherSamples<'_>) -> Result<()> {
         let angle = f64::from(random.uniform(-self.max_angle, self.max_angle));
         let (sine, cosine) = angle.sin_cos();
-        let map =
-            AffineMap::about_centre(image_size(sample)?, [[cosine, sine], [-sine, cosine]], [0.0; 2]);
+        let map = AffineMap::about_centre(image_size(sample)?, [[cosine, sine], [-sine, cosine]], [0.0; 2]);
         transform(sample, &map, &Border::with_min_visible(self.min_visible))
     }
 }

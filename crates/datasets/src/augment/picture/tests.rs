@@ -302,7 +302,8 @@ fn mixed_pictures_have_the_boxes_of_both() {
     assert_eq!(boxes(&sample).len(), 4);
     let size = [image(&sample).width(), image(&sample).height()];
     assert_eq!(size, [152, 106]);
-    let alone = MixUp::default().apply(&mut shelf.get(0).unwrap(), &mut Random::new(3), &OtherSamples::none());
+    let alone =
+        MixUp::default().apply(&mut shelf.get(0).unwrap(), &mut Random::new(3), &OtherSamples::none());
     assert_eq!(alone.unwrap_err().kind(), ErrorKind::InvalidInput);
 }
 
@@ -339,7 +340,10 @@ fn one_seed_gives_one_sample() {
         let augment = (entry.make)(&ParamMap::new()).unwrap();
         let [first, second] = [(), ()].map(|()| {
             let mut sample = painted([64, 48], [10, 12, 40, 30]);
-            augment.apply(&mut sample, &mut Random::from_key([1, 2]), &OtherSamples::of(&Shelf(4))).map(|()| sample).ok()
+            augment
+                .apply(&mut sample, &mut Random::from_key([1, 2]), &OtherSamples::of(&Shelf(4)))
+                .map(|()| sample)
+                .ok()
         });
         assert_eq!(first, second, "{}", entry.name);
     }

@@ -6,7 +6,7 @@ use super::window::Axes;
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, size) = (call.input(0)?, call.input(1)?);
@@ -34,14 +34,21 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let open = |axis: usize| elements.get(axis).copied().flatten().and_then(|dim| usize::try_from(dim).ok());
     let dims = axes.dims(x.dims()[0], x.dims()[3], [open(0), open(1)]);
     let image = ctx.ordered(x, &axes.order())?;
-    let shape = ctx.graph.add(&image.hint(), Operator::new("Shape"), &[&image], ElementType::Int, vec![Some(4)])?;
-    let (zero, two, one) = (Value::ints([0]), Value::ints([2]), Value::ints([1]));
+    let shape =
+        ctx.graph.add(&image.hint(), Operator::new("Shape"), &[&image], ElementType::Int, vec![Some(4)])?;
+    let (zero, two, one) = (GraphTensor::ints([0]), GraphTensor::ints([2]), GraphTensor::ints([1]));
     let slice = Operator::new("Slice");
-    let outer =
-        ctx.graph.add(&image.hint(), slice, &[&shape, &zero, &two, &zero, &one], ElementType::Int, vec![Some(2)])?;
+    let outer = ctx.graph.add(
+        &image.hint(),
+        slice,
+        &[&shape, &zero, &two, &zero, &one],
+        ElementType::Int,
+        vec![Some(2)],
+    )?;
     let concat = Operator::new("Concat").int("axis", 0);
-    let sizes = ctx.graph.add(&image.hint(), concat, &[&outer, &size.wire], ElementType::Int, vec![Some(4)])?;
-    let inputs = [&image, &Value::absent(), &Value::absent(), &sizes];
+    let sizes =
+        ctx.graph.add(&image.hint(), concat, &[&outer, &size.wire], ElementType::Int, vec![Some(4)])?;
+    let inputs = [&image, &GraphTensor::absent(), &GraphTensor::absent(), &sizes];
     Ok(vec![ctx.emit(call, operator, &inputs, ElementType::Float, &dims, axes.order())?])
 }
 

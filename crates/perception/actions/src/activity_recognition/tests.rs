@@ -8,8 +8,8 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, ErrorKind, Random, Result, Value};
-use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::learner_checks::check_trained_learner;
+use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_training::Objective;
 
 use super::network::ActivityNetwork;

@@ -20,12 +20,7 @@ pub struct BevCandidate {
 ///
 /// Boxes that are not finite or have no area are dropped. `dropped` is work memory. A comparison of circumscribed circles
 /// spares most pairs the intersection of polygons.
-pub fn suppress_bev(
-    candidates: &mut Vec<BevCandidate>,
-    dropped: &mut Vec<bool>,
-    overlap: f32,
-    most: usize,
-) {
+pub fn suppress_bev(candidates: &mut Vec<BevCandidate>, dropped: &mut Vec<bool>, overlap: f32, most: usize) {
     candidates.retain(|candidate| {
         let RotatedRectangle { center, size, angle } = candidate.footprint;
         let is_finite = center.iter().chain(&size).chain([&angle]).all(|part| part.is_finite());

@@ -7,7 +7,8 @@ fn candidate(index: u32, [x, y, w, h]: [f32; 4], score: f32, class: u32) -> Cand
 }
 
 fn run(kind: SuppressionKind, mut candidates: Vec<Candidate>) -> Vec<Candidate> {
-    Suppression { kind, iou_threshold: 0.5, threshold: 0.1, max_boxes: 100 }.run(&mut candidates, &mut Vec::new());
+    Suppression { kind, iou_threshold: 0.5, threshold: 0.1, max_boxes: 100 }
+        .run(&mut candidates, &mut Vec::new());
     candidates
 }
 

@@ -11,8 +11,8 @@ use opendr_engine::params::{ParamMap, Params};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_tiling::{
-    TimeBudget, TileInferences, ImageLearner, Piece, Slot, TileImage, Tiles, TilingParams, run_within_budget,
-    merge_pieces, open_copies,
+    ImageLearner, Piece, Slot, TileImage, TileInferences, Tiles, TilingParams, TimeBudget, merge_pieces,
+    open_copies, run_within_budget,
 };
 
 use super::DETECTORS;

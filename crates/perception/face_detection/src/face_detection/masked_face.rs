@@ -4,8 +4,8 @@ use opendr_engine::data::Image;
 use opendr_engine::model::Model;
 use opendr_engine::target::{BoundingBox, Classes};
 use opendr_engine::{Device, Error, Result};
-use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 use opendr_vision::Similarity;
 
 use crate::face_detector::{eye_angle, square_around};
@@ -48,8 +48,9 @@ impl MaskNetwork {
                 )));
             }
         }
-        let network =
-            ImageNetwork::open_file(&part, FILE, device, |input| preprocess_from_manifest(&part, input, LEVEL))?;
+        let network = ImageNetwork::open_file(&part, FILE, device, |input| {
+            preprocess_from_manifest(&part, input, LEVEL)
+        })?;
         let [side, _] = network.size();
         Ok(Some(Self { network, side }))
     }

@@ -14,7 +14,7 @@ use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
 use opendr_perception_common::image_network::ImageNetwork;
 use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};
-use opendr_vision::{LetterboxAlign, ChannelOrder, InputGeometry, Preprocess};
+use opendr_vision::{ChannelOrder, InputGeometry, LetterboxAlign, Preprocess};
 
 use super::masked_face::MaskNetwork;
 

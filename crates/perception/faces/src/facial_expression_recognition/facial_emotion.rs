@@ -9,7 +9,9 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Category, Classes};
 use opendr_engine::{Device, Pool, Result, Task};
-use opendr_face_detection::face_detector::{FaceDetector, FaceInput, largest_face, square_around, whole_image};
+use opendr_face_detection::face_detector::{
+    FaceDetector, FaceInput, largest_face, square_around, whole_image,
+};
 use opendr_perception_common::category_scores::category_from_scores;
 use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{Border, ChannelOrder, Preprocess};
@@ -21,8 +23,8 @@ pub struct FacialEmotionParams {
     #[param(default = 0.6, range = 0.0..=1.0)]
     pub face_threshold: f32,
     /// Content of the images.
-    #[param(live)]
-    pub picture: FaceInput,
+    #[param(live, alias = "picture")]
+    pub input: FaceInput,
 }
 
 /// A loaded network with its face detector.
@@ -96,7 +98,7 @@ impl Learner for FacialEmotion {
 
     fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
         let faces = &mut *self.scratch.take();
-        let crop = match self.params.picture {
+        let crop = match self.params.input {
             FaceInput::Face => Some(whole_image(image, SIDE)),
             FaceInput::Frame => {
                 self.finder.detect(image, faces)?;

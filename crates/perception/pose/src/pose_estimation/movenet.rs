@@ -12,7 +12,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_perception_common::image_network::ImageNetwork;
-use opendr_vision::{LetterboxAlign, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
 

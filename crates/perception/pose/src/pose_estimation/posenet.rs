@@ -10,9 +10,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
 use opendr_perception_common::image_network::ImageNetwork;
-use opendr_vision::{LetterboxAlign, InputGeometry, Preprocess};
+use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use crate::pose_estimation::opendr_from_coco;
 
@@ -68,7 +68,9 @@ impl Learner for Posenet {
 
     fn load(model: &Model, params: PosenetParams, device: Device) -> Result<Self> {
         let network = ImageNetwork::open(model, device, |_| {
-            Preprocess::new(SIDE, SIDE).letterbox(LetterboxAlign::Centre, 0.0).normalise([127.5; 3], [127.5; 3])
+            Preprocess::new(SIDE, SIDE)
+                .letterbox(LetterboxAlign::Centre, 0.0)
+                .normalise([127.5; 3], [127.5; 3])
         })?;
         let output = |name: &str| network.output(&format!("MobilenetV1/{name}_2/BiasAdd"));
         Ok(Self {

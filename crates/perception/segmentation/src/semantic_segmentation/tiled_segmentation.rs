@@ -11,7 +11,7 @@ use opendr_engine::target::{Classes, Heatmap, HeatmapValues};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_perception_common::regions::Region;
 use opendr_tiling::{
-    TimeBudget, ImageLearner, TileImage, Tiles, TilingParams, run_within_budget, open_copies,
+    ImageLearner, TileImage, Tiles, TilingParams, TimeBudget, open_copies, run_within_budget,
 };
 
 use super::SEGMENTERS;

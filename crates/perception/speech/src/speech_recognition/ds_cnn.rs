@@ -119,7 +119,12 @@ impl Learner for DsCnn {
 
 /// Yields a prediction for every second of audio, each half a second after the one before.
 impl Streaming for DsCnn {
-    fn push(&self, state: &mut WordStream, piece: AudioInput<'_>, emit: &mut dyn FnMut(Category)) -> Result<()> {
+    fn push(
+        &self,
+        state: &mut WordStream,
+        piece: AudioInput<'_>,
+        emit: &mut dyn FnMut(Category),
+    ) -> Result<()> {
         self.windows.push(state, &piece.samples(SAMPLE_RATE)?, |second| {
             let mut category = Category::default();
             self.category(second.as_slice(), &mut category)?;

@@ -83,7 +83,12 @@ impl Learner for SileroVad {
         self.classes.clone()
     }
 
-    fn infer_into(&self, _: &mut SileroVadStream, sound: AudioInput<'_>, category: &mut Category) -> Result<()> {
+    fn infer_into(
+        &self,
+        _: &mut SileroVadStream,
+        sound: AudioInput<'_>,
+        category: &mut Category,
+    ) -> Result<()> {
         let samples = sound.samples(SAMPLE_RATE)?;
         let (mut stream, mut highest) = (VoiceStream::default(), 0f32);
         self.network.push(&mut stream, &samples, |probability| {

@@ -130,8 +130,12 @@ impl Extent {
 mod tests {
     use super::*;
 
-    const CAMERA: StereoCamera =
-        StereoCamera { focal_length: 100.0, baseline: 0.1, principal_point: [80.0, 60.0], principal_point_offset: 0.0 };
+    const CAMERA: StereoCamera = StereoCamera {
+        focal_length: 100.0,
+        baseline: 0.1,
+        principal_point: [80.0, 60.0],
+        principal_point_offset: 0.0,
+    };
     const OPTIONS: ObstacleOptions =
         ObstacleOptions { camera_height: 1.0, camera_pitch: 0.0, heights: [0.2, 2.0], farthest: 10.0 };
 

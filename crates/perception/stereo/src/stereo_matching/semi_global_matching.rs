@@ -170,7 +170,12 @@ impl SemiGlobalMatching {
         let SemiGlobalMatchingParams { focal_length: focal, baseline, disparity_offset: offset, .. } =
             self.params;
         let centre = size.map(|side| side as f32 / 2.0);
-        (focal > 0.0 && baseline > 0.0).then_some(StereoCamera { focal_length: focal, baseline, principal_point: centre, principal_point_offset: offset })
+        (focal > 0.0 && baseline > 0.0).then_some(StereoCamera {
+            focal_length: focal,
+            baseline,
+            principal_point: centre,
+            principal_point_offset: offset,
+        })
     }
 
     fn options(&self) -> StereoOptions {

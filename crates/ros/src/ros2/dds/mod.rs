@@ -22,7 +22,7 @@ use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
 use super::typed_services::TypedServices as _;
 use super::{Ros2Node, lifecycle, log, network_error, parameter_services};
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, MessageCallback, Graph, Log, Publisher, Qos, TriggerHandler, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};
 
 /// A DDS participant, shared by the nodes of a process.

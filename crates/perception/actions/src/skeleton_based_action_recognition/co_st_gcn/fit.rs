@@ -9,7 +9,7 @@ use opendr_engine::{Result, ResultExt, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
 use opendr_training::{
-    Container, Objective, OptimizerKind, TrainingParams, seeded_device, fit_learner, open_for_training,
+    Container, Objective, OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device,
     training_device,
 };
 

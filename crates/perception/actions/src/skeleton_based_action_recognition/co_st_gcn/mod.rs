@@ -24,7 +24,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Result, Task};
 use opendr_inference::{Session, TensorView};
-use opendr_perception_common::frame_features::{FrameFeatures, FEATURES_PER_COORDINATE, LastFrame};
+use opendr_perception_common::frame_features::{FEATURES_PER_COORDINATE, FrameFeatures, LastFrame};
 
 use super::GraphType;
 use super::sizes::NetworkSizes;
@@ -220,7 +220,8 @@ impl Learner for CoStGcn {
 impl CoStGcn {
     /// Processes the features of one frame.
     fn step(&self, features: &[f32], person: &mut Person) -> Result<()> {
-        let shape = [1, FEATURES_PER_COORDINATE * self.params.in_channels, 1, self.params.graph_type.joints()];
+        let shape =
+            [1, FEATURES_PER_COORDINATE * self.params.in_channels, 1, self.params.graph_type.joints()];
         let Person { state, next, logits, .. } = person;
         let inputs = [TensorView::new(&shape, features)?, TensorView::new(&[1, self.state], &state[..])?];
         self.session.run(&inputs, |outputs| {

@@ -18,7 +18,7 @@ use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_perception_common::category_scores::category_from_logits;
-use opendr_perception_common::frame_features::{ClipScratch, FrameFeatures, FEATURES_PER_COORDINATE};
+use opendr_perception_common::frame_features::{ClipScratch, FEATURES_PER_COORDINATE, FrameFeatures};
 
 use super::GraphType;
 
@@ -146,8 +146,10 @@ impl Learner for SpatioTemporalGcn {
                 continue;
             }
             present += 1;
-            let input =
-                TensorView::new(&[1, FEATURES_PER_COORDINATE * self.params.in_channels, frames, joints], &clip.clip[..])?;
+            let input = TensorView::new(
+                &[1, FEATURES_PER_COORDINATE * self.params.in_channels, frames, joints],
+                &clip.clip[..],
+            )?;
             self.session.run(&[input], |outputs| {
                 add_to(sum, outputs.first().map_or(Ok(&[][..]), TensorView::values)?);
                 Ok(())

@@ -14,8 +14,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Category, Classes};
 use opendr_engine::{Device, Result, Task};
 use opendr_perception_common::category_scores::{category_from_logits, category_from_probabilities};
-use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 

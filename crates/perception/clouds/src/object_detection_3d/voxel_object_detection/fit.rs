@@ -7,7 +7,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, seeded_device, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::anchors::AnchorKind;
 use super::layout::PillarLayout;

@@ -64,7 +64,8 @@ pub fn assign_anchors(layout: &PillarLayout, truths: &[GroundTruth]) -> Vec<Anch
                 }
                 if overlap > best[at] && overlap >= ANYTHING {
                     best[at] = overlap;
-                    wanted[at] = if overlap >= OBJECT { AnchorTarget::Object(number) } else { AnchorTarget::Ignored };
+                    wanted[at] =
+                        if overlap >= OBJECT { AnchorTarget::Object(number) } else { AnchorTarget::Ignored };
                 }
             }
         }

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result, Value};
 
 use super::coding::offsets_from_box;
 use super::layout::PillarLayout;
-use super::matching::{GroundTruth, AnchorTarget, assign_anchors};
+use super::matching::{AnchorTarget, GroundTruth, assign_anchors};
 use super::scan::Scan;
 use crate::pillars::Voxeliser;
 

@@ -6,14 +6,14 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{ScheduleKind, TrainingParams, seeded_device, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::GemNetwork;
 use super::objective::GemObjective;
 use super::{Gem, GemParams};
 use crate::object_detection_2d::selected_classes;
 use crate::object_detection_2d::single_shot_detector::network::NetworkConfig;
-use crate::object_detection_2d::single_shot_detector::{Backbone, Resizing, LayoutOptions};
+use crate::object_detection_2d::single_shot_detector::{Backbone, LayoutOptions, Resizing};
 
 /// Training parameters of [`Gem`]. Samples have two images of one view, and boxes in pixels of the first.
 #[derive(Debug, Clone, Params)]
@@ -24,7 +24,8 @@ pub struct GemFitParams {
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
     /// How images are resized to that side.
-    pub fitting: Resizing,
+    #[param(alias = "fitting")]
+    pub resizing: Resizing,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
     /// Stride of the finest level, 8 or 16.
@@ -72,7 +73,7 @@ impl Fit for Gem {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let options = LayoutOptions {
             img_size: fit_params.img_size,
-            fitting: fit_params.fitting,
+            fitting: fit_params.resizing,
             stride: fit_params.stride,
             anchor_scales: &fit_params.anchor_scales,
             aspect_ratios: &fit_params.aspect_ratios,

@@ -8,7 +8,7 @@ use opendr_engine::params::Params;
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_training::weights::{Rules, WeightTable};
-use opendr_training::{ScheduleKind, TrainingParams, seeded_device, fit_learner, open_for_training};
+use opendr_training::{ScheduleKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::{DISTANCES, NanodetNetwork};
 use super::objective::NanodetObjective;

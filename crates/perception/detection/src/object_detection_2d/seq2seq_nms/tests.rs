@@ -7,8 +7,8 @@ use opendr_engine::learner::{Fit, FitJob, Handle};
 use opendr_engine::target::BoundingBox;
 use opendr_engine::{ErrorKind, Random, Statistics, Value};
 use opendr_perception_common::suppression::iou;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::learner_checks::check_trained_learner;
+use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_training::{ScheduleKind, TrainingParams};
 
 use super::network::{NetworkSizes, Seq2SeqNmsNetwork};

@@ -4,7 +4,7 @@ use opendr_engine::model::Model;
 use opendr_engine::{Error, Result};
 
 use super::anchors::Anchors;
-use super::layout::{Resizing, ImageLayout, Layout};
+use super::layout::{ImageLayout, Layout, Resizing};
 
 /// Parameters of the input and of the anchors.
 pub(crate) struct LayoutOptions<'a> {

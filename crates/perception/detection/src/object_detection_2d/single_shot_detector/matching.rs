@@ -48,8 +48,9 @@ impl Matching {
                 }
             }
         }
-        let in_crowd =
-            |anchor: &Anchor| crowds.iter().any(|crowd| share_inside(&anchor.corners(), crowd) > self.crowd_share);
+        let in_crowd = |anchor: &Anchor| {
+            crowds.iter().any(|crowd| share_inside(&anchor.corners(), crowd) > self.crowd_share)
+        };
         let of_overlap = |((overlap, object), anchor)| match overlap {
             overlap if overlap >= self.object_iou => Match::Object(object),
             overlap if overlap >= self.background_iou || in_crowd(anchor) => Match::Ignored,

@@ -38,7 +38,7 @@ use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionK
 
 #[cfg(feature = "training")]
 pub use fit::{Backbone, SingleShotDetectorFitParams};
-pub use layout::{Resizing, ImageLayout, Layout};
+pub use layout::{ImageLayout, Layout, Resizing};
 #[cfg(feature = "training")]
 pub(crate) use layout_options::LayoutOptions;
 pub(crate) use levels::Levels;

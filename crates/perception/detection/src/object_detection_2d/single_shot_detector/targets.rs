@@ -140,7 +140,7 @@ mod tests {
     use opendr_engine::target::{Segment, Segmentation};
 
     use super::super::anchors::{AnchorLevel, Anchors};
-    use super::super::layout::{Resizing, ImageLayout};
+    use super::super::layout::{ImageLayout, Resizing};
     use super::*;
 
     fn batches() -> DetectionBatches {

@@ -11,7 +11,7 @@ use opendr_engine::{Error, Result, Statistics, Unit, Value};
 use opendr_face_detection::face_detector::{FaceInput, largest_face};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::{TRAINABLE, network_from_base};
-use opendr_training::{TrainingParams, seeded_device, fit_network, open_for_training};
+use opendr_training::{TrainingParams, fit_network, open_for_training, seeded_device};
 
 use super::gallery::Gallery;
 use super::network::Network;
@@ -99,7 +99,7 @@ fn train(
         classes,
         margin,
         scale,
-        finder: (params.picture == FaceInput::Frame).then(|| Arc::new(finder)),
+        finder: (params.input == FaceInput::Frame).then(|| Arc::new(finder)),
         manifest,
         parts: parts.collect::<Result<_>>()?,
     };

@@ -3,8 +3,8 @@ use std::f32::consts::TAU;
 use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
-use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::learner_checks::check_trained_learner;
+use opendr_perception_testing::overfit::losses_on_one_batch;
 
 use super::network::{BilinearNetwork, NetworkSizes};
 use super::objective::ExpressionObjective;

@@ -19,9 +19,9 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Keypoint, Pose, PoseList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_perception_common::image_network::{ImageNetwork, preprocess_from_input};
-use opendr_perception_common::suppression::iou;
 use opendr_perception_common::rotated_square::RotatedSquare;
-use opendr_vision::{LetterboxAlign, Border};
+use opendr_perception_common::suppression::iou;
+use opendr_vision::{Border, LetterboxAlign};
 
 use self::landmarks::{Hand, JOINTS};
 use self::palm::{Anchors, PalmScratch};
@@ -99,12 +99,15 @@ impl Learner for HandPose {
         let [palm_file, hand_file] = FILES;
         let (mut palm_side, mut hand_side) = (0, 0);
         let palms = ImageNetwork::open_file(model, palm_file, device, |input| {
-            let preprocess = preprocess_from_input(input)?.letterbox(LetterboxAlign::Centre, 0.0).normalise([0.0; 3], [255.0; 3]);
+            let preprocess = preprocess_from_input(input)?
+                .letterbox(LetterboxAlign::Centre, 0.0)
+                .normalise([0.0; 3], [255.0; 3]);
             palm_side = square_side(preprocess.size())?;
             Ok(preprocess)
         })?;
         let hands = ImageNetwork::open_file(model, hand_file, device, |input| {
-            let preprocess = preprocess_from_input(input)?.border(Border::Replicate).normalise([0.0; 3], [255.0; 3]);
+            let preprocess =
+                preprocess_from_input(input)?.border(Border::Replicate).normalise([0.0; 3], [255.0; 3]);
             hand_side = square_side(preprocess.size())?;
             Ok(preprocess)
         })?;

@@ -1,8 +1,8 @@
 //! Decoding of the palm detector's outputs to squares around hands.
 
 use opendr_engine::{Error, Result};
-use opendr_perception_common::suppression::{Candidate, keep_best, merge_overlapping};
 use opendr_perception_common::rotated_square::{RotatedSquare, angle_upwards};
+use opendr_perception_common::suppression::{Candidate, keep_best, merge_overlapping};
 use opendr_vision::InputGeometry;
 
 /// Number of values of a palm: centre, size and seven keypoints, `x, y` each, in input pixels relative to the anchor.

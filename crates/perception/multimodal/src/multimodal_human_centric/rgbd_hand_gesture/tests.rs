@@ -3,8 +3,8 @@ use opendr_engine::dataset::{Dataset, DatasetIterator, DatasetRef, Sample};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::{ErrorKind, Random};
 use opendr_perception_common::small_classifier::SmallClassifier;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::learner_checks::check_trained_learner;
+use opendr_perception_testing::overfit::losses_on_one_batch;
 
 use super::objective::RgbdObjective;
 use super::*;

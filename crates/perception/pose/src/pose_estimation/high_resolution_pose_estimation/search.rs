@@ -2,7 +2,7 @@
 
 use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
-use opendr_perception_common::regions::{CellGrid, CellBrightness, Region, merge_overlapping};
+use opendr_perception_common::regions::{CellBrightness, CellGrid, Region, merge_overlapping};
 
 use super::{HighResolutionPoseEstimationParams, RegionMethod};
 

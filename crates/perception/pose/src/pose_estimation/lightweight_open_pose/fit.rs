@@ -10,7 +10,7 @@ use opendr_engine::params::Params;
 use opendr_engine::{Error, Result, ResultExt, Statistics};
 use opendr_perception_common::frozen_layers::{FrozenLayers, is_on_cpu};
 use opendr_training::weights::{Rules, WeightTable};
-use opendr_training::{OptimizerKind, TrainingParams, seeded_device, fit_learner, open_for_training};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::network::{Network, NetworkConfig};
 use super::objective::{CONFIG, PoseObjective};

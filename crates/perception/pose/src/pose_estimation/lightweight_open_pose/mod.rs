@@ -27,9 +27,9 @@ use opendr_engine::target::{Keypoint, Pose, PoseList, Skeleton};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
 use opendr_perception_common::image_network::ImageNetwork;
-use opendr_vision::{LetterboxAlign, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
-use crate::pose_estimation::part_affinity::{Grid, Scratch, PartAffinity, PartMaps, Person};
+use crate::pose_estimation::part_affinity::{DecodeScratch, Grid, PartAffinity, PartMaps, Person};
 use crate::pose_estimation::pose_tracks::PoseTracks;
 
 /// Parameters of [`LightweightOpenPose`].
@@ -67,7 +67,7 @@ pub struct LightweightOpenPose {
 
 #[derive(Default)]
 struct Scratch {
-    memory: Scratch,
+    decoding: DecodeScratch,
     persons: Vec<Person>,
 }
 
@@ -113,7 +113,9 @@ impl Learner for LightweightOpenPose {
             size = InputSize::of_network(&input.dims);
             let [width, height] = size.of_picture([4, 3], params.base_height);
             // The padding is grey, as that of augmented images.
-            Preprocess::new(width, height).letterbox(LetterboxAlign::Centre, LEVEL).normalise([LEVEL; 3], [LEVEL; 3])
+            Preprocess::new(width, height)
+                .letterbox(LetterboxAlign::Centre, LEVEL)
+                .normalise([LEVEL; 3], [LEVEL; 3])
         })?;
         let [heat, fields] = OUTPUTS;
         let (heat, fields) = (network.output(heat)?, network.output(fields)?);
@@ -167,7 +169,7 @@ impl LightweightOpenPose {
         poses: &mut Vec<Pose>,
         mut sink: impl FnMut(&PartMaps<'_>),
     ) -> Result<()> {
-        let Scratch { memory, persons } = &mut *self.scratch.take();
+        let Scratch { decoding, persons } = &mut *self.scratch.take();
         let LightweightOpenPoseParams { keypoint_threshold, upsample_ratio, threshold, .. } = *params;
         let how =
             PartAffinity { peak_threshold: keypoint_threshold, upsample_ratio, ..PartAffinity::default() };
@@ -175,7 +177,7 @@ impl LightweightOpenPose {
         self.network.run_sized(view, size, |outputs, geometry| {
             let maps = self.maps(outputs)?;
             sink(&maps);
-            how.decode(&maps, memory, persons);
+            how.decode(&maps, decoding, persons);
             let sure = persons.iter().filter(|person| person.score >= threshold);
             poses.extend(sure.map(|person| pose_in_image(person, geometry)));
             Ok(())

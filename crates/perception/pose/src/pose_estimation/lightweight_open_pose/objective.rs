@@ -9,12 +9,12 @@ use opendr_engine::model::Manifest;
 use opendr_engine::params::ParamValue;
 use opendr_engine::target::{BoundingBox, Keypoint, Pose, PoseList};
 use opendr_engine::{Error, Result, Value};
+use opendr_perception_common::dynamic_sides::with_dynamic_sides;
 use opendr_perception_common::frozen_layers::FrozenLayers;
 use opendr_perception_common::joints::opendr_joints_from_pose;
-use opendr_perception_common::dynamic_sides::with_dynamic_sides;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
-use opendr_vision::{LetterboxAlign, InputGeometry, Preprocess};
+use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
 use super::network::{Maps, Network, NetworkConfig};
 use super::person_crop::PersonCrop;

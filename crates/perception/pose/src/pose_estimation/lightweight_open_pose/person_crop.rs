@@ -1,6 +1,8 @@
 //! Augmentation: crops around persons.
 
-use opendr_datasets::augment::{Augment, Augmentation, Border, OtherSamples, AffineMap, image_size, transform};
+use opendr_datasets::augment::{
+    AffineMap, Augment, Augmentation, Border, OtherSamples, image_size, transform,
+};
 use opendr_engine::dataset::Sample;
 use opendr_engine::params::Params;
 use opendr_engine::{Random, Result, Value};

@@ -44,7 +44,9 @@ impl MapEncoder {
         for (maps, [from, to]) in fields.chunks_exact_mut(2 * cells).take(FIELDS / 2).zip(LIMBS) {
             let (x, y) = maps.split_at_mut(cells);
             counts.fill(0);
-            for person in persons.iter().filter(|person| person[from].is_detected() && person[to].is_detected()) {
+            for person in
+                persons.iter().filter(|person| person[from].is_detected() && person[to].is_detected())
+            {
                 self.each_cell_of_limb(grid, [person[from], person[to]], |cell, [along_x, along_y]| {
                     x[cell] += along_x;
                     y[cell] += along_y;

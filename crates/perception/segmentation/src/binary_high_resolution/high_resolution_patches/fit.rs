@@ -7,7 +7,7 @@ use opendr_engine::model::Model;
 use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics, ValueType};
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{OptimizerKind, TrainingParams, seeded_device, fit_learner};
+use opendr_training::{OptimizerKind, TrainingParams, fit_learner, seeded_device};
 
 use super::network::PatchNetwork;
 use super::objective::Patches;

@@ -3,8 +3,8 @@ use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Category, HeatmapValues};
 use opendr_engine::{Random, Value};
 use opendr_perception_common::regions::Region;
-use opendr_perception_testing::overfit::losses_on_one_batch;
 use opendr_perception_testing::learner_checks::check_trained_learner;
+use opendr_perception_testing::overfit::losses_on_one_batch;
 
 use super::objective::{PatchBatches, Patches};
 use super::*;

@@ -13,8 +13,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBoxList, Classes, Name};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
 use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::part_tree::{PartMaps, PartTree, Peak, Person};
 use opendr_vision::{InputGeometry, Preprocess};
 
 use super::OwnerMap;

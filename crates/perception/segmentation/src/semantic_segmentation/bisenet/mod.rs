@@ -18,8 +18,8 @@ use opendr_engine::params::Params;
 use opendr_engine::target::{Classes, Heatmap};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::TensorView;
-use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 use opendr_perception_common::image_network::ImageNetwork;
+use opendr_perception_common::manifest_preprocess::preprocess_from_manifest;
 #[cfg(feature = "training")]
 use opendr_vision::Preprocess;
 

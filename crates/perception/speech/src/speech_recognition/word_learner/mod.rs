@@ -134,7 +134,12 @@ impl<K: WordKind> Learner for WordLearner<K> {
 
 /// Yields a prediction for every second of audio, each half a second after the one before.
 impl<K: WordKind> Streaming for WordLearner<K> {
-    fn push(&self, state: &mut WordStream, piece: AudioInput<'_>, emit: &mut dyn FnMut(Category)) -> Result<()> {
+    fn push(
+        &self,
+        state: &mut WordStream,
+        piece: AudioInput<'_>,
+        emit: &mut dyn FnMut(Category),
+    ) -> Result<()> {
         let samples = piece.samples(K::words(&self.params).sample_rate)?;
         self.windows.push(state, &samples, |second| {
             let mut category = Category::default();

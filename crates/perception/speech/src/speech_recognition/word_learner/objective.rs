@@ -1,7 +1,9 @@
 //! Augmentation, batches, loss and container.
 
 use burn::tensor::Device;
-use opendr_datasets::augment::{AudioGain, AudioNoise, AudioShift, Augment, OtherSamples, Pipeline, SpecAugment};
+use opendr_datasets::augment::{
+    AudioGain, AudioNoise, AudioShift, Augment, OtherSamples, Pipeline, SpecAugment,
+};
 use opendr_datasets::loader::Collate;
 use opendr_engine::data::{Audio, Timeseries};
 use opendr_engine::dataset::Sample;

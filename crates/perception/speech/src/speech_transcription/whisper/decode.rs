@@ -109,8 +109,9 @@ impl Decoding<'_> {
             (false, Some(size)) => Beams::new(self, size, self.options.patience).run(prefilled)?,
             (false, None) => vec![self.sample(prefilled, 0.0, seed)?],
             (true, _) => {
-                let seeds = (0..self.options.best_of.max(1))
-                    .map(|number| Random::from_key([seed, u64::from(temperature.to_bits()), number as u64]).bits());
+                let seeds = (0..self.options.best_of.max(1)).map(|number| {
+                    Random::from_key([seed, u64::from(temperature.to_bits()), number as u64]).bits()
+                });
                 seeds.map(|seed| self.sample(prefilled, temperature, seed)).collect::<Result<_>>()?
             }
         };

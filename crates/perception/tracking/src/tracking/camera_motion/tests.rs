@@ -48,7 +48,10 @@ fn shifts_turns_and_scales_are_found() {
         ([320, 240], SimilarityMotion::new([1.0, 0.0], [0.0, 0.0])),
     ] {
         let mut camera = CameraMotion::default();
-        assert_eq!(camera.update(&picture(&SimilarityMotion::NONE, size, None), &[]).unwrap(), SimilarityMotion::NONE);
+        assert_eq!(
+            camera.update(&picture(&SimilarityMotion::NONE, size, None), &[]).unwrap(),
+            SimilarityMotion::NONE
+        );
         let found = camera.update(&picture(&true_motion, size, None), &[]).unwrap();
         let apart = distance(&found, &true_motion, size);
         assert!(apart < 1.0, "{size:?}: {found:?} instead of {true_motion:?}, {apart} pixels");
