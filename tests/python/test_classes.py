@@ -102,7 +102,7 @@ def test_strangers_are_an_error_until_they_are_mapped(opendr, shared, coco80, tm
     for part in ["match one of the learner by name", "person, bicycle, car", "gizmo 0", "--classes", "--by-number"]:
         assert part in refused.stderr, refused.stderr
     by_number = opendr.eval("nanodet", strangers, "--by-number")
-    assert by_number["classes"]["by_number"] == "asked"
+    assert by_number["classes"]["by_number"] == "requested"
     pairs = ",".join(f"{name}=gizmo {number}" for number, name in enumerate(coco80))
     mapped = opendr.eval("nanodet", strangers, "--classes", pairs)
     assert mapped["scalars"] == by_number["scalars"]

@@ -145,7 +145,7 @@ def test_check_lists_what_is_broken_and_eval_leaves_it_out(opendr, coco128, tmp_
     checked = opendr.run("data", "check", tmp_path / "yolo", "--json")
     assert checked.returncode == 1
     problems = json.loads(checked.stdout)["list"]
-    places = {(problem["file"].rsplit("/", 1)[-1], json.dumps(problem.get("place"))) for problem in problems}
+    places = {(problem["file"].rsplit("/", 1)[-1], json.dumps(problem.get("location"))) for problem in problems}
     assert (pictures[0].name, "null") in places
     assert (f"{pictures[1].stem}.txt", '{"line": 1}') in places
     assert (f"{pictures[2].stem}.txt", '{"line": 2}') in places

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::time::Duration;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressDrawTarget, ProgressStyle};
 use opendr::{Progress, Unit};
 
 use crate::progress_lines::ProgressLines;
@@ -42,7 +42,7 @@ pub struct ProgressBar {
 
 enum State {
     Idle,
-    Bar(ProgressBar, String),
+    Bar(indicatif::ProgressBar, String),
     Lines(ProgressLines),
 }
 
@@ -53,7 +53,7 @@ impl ProgressBar {
         Self::without_interrupt(quiet)
     }
 
-    /// As [`Bar::new`], without the handler of Ctrl-C, for processes that have their own.
+    /// As [`ProgressBar::new`], without the handler of Ctrl-C, for processes that have their own.
     pub fn without_interrupt(quiet: bool) -> Self {
         Self { state: Mutex::new(State::Idle), quiet }
     }
@@ -119,14 +119,14 @@ impl Progress for ProgressBar {
     }
 }
 
-fn bar(what: &str, total: Option<u64>, unit: Unit) -> ProgressBar {
+fn bar(what: &str, total: Option<u64>, unit: Unit) -> indicatif::ProgressBar {
     let template = match (unit, total) {
         (Unit::Bytes, Some(_)) => "{msg} {wide_bar} {bytes}/{total_bytes} {bytes_per_sec} ETA {eta}",
         (Unit::Bytes, None) => "{msg} {spinner} {bytes} {bytes_per_sec}",
         (_, Some(_)) => "{msg} {wide_bar} {pos}/{len} {per_sec} ETA {eta}",
         (_, None) => "{msg} {spinner} {pos} {per_sec}",
     };
-    let bar = ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
+    let bar = indicatif::ProgressBar::with_draw_target(total, ProgressDrawTarget::stderr());
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }

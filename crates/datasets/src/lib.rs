@@ -91,7 +91,7 @@ pub use mnist::Mnist;
 pub use mot::{Mot, MotRow, MotSequence, open_mot_results, write_mot_results};
 pub use npy::{NpyFile, NpyHeader, NpyType, array_from_npy, npy_from_f32, npy_from_i64};
 pub use pictures::UnlabelledImages;
-pub use problems::{Place, Problem, Problems};
+pub use problems::{Location, Problem, Problems};
 pub use recognition::Recognition;
 #[cfg(feature = "recordings")]
 pub use recording::AnnotatedRecording;

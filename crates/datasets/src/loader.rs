@@ -1,7 +1,7 @@
 //! Parallel loader: the samples of a data set in batches, in an order that does not depend on the number of
 //! threads.
 //!
-//! Threads read samples, augment them and fill batches ahead of the training, at most [`LoaderOptions::ahead`]
+//! Threads read samples, augment them and fill batches ahead of the training, at most [`LoaderOptions::prefetch`]
 //! batches, which bounds memory. The order and every random number depend on seed, epoch and sample index only.
 
 mod collate;

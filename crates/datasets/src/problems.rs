@@ -14,7 +14,7 @@ const MAX_KEPT: usize = 10_000;
 /// Location in a file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Place {
+pub enum Location {
     /// Line number, from 1.
     Line(u64),
     /// Byte offset, from 0.
@@ -30,7 +30,8 @@ pub struct Problem {
     pub file: PathBuf,
     /// Location in the file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place: Option<Place>,
+    #[serde(alias = "place")]
+    pub location: Option<Location>,
     /// Description with the values, and what to do.
     pub message: String,
 }
@@ -38,7 +39,7 @@ pub struct Problem {
 impl Problem {
     /// Creates a problem of a whole file.
     pub fn new(file: impl Into<PathBuf>, message: impl Into<String>) -> Self {
-        Self { file: file.into(), place: None, message: message.into() }
+        Self { file: file.into(), location: None, message: message.into() }
     }
 
     /// Converts an error to a problem; an error without a location is a problem of the file of sample `at`.
@@ -49,17 +50,17 @@ impl Problem {
 
     /// Creates a problem of a line, from 1.
     pub fn at_line(file: impl Into<PathBuf>, line: u64, message: impl Into<String>) -> Self {
-        Self { place: Some(Place::Line(line)), ..Self::new(file, message) }
+        Self { location: Some(Location::Line(line)), ..Self::new(file, message) }
     }
 
     /// Creates a problem at a byte offset, from 0.
     pub fn at_byte(file: impl Into<PathBuf>, byte: u64, message: impl Into<String>) -> Self {
-        Self { place: Some(Place::Byte(byte)), ..Self::new(file, message) }
+        Self { location: Some(Location::Byte(byte)), ..Self::new(file, message) }
     }
 
     /// Creates a problem of a key or field.
     pub fn at_key(file: impl Into<PathBuf>, key: impl Into<String>, message: impl Into<String>) -> Self {
-        Self { place: Some(Place::Key(key.into())), ..Self::new(file, message) }
+        Self { location: Some(Location::Key(key.into())), ..Self::new(file, message) }
     }
 }
 
@@ -71,10 +72,10 @@ pub(crate) fn file_of(dataset: &dyn DatasetIterator, at: usize) -> PathBuf {
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.file.display())?;
-        match &self.place {
-            Some(Place::Line(line)) => write!(f, ":{line}")?,
-            Some(Place::Byte(byte)) => write!(f, " at byte {byte}")?,
-            Some(Place::Key(key)) => write!(f, " at {key}")?,
+        match &self.location {
+            Some(Location::Line(line)) => write!(f, ":{line}")?,
+            Some(Location::Byte(byte)) => write!(f, " at byte {byte}")?,
+            Some(Location::Key(key)) => write!(f, " at {key}")?,
             None => {}
         }
         write!(f, ": {}", self.message)

@@ -68,10 +68,10 @@ pub struct DatasetStats {
     pub classes: BTreeMap<String, ClassCount>,
     /// Image width in pixels.
     #[serde(skip_serializing_if = "Spread::is_empty")]
-    pub picture_width: Spread,
+    pub image_width: Spread,
     /// Image height in pixels.
     #[serde(skip_serializing_if = "Spread::is_empty")]
-    pub picture_height: Spread,
+    pub image_height: Spread,
     /// Square root of the area of boxes in pixels.
     #[serde(skip_serializing_if = "Spread::is_empty")]
     pub box_side: Spread,
@@ -97,8 +97,8 @@ impl DatasetStats {
                 stats.sequences += 1;
             }
             if let Some([width, height]) = dataset.image_size(at) {
-                stats.picture_width.add(width.into());
-                stats.picture_height.add(height.into());
+                stats.image_width.add(width.into());
+                stats.image_height.add(height.into());
             }
             match dataset.target(at) {
                 Ok(target) => stats.count(target.as_ref(), &|name| label(name, &names)),
@@ -161,8 +161,8 @@ impl fmt::Display for DatasetStats {
         }
         writeln!(f, ", {} samples without any", self.without_annotation)?;
         for (what, spread) in [
-            ("image width", &self.picture_width),
-            ("image height", &self.picture_height),
+            ("image width", &self.image_width),
+            ("image height", &self.image_height),
             ("box side", &self.box_side),
         ] {
             if !spread.is_empty() {

@@ -117,7 +117,7 @@ impl Parts {
                 log_scale: #log,
                 live: #live,
                 aliases: &[#(#aliases),*],
-                default: ::opendr_engine::params::FieldDefault::Made(|| {
+                default: ::opendr_engine::params::FieldDefault::Function(|| {
                     let default: #kind = #default;
                     #param::to_value(&default)
                 }),
@@ -157,7 +157,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream> {
     let Parts { tables, defaults, changes, gets, sets } = parts;
     let changed = changes.iter().map(|((outer, field), _)| {
         quote! {
-            (::core::stringify!(#field), ::opendr_engine::params::FieldDefault::Made(|| {
+            (::core::stringify!(#field), ::opendr_engine::params::FieldDefault::Function(|| {
                 ::opendr_engine::params::Param::to_value(&<#name as ::core::default::Default>::default().#outer.#field)
             }))
         }

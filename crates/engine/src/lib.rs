@@ -33,12 +33,12 @@
 // Derived code names this crate as `opendr_engine`, here too.
 extern crate self as opendr_engine;
 
-mod assembly_line;
 mod cache;
 mod device;
 mod error;
 mod header;
 mod json_stream;
+mod map_in_stages;
 #[allow(dead_code)]
 mod numpy_text;
 mod parallel;
@@ -59,12 +59,12 @@ pub mod overlap;
 pub mod params;
 pub mod target;
 
-pub use assembly_line::map_in_stages;
 pub use cache::cache_dir;
 pub use device::Device;
 pub use error::{Error, ErrorKind, Result, ResultExt};
 pub use header::Header;
 pub use json_stream::{JsonPiece, JsonStream};
+pub use map_in_stages::map_in_stages;
 pub use model::Model;
 pub use parallel::map_in_order;
 pub use pool::{Pool, Pooled};

@@ -73,7 +73,7 @@ impl EvalOptions {
     /// Opens the data set for the metric of a learner.
     ///
     /// # Errors
-    /// As [`EvalOptions::metric_for`] and [`open_for`].
+    /// As [`EvalOptions::metric_for`] and [`open_for_metric`].
     pub fn open<'a>(&'a self, entry: &Entry, dataset: DatasetRef<'a>) -> Result<EvalJob<'a>> {
         self.open_by(self.metric_for(entry)?, dataset)
     }
@@ -81,7 +81,7 @@ impl EvalOptions {
     /// Opens the data set for a metric.
     ///
     /// # Errors
-    /// As [`open_for`].
+    /// As [`open_for_metric`].
     pub fn open_by<'a>(
         &'a self,
         metric: &'static MetricEntry,

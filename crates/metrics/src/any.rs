@@ -90,11 +90,11 @@ pub struct MetricEntry {
     pub about: &'static str,
     /// As [`Metric::NUMBERS`].
     pub numbers: &'static [(&'static str, &'static str)],
-    /// As [`Metric::ERRORS`].
+    /// As [`Metric::LOWER_IS_BETTER`].
     pub lower_is_better: &'static [&'static str],
     /// Parameters.
     pub params: &'static [Field],
-    /// As [`Metric::RANKS`].
+    /// As [`Metric::IS_RANKING`].
     pub is_ranking: bool,
     /// As [`Metric::SEGMENTS`].
     pub segments: bool,

@@ -7,12 +7,12 @@ use prost::Message;
 
 use super::array::{Array, ElementType};
 use super::fold;
+use super::graph_tensor::{Dim, GraphTensor};
 use super::operator::Operator;
 use super::proto::{
     Dimension, DimensionValue, GraphProto, NodeProto, TensorProto, TensorShapeProto, TensorType, TypeProto,
     TypeValue, ValueInfoProto,
 };
-use super::wire::{Dim, Value};
 
 /// Maximum number of nodes. Real models have far fewer; a hostile one could need a node per element of a huge axis.
 const MAX_NODES: usize = 100_000;
@@ -31,19 +31,19 @@ pub struct Builder {
     inputs: Vec<ValueInfoProto>,
     outputs: Vec<ValueInfoProto>,
     names: BTreeMap<String, usize>,
-    written: HashMap<Vec<u8>, Vec<Value>>,
+    written: HashMap<Vec<u8>, Vec<GraphTensor>>,
     small_constants: HashMap<Vec<u8>, String>,
-    large_constants: HashMap<usize, (String, Value)>,
+    large_constants: HashMap<usize, (String, GraphTensor)>,
     folded: usize,
 }
 
 impl Builder {
     /// Adds an input of the graph. `open` has names of its open dimensions; an empty or missing name leaves a
     /// dimension unnamed.
-    pub fn input(&mut self, name: &str, kind: ElementType, dims: Vec<Dim>, open: &[&str]) -> Value {
+    pub fn input(&mut self, name: &str, kind: ElementType, dims: Vec<Dim>, open: &[&str]) -> GraphTensor {
         let name = self.unique(name);
         self.inputs.push(value_info(&name, kind, &dims, open));
-        Value::new(&name, kind, dims, None)
+        GraphTensor::new(&name, kind, dims, None)
     }
 
     /// Declares an output with the name `name`. A tensor that already has a name (an input, a constant, another
@@ -51,7 +51,7 @@ impl Builder {
     ///
     /// # Errors
     /// `Format` when the graph exceeds the maximum number of nodes.
-    pub fn output(&mut self, name: &str, wire: &Value, doc: &str, open: &[&str]) -> Result<()> {
+    pub fn output(&mut self, name: &str, wire: &GraphTensor, doc: &str, open: &[&str]) -> Result<()> {
         let source = self.source_name(wire)?;
         let mut node = Operator::new("Identity").into_node(name);
         node.input.push(source);
@@ -71,10 +71,10 @@ impl Builder {
         &mut self,
         hint: &str,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         kind: ElementType,
         dims: Vec<Dim>,
-    ) -> Result<Value> {
+    ) -> Result<GraphTensor> {
         let outputs = self.add_many(hint, operator, inputs, vec![(kind, dims)])?;
         outputs.into_iter().next().ok_or_else(|| Error::internal("operator without output"))
     }
@@ -87,14 +87,14 @@ impl Builder {
         &mut self,
         hint: &str,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         outputs: Vec<(ElementType, Vec<Dim>)>,
-    ) -> Result<Vec<Value>> {
+    ) -> Result<Vec<GraphTensor>> {
         let known = self.evaluate(&operator, inputs).filter(|known| known.len() == outputs.len());
         if let Some(known) = &known
             && known.iter().all(Array::is_complete)
         {
-            return Ok(known.iter().cloned().map(Value::constant).collect());
+            return Ok(known.iter().cloned().map(GraphTensor::constant).collect());
         }
         let mut node = operator.into_node("");
         for input in inputs {
@@ -109,7 +109,7 @@ impl Builder {
         for (kind, dims) in outputs {
             let name = self.unique(hint);
             node.output.push(name.clone());
-            wires.push(Value::new(&name, kind, dims, known.next()));
+            wires.push(GraphTensor::new(&name, kind, dims, known.next()));
         }
         node.name = node.output.first().cloned().unwrap_or_default();
         self.push(node)?;
@@ -127,7 +127,7 @@ impl Builder {
         Ok(())
     }
 
-    fn evaluate(&mut self, operator: &Operator, inputs: &[&Value]) -> Option<Vec<Array>> {
+    fn evaluate(&mut self, operator: &Operator, inputs: &[&GraphTensor]) -> Option<Vec<Array>> {
         let known = match operator.name() {
             "Shape" => {
                 let dims = inputs.first()?.dims();
@@ -137,7 +137,7 @@ impl Builder {
             }
             "Size" => vec![Array::int(i64::try_from(inputs.first()?.element_count()?).ok()?)],
             _ => {
-                let unknown = |wire: &&Value| !wire.name.is_empty() && wire.known().is_none();
+                let unknown = |wire: &&GraphTensor| !wire.name.is_empty() && wire.known().is_none();
                 if self.folded > MAX_FOLDED || inputs.iter().any(unknown) {
                     return None;
                 }
@@ -149,7 +149,7 @@ impl Builder {
     }
 
     /// Returns the name by which a node refers to `wire`; writes an initializer for a constant.
-    fn source_name(&mut self, wire: &Value) -> Result<String> {
+    fn source_name(&mut self, wire: &GraphTensor) -> Result<String> {
         let Some(array) = wire.array() else { return Ok(wire.name.to_string()) };
         let hint = if wire.name.is_empty() { "constant" } else { &*wire.name };
         if array.data().len() <= SMALL {

@@ -2,7 +2,7 @@
 //!
 //! Contents:
 //! * [`model_from_bytes`] and [`bytes_from_model`]: ONNX files; [`proto`] has the messages of the format.
-//! * [`Builder`]: construction of a graph from [`Operator`]s and [`Wire`]s, with constant folding. Begin here to
+//! * [`Builder`]: construction of a graph from [`Operator`]s and [`WireFormat`]s, with constant folding. Begin here to
 //!   write one.
 //! * [`passes`]: graph rewriting, such as [`passes::simplify`].
 //! * [`Array`]: tensors with known elements.
@@ -28,18 +28,18 @@ mod array;
 mod builder;
 mod float_type;
 mod fold;
+mod graph_tensor;
 mod half;
 mod model;
 mod operator;
 pub mod passes;
 pub mod proto;
-mod wire;
 
 pub use array::{Array, Data, ElementType, element_count};
 pub use builder::Builder;
 pub use float_type::FloatType;
 pub use fold::slice_range;
+pub use graph_tensor::{Dim, GraphTensor};
 pub use half::{float_from_half, half_from_float};
 pub use model::{bytes_from_model, model_from_bytes, model_from_graph};
 pub use operator::Operator;
-pub use wire::{Dim, Value};

@@ -1,7 +1,7 @@
 //! OpenDR in Rust: the open deep-learning toolkit for robotics.
 //!
 //! The facade of the workspace: the [registry](registry()) of learners, [learners and models by name](learner()), [pipelines](Pipeline),
-//! training ([`fit()`], [`fit_in`]), hyperparameter search ([`tune()`]), [`export()`], and re-exports of the other crates. Algorithms are in
+//! training ([`fit()`], [`fit_policy`]), hyperparameter search ([`tune()`]), [`export()`], and re-exports of the other crates. Algorithms are in
 //! the crates of `crates/perception`, data types and the trait `Learner` in `opendr-engine`; the command line, Python and C are in
 //! `apps` and `bindings`. Begin with [`learner()`]:
 //!
@@ -44,10 +44,10 @@
 //! ```
 
 mod by_name;
-mod eval_in;
 mod export;
 mod fit;
 mod pipeline;
+mod policy_evaluation;
 mod registry;
 mod smaller;
 #[cfg(any(feature = "detection", feature = "segmentation"))]
@@ -55,7 +55,6 @@ pub mod tiling;
 mod tune;
 
 pub use by_name::{download, learner, learner_with};
-pub use eval_in::{PolicyController, evaluate_policy, training_environment};
 pub use export::{export, network};
 pub use fit::{
     DatasetOpener, FitData, FitEnvironments, FitOptions, Fitted, check_fit, fit, fit_policy, teacher,
@@ -97,6 +96,7 @@ pub use opendr_stereo::stereo_matching;
 #[cfg(feature = "tracking")]
 pub use opendr_tracking::{object_tracking_2d, object_tracking_3d, tracking};
 pub use pipeline::Pipeline;
+pub use policy_evaluation::{PolicyController, evaluate_policy, training_environment};
 pub use registry::registry;
 pub use smaller::optimize_loaded;
 pub use tune::{LearnerTraining, MakeLearner, TuneData, TuneOptions, Tuned, search_space, tune};

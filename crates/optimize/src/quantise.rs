@@ -186,9 +186,9 @@ impl<'a> Quantiser<'a> {
                 name: layer.name.clone(),
                 op: layer.op.clone(),
                 weights: layer.weights.data().len(),
-                weight_ratio: weights.map_or(0.0, |weights| weights.signal_to_noise),
-                input_ratio: seen.map_or(0.0, |(histogram, range)| range.signal_to_noise(histogram)),
-                output_ratio: 0.0,
+                weight_snr_db: weights.map_or(0.0, |weights| weights.signal_to_noise),
+                input_snr_db: seen.map_or(0.0, |(histogram, range)| range.signal_to_noise(histogram)),
+                output_snr_db: 0.0,
                 is_float: layer.is_float,
             }
         };
@@ -221,7 +221,7 @@ impl<'a> Quantiser<'a> {
                 })?;
             }
             for (report, [power, lost]) in reports.iter_mut().zip(powers) {
-                report.output_ratio = decibels(power, lost);
+                report.output_snr_db = decibels(power, lost);
             }
         }
         Ok(reports)

@@ -42,11 +42,11 @@ pub struct LayerReport {
     /// Number of weights.
     pub weights: usize,
     /// Ratio of its quantised weights.
-    pub weight_ratio: f64,
+    pub weight_snr_db: f64,
     /// Ratio of its quantised input.
-    pub input_ratio: f64,
+    pub input_snr_db: f64,
     /// Ratio of its output, after all preceding quantisation.
-    pub output_ratio: f64,
+    pub output_snr_db: f64,
     /// Whether it stays in floats.
     pub is_float: bool,
 }
@@ -55,7 +55,7 @@ impl LayerReport {
     /// Returns the ratio for the quantisation of this layer alone, from both its losses.
     pub fn layer_snr_db(&self) -> f64 {
         let loss = |ratio: f64| 10f64.powf(-ratio / 10.0);
-        -10.0 * (loss(self.weight_ratio) + loss(self.input_ratio)).log10()
+        -10.0 * (loss(self.weight_snr_db) + loss(self.input_snr_db)).log10()
     }
 }
 
@@ -79,9 +79,14 @@ impl fmt::Display for Report {
         for layer in &self.layers {
             write!(f, "  {:width$}  {:8}  {:>9}", layer.name, layer.op, layer.weights)?;
             if layer.is_float {
-                writeln!(f, "{:>46.1}  float", layer.output_ratio)?;
+                writeln!(f, "{:>46.1}  float", layer.output_snr_db)?;
             } else {
-                let LayerReport { weight_ratio, input_ratio, output_ratio, .. } = layer;
+                let LayerReport {
+                    weight_snr_db: weight_ratio,
+                    input_snr_db: input_ratio,
+                    output_snr_db: output_ratio,
+                    ..
+                } = layer;
                 writeln!(f, "{:22} {weight_ratio:>7.1} {input_ratio:>6.1} {output_ratio:>6.1}", "")?;
             }
         }

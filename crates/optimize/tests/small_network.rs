@@ -10,7 +10,8 @@ use opendr_engine::{Device, ErrorKind, Random, Silent};
 use opendr_inference::recording::{self, Recording};
 use opendr_inference::{Session, TensorView, runtimes};
 use opendr_onnx::{
-    Array, Builder, Data, ElementType, Operator, Value, bytes_from_model, model_from_bytes, model_from_graph,
+    Array, Builder, Data, ElementType, GraphTensor, Operator, bytes_from_model, model_from_bytes,
+    model_from_graph,
 };
 use opendr_optimize::{Calibration, MetricValue, OptimizeOptions, Precision, optimize};
 
@@ -32,12 +33,12 @@ impl Drop for Folder {
     }
 }
 
-fn weights(random: &mut Random, dims: &[usize]) -> Value {
+fn weights(random: &mut Random, dims: &[usize]) -> GraphTensor {
     let count = dims.iter().product();
     let fan_in: usize = dims[1..].iter().product();
     let scale = (2.0 / fan_in as f32).sqrt();
     let floats = (0..count).map(|_| random.normal() as f32 * scale).collect();
-    Value::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
+    GraphTensor::constant(Array::new(dims.to_vec(), Data::Float(floats)).unwrap())
 }
 
 /// A network of convolutions (one depthwise), a rectifier, a leaky one, pooling, a sum, a concatenation, a resize and
@@ -49,7 +50,7 @@ fn network() -> Vec<u8> {
     graph.reserve("scores");
     graph.reserve("map");
     let image = graph.input("image", ElementType::Float, dims(&INPUT), &[]);
-    let mut conv = |graph: &mut Builder, input: &Value, filters: usize, side: usize, groups: usize| {
+    let mut conv = |graph: &mut Builder, input: &GraphTensor, filters: usize, side: usize, groups: usize| {
         let channels = input.dims()[1].unwrap();
         let kernel = weights(&mut random, &[filters, channels / groups, side, side]);
         let bias =
@@ -63,10 +64,10 @@ fn network() -> Vec<u8> {
         let mut shape = input.dims().to_vec();
         shape[1] = Some(filters);
         graph
-            .add("conv", operator, &[input, &kernel, &Value::constant(bias)], ElementType::Float, shape)
+            .add("conv", operator, &[input, &kernel, &GraphTensor::constant(bias)], ElementType::Float, shape)
             .unwrap()
     };
-    let plain = |graph: &mut Builder, operator: Operator, inputs: &[&Value], shape: &[usize]| {
+    let plain = |graph: &mut Builder, operator: Operator, inputs: &[&GraphTensor], shape: &[usize]| {
         graph.add("node", operator, inputs, ElementType::Float, dims(shape)).unwrap()
     };
     let first = conv(&mut graph, &image, 16, 3, 1);
@@ -78,18 +79,18 @@ fn network() -> Vec<u8> {
         plain(&mut graph, Operator::new("LeakyRelu").float("alpha", 0.1), &[&second], &[1, 16, 8, 8]);
     let sum = plain(&mut graph, Operator::new("Add"), &[&second, &pooled], &[1, 16, 8, 8]);
     let joined = plain(&mut graph, Operator::new("Concat").int("axis", 1), &[&sum, &second], &[1, 32, 8, 8]);
-    let scales = Value::constant(Array::new(vec![4], Data::Float(vec![1.0, 1.0, 2.0, 2.0])).unwrap());
+    let scales = GraphTensor::constant(Array::new(vec![4], Data::Float(vec![1.0, 1.0, 2.0, 2.0])).unwrap());
     let resize = Operator::new("Resize")
         .text("mode", "nearest")
         .text("coordinate_transformation_mode", "asymmetric")
         .text("nearest_mode", "floor");
-    let larger = plain(&mut graph, resize, &[&joined, &Value::absent(), &scales], &[1, 32, 16, 16]);
+    let larger = plain(&mut graph, resize, &[&joined, &GraphTensor::absent(), &scales], &[1, 32, 16, 16]);
     let map = conv(&mut graph, &larger, 8, 1, 1);
     graph.output("map", &map, "", &[]).unwrap();
     let mean = plain(&mut graph, Operator::new("GlobalAveragePool"), &[&joined], &[1, 32, 1, 1]);
     let flat = plain(&mut graph, Operator::new("Flatten"), &[&mean], &[1, 32]);
     let kernel = weights(&mut Random::new(9), &[10, 32]);
-    let bias = Value::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
+    let bias = GraphTensor::constant(Array::new(vec![10], Data::Float(vec![0.1; 10])).unwrap());
     let gemm = Operator::new("Gemm").int("transB", 1);
     let scores = plain(&mut graph, gemm, &[&flat, &kernel, &bias], &[1, 10]);
     graph.output("scores", &scores, "", &[]).unwrap();
@@ -179,7 +180,7 @@ fn int8_predicts_nearly_the_same_on_every_runtime() {
             ["Conv", "Conv", "Conv", "Gemm"]
         );
         assert!(
-            report.layers.iter().all(|layer| layer.output_ratio > 22.0 && layer.weight_ratio > 30.0),
+            report.layers.iter().all(|layer| layer.output_snr_db > 22.0 && layer.weight_snr_db > 30.0),
             "{report}"
         );
     }

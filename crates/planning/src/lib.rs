@@ -1,7 +1,7 @@
 //! End-to-end motion planning of a drone, from its depth camera to heading and yaw.
 //!
 //! [`end_to_end::EndToEndPlanningRl`] is the learner and the type to begin with; it trains by PPO in the corridor
-//! environments of `opendr-simulation`. The wrappers [`end_to_end::DenseEpisodes`] and [`end_to_end::SternRewards`]
+//! environments of `opendr-simulation`. The wrappers [`end_to_end::DenseObstacles`] and [`end_to_end::TrainingRewards`]
 //! change the corridors during training. PPO itself, policies and rollouts are in `opendr-rl`; the environments, their
 //! rewards and the memory of a flight are in `opendr-simulation`.
 //!

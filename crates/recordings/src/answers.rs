@@ -15,7 +15,7 @@ use crate::channels::{Known, channel_of, unreadable, wire_of};
 /// Writer of values as messages: ROS 1's in rosbag 1, ROS 2's in the other formats.
 ///
 /// Classes are written by name, in ROS 1 by number, since its messages have no field for names. A dropped writer
-/// finishes the recording, but ignores errors: use [`Answers::finish`].
+/// finishes the recording, but ignores errors: use [`RecordingWriter::finish`].
 #[derive(Debug)]
 pub struct RecordingWriter {
     writer: BagWriter,
@@ -55,7 +55,7 @@ impl RecordingWriter {
     /// Writes a value on `topic` as a message of `message_type`.
     ///
     /// # Errors
-    /// As [`Answers::write`]; `InvalidInput` if messages of this type do not represent the value.
+    /// As [`RecordingWriter::write`]; `InvalidInput` if messages of this type do not represent the value.
     pub fn write_as(
         &mut self,
         topic: &str,
@@ -70,7 +70,7 @@ impl RecordingWriter {
     /// Writes the names of the classes, if the format has a message for them.
     ///
     /// # Errors
-    /// As [`Answers::write`].
+    /// As [`RecordingWriter::write`].
     pub fn write_classes(&mut self, topic: &str, classes: &Classes, log_time_ns: i64) -> Result<()> {
         if self.wire == WireFormat::Ros1 || classes.is_empty() {
             return Ok(());
@@ -82,7 +82,7 @@ impl RecordingWriter {
     /// Writes the action of a prediction for a better view (active perception), if it has one.
     ///
     /// # Errors
-    /// As [`Answers::write`].
+    /// As [`RecordingWriter::write`].
     pub fn write_action(
         &mut self,
         topic: &str,
@@ -117,7 +117,7 @@ impl RecordingWriter {
     /// ROS version.
     ///
     /// # Errors
-    /// As [`Answers::write_message`]; `Unsupported` for a message that needs conversion and is unknown to OpenDR.
+    /// As [`RecordingWriter::write_message`]; `Unsupported` for a message that needs conversion and is unknown to OpenDR.
     pub fn copy(&mut self, recording: &Recording, message: &RecordedMessage) -> Result<()> {
         let channel = recording.bag().channels().get(message.channel);
         let channel = channel.ok_or_else(|| Error::invalid_input("the message is of another recording"))?;

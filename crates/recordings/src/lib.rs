@@ -1,8 +1,8 @@
 //! Recordings as inputs of learners, and predictions written as recordings.
 //!
 //! `opendr-bags` reads and writes messages as bytes; this crate converts them to values and back. [`Recording`]
-//! lists the topics of a recording and the types of their messages. [`Sets`] reads messages of several topics,
-//! synchronised by stamp. [`Answers`] writes values as messages. [`Conversion`] copies recordings between formats,
+//! lists the topics of a recording and the types of their messages. [`SyncedSets`] reads messages of several topics,
+//! synchronised by stamp. [`RecordingWriter`] writes values as messages. [`Conversion`] copies recordings between formats,
 //! and between ROS 1 and ROS 2. The conversion of a single message is in `opendr-ros-bridge`.
 //!
 //! ```

@@ -43,7 +43,7 @@ fn main() -> Result<()> {
         ("depth_memory", ImageNetwork::Small, Some(24), Space::MultiBinary(vec![3])),
     ] {
         let spec = EnvironmentSpec::new(name, observation.clone(), action);
-        let config = NetworkConfig { picture_network, gru_size, ..NetworkConfig::default() };
+        let config = NetworkConfig { image_network: picture_network, gru_size, ..NetworkConfig::default() };
         let mut policy = Policy::new(&spec, Head::stochastic(&spec.action)?, &config, Some(10.0))?;
         policy.initialise(ParameterInit::Orthogonal(1.0), 0.0, &mut Random::new(5));
         export(&folder, name, &policy)?;

@@ -2,7 +2,9 @@
 
 use opendr_engine::{Error, Result};
 use opendr_kernels::{Activation, Gru, Layer, Network};
-use opendr_onnx::{Array, Builder, Data, ElementType, Operator, Value, bytes_from_model, model_from_graph};
+use opendr_onnx::{
+    Array, Builder, Data, ElementType, GraphTensor, Operator, bytes_from_model, model_from_graph,
+};
 
 use crate::policy::{Bounds, EPSILON, Head, ObservationNormaliser, Part, PartKind, Policy};
 
@@ -44,12 +46,12 @@ struct Graph {
 }
 
 impl Graph {
-    fn add(&mut self, operator: Operator, inputs: &[&Value], width: usize) -> Result<Value> {
+    fn add(&mut self, operator: Operator, inputs: &[&GraphTensor], width: usize) -> Result<GraphTensor> {
         self.builder.add("", operator, inputs, ElementType::Float, vec![None, Some(width)])
     }
 
     /// Adds the encoding of an observation and the networks of its images. Returns the features.
-    fn features(&mut self, policy: &Policy, observation: &Value) -> Result<Value> {
+    fn features(&mut self, policy: &Policy, observation: &GraphTensor) -> Result<GraphTensor> {
         let encoder = &policy.encoder;
         let (mut features, mut number) = (Vec::new(), 0);
         for (part, (_, network)) in encoder.parts().iter().zip(policy.extractor.parts()) {
@@ -65,8 +67,9 @@ impl Graph {
                 }
                 (PartKind::Image { low, scale, .. }, _) => {
                     let width = part.raw.len();
-                    let shifted = self.add(Operator::new("Sub"), &[&raw, &Value::scalar(*low)], width)?;
-                    self.add(Operator::new("Mul"), &[&shifted, &Value::scalar(*scale)], width)?
+                    let shifted =
+                        self.add(Operator::new("Sub"), &[&raw, &GraphTensor::scalar(*low)], width)?;
+                    self.add(Operator::new("Mul"), &[&shifted, &GraphTensor::scalar(*scale)], width)?
                 }
                 (PartKind::Choices(..), _) => {
                     return Err(Error::unsupported(
@@ -90,19 +93,19 @@ impl Graph {
         }
     }
 
-    fn slice(&mut self, observation: &Value, part: &Part) -> Result<Value> {
-        let ends = [part.raw.start as i64, part.raw.end as i64].map(|end| Value::ints([end]));
-        let inputs = [observation, &ends[0], &ends[1], &Value::ints([1])];
+    fn slice(&mut self, observation: &GraphTensor, part: &Part) -> Result<GraphTensor> {
+        let ends = [part.raw.start as i64, part.raw.end as i64].map(|end| GraphTensor::ints([end]));
+        let inputs = [observation, &ends[0], &ends[1], &GraphTensor::ints([1])];
         self.add(Operator::new("Slice"), &inputs, part.raw.len())
     }
 
     fn normalised(
         &mut self,
-        raw: Value,
+        raw: GraphTensor,
         normaliser: &ObservationNormaliser,
         first: usize,
         width: usize,
-    ) -> Result<Value> {
+    ) -> Result<GraphTensor> {
         let moments = &normaliser.moments;
         let mean = moments.mean()[first..first + width].iter().map(|mean| *mean as f32);
         let variance = moments.variance()[first..first + width].iter();
@@ -111,16 +114,25 @@ impl Graph {
         let shifted = self.add(Operator::new("Sub"), &[&raw, &mean], width)?;
         let scaled = self.add(Operator::new("Div"), &[&shifted, &deviation], width)?;
         let clip = normaliser.clip;
-        self.add(Operator::new("Clip"), &[&scaled, &Value::scalar(-clip), &Value::scalar(clip)], width)
+        self.add(
+            Operator::new("Clip"),
+            &[&scaled, &GraphTensor::scalar(-clip), &GraphTensor::scalar(clip)],
+            width,
+        )
     }
 
     /// Adds a recurrent unit on features and `state`, as [`Gru`] computes it.
-    fn recurrent_unit(&mut self, gru: &Gru, parameters: &[f32], features: &Value) -> Result<Value> {
+    fn recurrent_unit(
+        &mut self,
+        gru: &Gru,
+        parameters: &[f32],
+        features: &GraphTensor,
+    ) -> Result<GraphTensor> {
         let (inputs, size) = (gru.inputs(), gru.size());
         let state = self.builder.input("state", ElementType::Float, vec![None, Some(size)], &["batch", ""]);
         let (weights, rest) = parameters.split_at(3 * size * inputs);
         let (recurrent, biases) = rest.split_at(3 * size * size);
-        let mut sums = |x: &Value, weights: &[f32], biases: &[f32]| {
+        let mut sums = |x: &GraphTensor, weights: &[f32], biases: &[f32]| {
             let weights = constant(vec![weights.len() / (3 * size), 3 * size], weights)?;
             let biases = constant(vec![3 * size], biases)?;
             self.add(Operator::new("Gemm"), &[x, &weights, &biases], 3 * size)
@@ -129,9 +141,9 @@ impl Graph {
         let of_state = sums(&state, recurrent, &biases[3 * size..])?;
         let mut gates = Vec::new();
         for gate in 0..3 {
-            let ends = [gate, gate + 1].map(|end| Value::ints([(end * size) as i64]));
-            let mut own = |of: &Value| {
-                let inputs = [of, &ends[0], &ends[1], &Value::ints([1])];
+            let ends = [gate, gate + 1].map(|end| GraphTensor::ints([(end * size) as i64]));
+            let mut own = |of: &GraphTensor| {
+                let inputs = [of, &ends[0], &ends[1], &GraphTensor::ints([1])];
                 self.add(Operator::new("Slice"), &inputs, size)
             };
             let (of_features, mut of_state) = (own(&of_features)?, own(&of_state)?);
@@ -159,17 +171,17 @@ impl Graph {
         network: &Network,
         parameters: &[f32],
         shape: [usize; 3],
-        flat: Value,
-    ) -> Result<Value> {
+        flat: GraphTensor,
+    ) -> Result<GraphTensor> {
         let sizes = shape.map(|size| size as i64);
-        let reshape = Value::ints([-1, sizes[0], sizes[1], sizes[2]]);
+        let reshape = GraphTensor::ints([-1, sizes[0], sizes[1], sizes[2]]);
         let dims = vec![None, Some(shape[0]), Some(shape[1]), Some(shape[2])];
         let image =
             self.builder.add("", Operator::new("Reshape"), &[&flat, &reshape], ElementType::Float, dims)?;
         self.network(network, parameters, image)
     }
 
-    fn network(&mut self, network: &Network, parameters: &[f32], from: Value) -> Result<Value> {
+    fn network(&mut self, network: &Network, parameters: &[f32], from: GraphTensor) -> Result<GraphTensor> {
         let mut wire = from;
         for (index, layer) in network.layers().iter().enumerate() {
             let own = &parameters[network.parameter_range(index)];
@@ -211,7 +223,7 @@ impl Graph {
         Ok(wire)
     }
 
-    fn activation(&mut self, activation: Activation, wire: Value) -> Result<Value> {
+    fn activation(&mut self, activation: Activation, wire: GraphTensor) -> Result<GraphTensor> {
         let name = match activation {
             Activation::Identity => return Ok(wire),
             Activation::Relu => "Relu",
@@ -222,7 +234,7 @@ impl Graph {
         self.builder.add("", Operator::new(name), &[&wire], ElementType::Float, dims)
     }
 
-    fn action(&mut self, head: &Head, outputs: &Value) -> Result<Value> {
+    fn action(&mut self, head: &Head, outputs: &GraphTensor) -> Result<GraphTensor> {
         let axes = head.action_len();
         match head {
             Head::Categorical { counts, start } => {
@@ -233,8 +245,8 @@ impl Graph {
                     let own = match counts.len() {
                         1 => outputs.clone(),
                         _ => {
-                            let ends = [begin as i64, end as i64].map(|end| Value::ints([end]));
-                            let inputs = [outputs, &ends[0], &ends[1], &Value::ints([1])];
+                            let ends = [begin as i64, end as i64].map(|end| GraphTensor::ints([end]));
+                            let inputs = [outputs, &ends[0], &ends[1], &GraphTensor::ints([1])];
                             self.add(Operator::new("Slice"), &inputs, end - begin)?
                         }
                     };
@@ -253,7 +265,7 @@ impl Graph {
             Head::Greedy { start, .. } => self.largest(outputs, *start),
             Head::Binary(_) => {
                 let dims = vec![None, Some(axes)];
-                let (above, zero) = (Operator::new("Greater"), Value::scalar(0.0));
+                let (above, zero) = (Operator::new("Greater"), GraphTensor::scalar(0.0));
                 let digits =
                     self.builder.add("", above, &[outputs, &zero], ElementType::Bool, dims.clone())?;
                 let cast = Operator::new("Cast").int("to", ElementType::Int.data_type() as i64);
@@ -265,8 +277,8 @@ impl Graph {
                 self.stretched(&squashed, bounds)
             }
             Head::SquashedGaussian(bounds) => {
-                let end = Value::ints([axes as i64]);
-                let inputs = [outputs, &Value::ints([0]), &end, &Value::ints([1])];
+                let end = GraphTensor::ints([axes as i64]);
+                let inputs = [outputs, &GraphTensor::ints([0]), &end, &GraphTensor::ints([1])];
                 let means = self.add(Operator::new("Slice"), &inputs, axes)?;
                 let squashed = self.activation(Activation::Tanh, means)?;
                 self.stretched(&squashed, bounds)
@@ -274,20 +286,20 @@ impl Graph {
         }
     }
 
-    fn largest(&mut self, scores: &Value, start: i32) -> Result<Value> {
+    fn largest(&mut self, scores: &GraphTensor, start: i32) -> Result<GraphTensor> {
         let operator = Operator::new("ArgMax").int("axis", 1).int("keepdims", 1);
         let dims = vec![None, Some(1)];
         let place = self.builder.add("", operator, &[scores], ElementType::Int, dims.clone())?;
         match start {
             0 => Ok(place),
             start => {
-                let start = Value::ints([start.into()]);
+                let start = GraphTensor::ints([start.into()]);
                 self.builder.add("", Operator::new("Add"), &[&place, &start], ElementType::Int, dims)
             }
         }
     }
 
-    fn clipped(&mut self, actions: &Value, bounds: &Bounds) -> Result<Value> {
+    fn clipped(&mut self, actions: &GraphTensor, bounds: &Bounds) -> Result<GraphTensor> {
         let width = bounds.low.len();
         let (low, high) = (row(bounds.low.clone())?, row(bounds.high.clone())?);
         let above = self.add(Operator::new("Max"), &[actions, &low], width)?;
@@ -295,25 +307,25 @@ impl Graph {
     }
 
     /// As [`Bounds::stretch`].
-    fn stretched(&mut self, actions: &Value, bounds: &Bounds) -> Result<Value> {
+    fn stretched(&mut self, actions: &GraphTensor, bounds: &Bounds) -> Result<GraphTensor> {
         let width = bounds.low.len();
         let both = bounds.low.iter().zip(&bounds.high);
         let half = row(both.map(|(low, high)| 0.5 * (high - low)).collect())?;
-        let above = self.add(Operator::new("Add"), &[actions, &Value::scalar(1.0)], width)?;
+        let above = self.add(Operator::new("Add"), &[actions, &GraphTensor::scalar(1.0)], width)?;
         let scaled = self.add(Operator::new("Mul"), &[&above, &half], width)?;
         let moved = self.add(Operator::new("Add"), &[&scaled, &row(bounds.low.clone())?], width)?;
         self.clipped(&moved, bounds)
     }
 }
 
-fn row(numbers: Vec<f32>) -> Result<Value> {
+fn row(numbers: Vec<f32>) -> Result<GraphTensor> {
     let dims = vec![1, numbers.len()];
     constant(dims, &numbers)
 }
 
-fn constant(dims: Vec<usize>, numbers: &[f32]) -> Result<Value> {
+fn constant(dims: Vec<usize>, numbers: &[f32]) -> Result<GraphTensor> {
     let array = Array::new(dims, Data::Float(numbers.to_vec()));
     array
-        .map(Value::constant)
+        .map(GraphTensor::constant)
         .ok_or_else(|| Error::internal("the size of a constant does not match its shape"))
 }

@@ -260,7 +260,7 @@ impl TwinCritics {
 
 impl SharedExtractor {
     fn new(encoder: &ObservationEncoder, config: &NetworkConfig, random: &mut Random) -> Result<Self> {
-        let extractor = Extractor::new(encoder, config.picture_network)?;
+        let extractor = Extractor::new(encoder, config.image_network)?;
         let count = extractor.parameters();
         let mut parameters = vec![0.0; count];
         extractor.initialise(ParameterInit::Uniform, random, &mut parameters);

@@ -65,7 +65,7 @@ fn exact<const D: usize>(shape: &[usize], name: &str) -> Result<[usize; D]> {
 macro_rules! arrays {
     ($($name:ident $axes:literal $labels:expr;)*) => {$(
         /// Axes by name, numbers unchanged.
-        impl Bridged<Float32MultiArrayStamped> for $name {
+        impl FromToMessage<Float32MultiArrayStamped> for $name {
             fn from_message(message: Float32MultiArrayStamped, _: &RosBridge) -> Result<Self> {
                 let (shape, data) = array_from_message(message.array)?;
                 let shape = exact::<$axes>(&shape, stringify!($name))?;

@@ -40,7 +40,7 @@ impl RosBridge {
     /// Reads a message of a type known at compile time.
     ///
     /// # Errors
-    /// As [`Bridged::from_message`].
+    /// As [`FromToMessage::from_message`].
     pub fn from_message<T: FromToMessage<M>, M>(&self, message: M) -> Result<T> {
         T::from_message(message, self)
     }
@@ -48,7 +48,7 @@ impl RosBridge {
     /// Writes a message of a type known at compile time.
     ///
     /// # Errors
-    /// As [`Bridged::to_message`].
+    /// As [`FromToMessage::to_message`].
     pub fn to_message<T: FromToMessage<M>, M>(&self, value: &T) -> Result<M> {
         value.to_message(self)
     }
@@ -56,7 +56,7 @@ impl RosBridge {
     /// Reads a message as a value of `value_type`.
     ///
     /// # Errors
-    /// As [`Bridged::from_message`]; `InvalidInput` when the types do not convert.
+    /// As [`FromToMessage::from_message`]; `InvalidInput` when the types do not convert.
     pub fn value_from_message(&self, value_type: ValueType, message: Message) -> Result<Value> {
         let message_type = message.message_type();
         (find(value_type, message_type)?.read)(message, self)
@@ -65,7 +65,7 @@ impl RosBridge {
     /// Writes a value as a message of `message_type`.
     ///
     /// # Errors
-    /// As [`Bridged::to_message`]; `InvalidInput` when the types do not convert.
+    /// As [`FromToMessage::to_message`]; `InvalidInput` when the types do not convert.
     pub fn message_from_value(&self, value: ValueRef<'_>, message_type: MessageType) -> Result<Message> {
         (find(value.value_type(), message_type)?.write)(value, self)
     }

@@ -1,6 +1,6 @@
 //! Conversion between data and target types and ROS messages.
 //!
-//! A pair of types is one implementation of [`Bridged`] and one entry in the table of [`RosBridge`], which nodes of ROS 1 and
+//! A pair of types is one implementation of [`FromToMessage`] and one entry in the table of [`RosBridge`], which nodes of ROS 1 and
 //! ROS 2, recordings and the Python functions use. Stamps, frame ids, scores, track ids and depth at full precision are kept in
 //! both directions; fields that a standard message does not have are listed at the implementation. Message types are in
 //! `opendr-messages`, nodes in `opendr-ros`. Begin with [`RosBridge`]:

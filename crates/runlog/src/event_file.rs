@@ -1,4 +1,4 @@
-//! Event files: TensorFlow records, each an [`Event`].
+//! Event files: TensorFlow records, each an [`IterationEvent`].
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Seek, SeekFrom, Write};

@@ -11,7 +11,7 @@ use opendr_vision::VideoWriter;
 
 /// Writes images to an animated GIF, a video (with an installed `ffmpeg`) or numbered PNG files.
 ///
-/// GIFs and videos appear atomically when [`Film::finish`] is called.
+/// GIFs and videos appear atomically when [`Recording::finish`] is called.
 pub struct Recording {
     path: PathBuf,
     target: Target,

@@ -2,7 +2,7 @@
 //!
 //! - [`make`] and [`make_vec`] create environments by name: classic control, and a drone in a corridor with obstacles
 //!   ([`uav_corridor`]).
-//! - [`vector`] steps several environments together, [`wrappers`] limits, checks, stacks and normalises them, [`Film`] records them.
+//! - [`vector`] steps several environments together, [`wrappers`] limits, checks, stacks and normalises them, [`Recording`] records them.
 //! - [`raycast`] is a ray caster for depth and colour images, [`lidar`] a spinning lidar, [`street`] synthetic data sets of street
 //!   scenes.
 //!

@@ -1,6 +1,6 @@
 //! A counting allocator for tests of code that must not allocate.
 //!
-//! A test program declares [`Counting`] as its global allocator and compares [`allocations`] or
+//! A test program declares [`CountingAllocator`] as its global allocator and compares [`allocations`] or
 //! [`allocations_of_thread`] before and after the code under test. The crate measures no bytes and no peak memory.
 //!
 //! ```standalone_crate

@@ -108,7 +108,8 @@ pub struct Speed {
     /// Peak memory of the process in MB (10^6 bytes).
     pub peak_mb: f64,
     /// CPU, threads and runtime of the measurement.
-    pub on: String,
+    #[serde(alias = "on")]
+    pub measured_on: String,
 }
 
 /// One file that an item needs.

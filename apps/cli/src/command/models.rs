@@ -84,7 +84,7 @@ fn row<'a>(zoo: &Zoo, item: Item<'a>) -> Row<'a> {
         real_time_factor: speed.and_then(|speed| speed.real_time_factor),
         p50_ms: speed.and_then(|speed| speed.p50_ms),
         peak_mb: speed.map(|speed| speed.peak_mb),
-        measured_on: speed.map(|speed| speed.on.as_str()),
+        measured_on: speed.map(|speed| speed.measured_on.as_str()),
     }
 }
 

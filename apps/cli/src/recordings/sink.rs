@@ -78,7 +78,7 @@ impl RecordingSink {
     /// Creates the file. Nothing is written before, so that a command that fails earlier leaves no file.
     ///
     /// # Errors
-    /// As [`Answers::create`].
+    /// As [`RecordingWriter::create`].
     pub fn begin(&mut self) -> Result<()> {
         self.answers = Some(RecordingWriter::create(&self.out, self.options)?);
         Ok(())

@@ -104,7 +104,7 @@ impl<'d, C: Collate> WorkQueue<'d, C> {
 
     /// Returns the number of useful threads.
     pub(super) fn helpers(&self) -> usize {
-        let LoaderOptions { threads, ahead, .. } = self.job.options;
+        let LoaderOptions { threads, prefetch: ahead, .. } = self.job.options;
         threads.min(ahead).min(self.job.batches())
     }
 
@@ -148,7 +148,7 @@ impl<'d, C: Collate> WorkQueue<'d, C> {
             if self.stopped.load(Ordering::Relaxed) || state.claimed == self.job.batches() {
                 return None;
             }
-            if state.claimed < state.handed + self.job.options.ahead {
+            if state.claimed < state.handed + self.job.options.prefetch {
                 state.claimed += 1;
                 return Some(state.claimed - 1);
             }

@@ -50,7 +50,7 @@ impl DatasetIterator for Pictures {
 }
 
 fn options(threads: usize) -> LoaderOptions {
-    LoaderOptions { batch_size: 4, threads, ahead: 3, seed: 11, ..LoaderOptions::default() }
+    LoaderOptions { batch_size: 4, threads, prefetch: 3, seed: 11, ..LoaderOptions::default() }
 }
 
 fn loader(pictures: Pictures, threads: usize) -> Loader<'static> {

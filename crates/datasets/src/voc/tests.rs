@@ -100,7 +100,7 @@ fn broken_files_are_reported() {
     folder.write("Annotations/a.xml", XML.replace("<xmax>11<", "<xmax>x<"));
     let problems = Problems::skipping();
     assert!(Voc::open(folder.path(), &OpenOptions::default(), &problems).unwrap().is_empty());
-    assert_eq!(problems.list()[0].place, Some(crate::Place::Line(6)));
+    assert_eq!(problems.list()[0].location, Some(crate::Location::Line(6)));
     folder.write("ImageSets/Main/val.txt", "../a\n");
     assert!(open(folder.path(), None).unwrap_err().to_string().contains("val.txt:1: the file name"));
 }

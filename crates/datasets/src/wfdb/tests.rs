@@ -171,7 +171,7 @@ fn broken_records_are_reported() {
     assert_eq!((wfdb.len(), told.len()), (1, 2));
     assert!(
         told[0].ends_with("b.hea:1: has \"x\" as the number of signals")
-            && problems.list()[0].place.is_some()
+            && problems.list()[0].location.is_some()
             && told[1].contains("c.atr: has an annotation at sample 9 of 2")
     );
     let list = good().with("RECORDS", "../a\n");

@@ -100,8 +100,8 @@ macro_rules! forward {
             $inner.path($at)
         }
 
-        fn picture_size(&$self, $index: usize) -> Option<[u32; 2]> {
-            $inner.picture_size($at)
+        fn image_size(&$self, $index: usize) -> Option<[u32; 2]> {
+            $inner.image_size($at)
         }
     };
     (names $self:ident, $index:ident => $inner:expr, $at:expr) => {

@@ -381,7 +381,7 @@ impl ClassMap {
     pub fn report(&self) -> ClassReport {
         let names_nothing = self.pairs.is_empty() && self.learner_only.is_empty();
         let by_number = match () {
-            () if self.matching.by_number => Some(ByNumber::Asked),
+            () if self.matching.by_number => Some(ByNumber::Requested),
             () if self.dataset.is_empty() => Some(ByNumber::DatasetUnnamed),
             () if names_nothing && self.has_unnamed => Some(ByNumber::LearnerUnnamed),
             () => None,

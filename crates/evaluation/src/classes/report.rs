@@ -14,7 +14,7 @@ const PRINTED: usize = 24;
 #[serde(rename_all = "snake_case")]
 pub enum ByNumber {
     /// The user requested it.
-    Asked,
+    Requested,
     /// The data set has no class names.
     DatasetUnnamed,
     /// The predictions have no class names.
@@ -66,7 +66,7 @@ impl ClassReport {
 impl fmt::Display for ClassReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.by_number {
-            Some(ByNumber::Asked) => return writeln!(f, "classes: compared by number, as requested"),
+            Some(ByNumber::Requested) => return writeln!(f, "classes: compared by number, as requested"),
             Some(ByNumber::DatasetUnnamed) => {
                 return writeln!(f, "classes: compared by number, since the data set has no names");
             }

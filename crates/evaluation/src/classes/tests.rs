@@ -143,7 +143,7 @@ fn the_user_maps_or_compares_numbers() {
     let (learner, dataset) = sides();
     let mut numbered = ClassMap::new(learner, dataset, &matching).unwrap();
     assert_eq!(numbered.index(&Name::Index(0), &Classes::default()), Some(0));
-    assert_eq!(numbered.report().by_number, Some(ByNumber::Asked));
+    assert_eq!(numbered.report().by_number, Some(ByNumber::Requested));
     let wrong = ClassMatching { pairs: BTreeMap::from([("lorry".into(), "moon".into())]), by_number: false };
     let (learner, dataset) = sides();
     let error = ClassMap::new(learner, dataset, &wrong).unwrap_err().to_string();

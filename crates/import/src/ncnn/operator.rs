@@ -1,7 +1,7 @@
 //! Mapping of layers to ONNX operators.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Dim, Operator, Value};
+use opendr_onnx::{Dim, GraphTensor, Operator};
 
 use super::param::Layer;
 use super::product::{batch_norm, convolution, inner_product, parametric, pooling};
@@ -36,7 +36,7 @@ const TURNED: i64 = 7;
 ///
 /// # Errors
 /// `Unsupported` for an unknown layer, `Format` for invalid parameters and inputs.
-pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     match layer.kind {
         "Convolution" | "ConvolutionDepthWise" => convolution(trace, layer),
@@ -93,7 +93,7 @@ pub fn output(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
 }
 
 /// Applies the fused activation of a layer with weights: parameters 9 and 10.
-pub fn activated(trace: &mut Trace<'_>, layer: &Layer<'_>, wire: Value) -> Result<Value> {
+pub fn activated(trace: &mut Trace<'_>, layer: &Layer<'_>, wire: GraphTensor) -> Result<GraphTensor> {
     let values = layer.parameters.list(10);
     let value = |at: usize| {
         values
@@ -118,14 +118,14 @@ fn activation(
     layer: &Layer<'_>,
     kind: &str,
     [first, second]: [f32; 2],
-    input: &Value,
-) -> Result<Value> {
+    input: &GraphTensor,
+) -> Result<GraphTensor> {
     let hard = || Operator::new("HardSigmoid").float("alpha", first).float("beta", second);
     match kind {
         "ReLU" if first == 0.0 => trace.same(layer, Operator::new("Relu"), &[input]),
         "ReLU" => trace.same(layer, Operator::new("LeakyRelu").float("alpha", first), &[input]),
         "Clip" => {
-            let (low, high) = (Value::scalar(first), Value::scalar(second));
+            let (low, high) = (GraphTensor::scalar(first), GraphTensor::scalar(second));
             trace.same(layer, Operator::new("Clip"), &[input, &low, &high])
         }
         "Sigmoid" => trace.same(layer, Operator::new("Sigmoid"), &[input]),
@@ -144,7 +144,7 @@ fn activation(
 }
 
 /// Converts `BinaryOp`: two tensors, of which one may have a value per channel, or a tensor and a number.
-fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     let number = parameters.int(0, 0)?;
     let name = usize::try_from(number).ok().and_then(|number| BINARY.get(number).copied());
@@ -152,7 +152,7 @@ fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
     let mut first = trace.input(layer, 0)?;
     let mut second = match parameters.int(1, 0)? {
         0 => trace.input(layer, 1)?,
-        _ => Value::scalar(parameters.float(2, 0.0)?),
+        _ => GraphTensor::scalar(parameters.float(2, 0.0)?),
     };
     let is_scalar = second.rank() == 0;
     if !is_scalar && first.rank() != second.rank() {
@@ -164,7 +164,7 @@ fn binary(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
         };
         let sides = vec![Some(1); rank - 2];
         let dims = [low.dims().to_vec(), sides].concat();
-        let axes = Value::ints(2..rank as i64);
+        let axes = GraphTensor::ints(2..rank as i64);
         *low = trace.add(layer, Operator::new("Unsqueeze"), &[&*low, &axes], dims)?;
     }
     let dims = if is_scalar { first.dims().to_vec() } else { broadcast(first.dims(), second.dims())? };
@@ -183,7 +183,7 @@ fn broadcast(a: &[Dim], b: &[Dim]) -> Result<Vec<Dim>> {
 }
 
 /// Converts a `Gemm` of two matrices.
-fn product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+fn product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let (a, b) = (trace.input(layer, 0)?, trace.input(layer, 1)?);
     let parameters = &layer.parameters;
     let plain = parameters.float(0, 1.0)? == 1.0 && layer.inputs.len() == 2;

@@ -1,7 +1,7 @@
 //! Conversion of layers with weights.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Data, Dim, Operator, Value};
+use opendr_onnx::{Array, Data, Dim, GraphTensor, Operator};
 
 use super::operator::activated;
 use super::param::{Layer, Parameters};
@@ -90,7 +90,7 @@ pub fn channels(layer: &Layer<'_>) -> Option<usize> {
 }
 
 /// Converts `Convolution`, and `ConvolutionDepthWise`, which has groups.
-pub fn convolution(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn convolution(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     let input = trace.input(layer, 0)?;
     let window = Window::of(parameters)?;
@@ -110,10 +110,10 @@ pub fn convolution(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
     }
     let weight = trace.weights.marked(parameters.size(6, 0)?)?;
     let weight = array(vec![filters, each, window.kernel[0], window.kernel[1]], weight)?;
-    let mut inputs = vec![input, Value::named_constant(&format!("{}.weight", layer.name), weight)];
+    let mut inputs = vec![input, GraphTensor::named_constant(&format!("{}.weight", layer.name), weight)];
     if parameters.int(5, 0)? != 0 {
         let bias = array(vec![filters], trace.weights.plain(filters)?)?;
-        inputs.push(Value::named_constant(&format!("{}.bias", layer.name), bias));
+        inputs.push(GraphTensor::named_constant(&format!("{}.bias", layer.name), bias));
     }
     let dims = vec![Some(1), Some(filters), window.side(0, height)?, window.side(1, width)?];
     let operator = window.attributes(Operator::new("Conv")).int("group", groups as i64);
@@ -123,7 +123,7 @@ pub fn convolution(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
 }
 
 /// Converts `InnerProduct`: a vector times a matrix.
-pub fn inner_product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn inner_product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     let input = trace.input(layer, 0)?;
     let (rows, count) = (parameters.size(0, 0)?, parameters.size(2, 0)?);
@@ -139,10 +139,10 @@ pub fn inner_product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> 
         )));
     }
     let weight = array(vec![rows, columns], trace.weights.marked(count)?)?;
-    let mut inputs = vec![input, Value::named_constant(&format!("{}.weight", layer.name), weight)];
+    let mut inputs = vec![input, GraphTensor::named_constant(&format!("{}.weight", layer.name), weight)];
     if parameters.int(1, 0)? != 0 {
         let bias = array(vec![rows], trace.weights.plain(rows)?)?;
-        inputs.push(Value::named_constant(&format!("{}.bias", layer.name), bias));
+        inputs.push(GraphTensor::named_constant(&format!("{}.bias", layer.name), bias));
     }
     let inputs: Vec<_> = inputs.iter().collect();
     let operator = Operator::new("Gemm").int("transB", 1);
@@ -151,7 +151,7 @@ pub fn inner_product(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> 
 }
 
 /// Converts `BatchNorm`, with slope, mean, variance and bias per channel, to a factor and a summand.
-pub fn batch_norm(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn batch_norm(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let input = trace.input(layer, 0)?;
     let (count, least) = (layer.parameters.size(0, 0)?, layer.parameters.float(1, 0.0)?);
     if input.rank() != 4 {
@@ -164,24 +164,24 @@ pub fn batch_norm(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
     let parts = bias.iter().zip(&mean).zip(&factor);
     let summand: Vec<f32> = parts.map(|((bias, mean), factor)| bias - mean * factor).collect();
     let dims = input.dims().to_vec();
-    let factor = Value::constant(array(vec![count, 1, 1], factor)?);
-    let summand = Value::constant(array(vec![count, 1, 1], summand)?);
+    let factor = GraphTensor::constant(array(vec![count, 1, 1], factor)?);
+    let summand = GraphTensor::constant(array(vec![count, 1, 1], summand)?);
     let product = trace.add(layer, Operator::new("Mul"), &[&input, &factor], dims.clone())?;
     trace.add(layer, Operator::new("Add"), &[&product, &summand], dims)
 }
 
 /// Converts `PReLU`: one slope for all channels or one per channel.
-pub fn parametric(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn parametric(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let input = trace.input(layer, 0)?;
     let count = layer.parameters.size(0, 0)?;
     let sides = vec![1; input.rank().saturating_sub(2)];
     let slope = array([vec![count], sides].concat(), trace.weights.plain(count)?)?;
     let dims = input.dims().to_vec();
-    trace.add(layer, Operator::new("PRelu"), &[&input, &Value::constant(slope)], dims)
+    trace.add(layer, Operator::new("PRelu"), &[&input, &GraphTensor::constant(slope)], dims)
 }
 
 /// Converts `Pooling`: maximum or mean of a window, or of the whole image.
-pub fn pooling(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn pooling(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     let input = trace.input(layer, 0)?;
     let is_mean = match parameters.int(0, 0)? {

@@ -1,7 +1,7 @@
 //! Conversion of layers that change shapes.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Dim, Operator, Value};
+use opendr_onnx::{Dim, GraphTensor, Operator};
 
 use super::param::Layer;
 use super::trace::Trace;
@@ -10,7 +10,7 @@ use super::trace::Trace;
 const ABSENT: i64 = -233;
 
 /// Converts `Reshape`: width, height, channels, as far as present; 0 keeps an axis, -1 is inferred.
-pub fn reshape(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn reshape(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let parameters = &layer.parameters;
     let input = trace.input(layer, 0)?;
     let [width, height, channels] = [0, 1, 2].map(|key| parameters.int(key, ABSENT));
@@ -32,7 +32,7 @@ pub fn reshape(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
         *side = kept.ok_or_else(|| Error::unsupported("an axis of open size cannot be kept"))? as i64;
     }
     let dims = inferred(&shape, input.dims());
-    let shape = Value::ints([1].into_iter().chain(shape));
+    let shape = GraphTensor::ints([1].into_iter().chain(shape));
     trace.add(layer, Operator::new("Reshape"), &[&input, &shape], dims)
 }
 
@@ -47,7 +47,7 @@ fn inferred(shape: &[i64], own: &[Dim]) -> Vec<Dim> {
 }
 
 /// Converts `Permute`: ncnn numbers the orders, the fastest axis first.
-pub fn permute(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn permute(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let input = trace.input(layer, 0)?;
     let order: &[i64] = match (input.rank(), layer.parameters.int(0, 0)?) {
         (2, 0) => &[0, 1],
@@ -71,7 +71,7 @@ pub fn permute(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
 }
 
 /// Converts `Concat`: along an axis, counted without the batch.
-pub fn concat(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
+pub fn concat(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<GraphTensor> {
     let inputs = (0..layer.inputs.len()).map(|at| trace.input(layer, at)).collect::<Result<Vec<_>>>()?;
     let first = inputs.first().ok_or_else(|| Error::format("it has no inputs"))?;
     let axes = first.rank() - 1;
@@ -87,7 +87,7 @@ pub fn concat(trace: &mut Trace<'_>, layer: &Layer<'_>) -> Result<Value> {
 }
 
 /// Flattens a tensor to `[1, count]`.
-pub fn flat(trace: &mut Trace<'_>, layer: &Layer<'_>, input: &Value) -> Result<Value> {
+pub fn flat(trace: &mut Trace<'_>, layer: &Layer<'_>, input: &GraphTensor) -> Result<GraphTensor> {
     if input.rank() == 2 {
         return Ok(input.clone());
     }

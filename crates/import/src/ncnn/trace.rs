@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{Builder, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Builder, Dim, ElementType, GraphTensor, Operator};
 
 use super::operator::output;
 use super::param::Layer;
@@ -15,7 +15,7 @@ use crate::tensorflow::ImportOptions;
 pub struct Trace<'a> {
     pub graph: Builder,
     pub weights: Weights<'a>,
-    tensors: HashMap<&'a str, Value>,
+    tensors: HashMap<&'a str, GraphTensor>,
 }
 
 impl<'a> Trace<'a> {
@@ -57,7 +57,7 @@ impl<'a> Trace<'a> {
     ///
     /// # Errors
     /// `Format` when no layer has produced it.
-    pub fn tensor(&self, name: &str) -> Result<Value> {
+    pub fn tensor(&self, name: &str) -> Result<GraphTensor> {
         self.tensors
             .get(name)
             .cloned()
@@ -68,7 +68,7 @@ impl<'a> Trace<'a> {
     ///
     /// # Errors
     /// `Format` when the layer has no such input.
-    pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<Value> {
+    pub fn input(&self, layer: &Layer<'_>, index: usize) -> Result<GraphTensor> {
         let few =
             || Error::format(format!("it has {} inputs, but input {index} is needed", layer.inputs.len()));
         self.tensor(layer.inputs.get(index).ok_or_else(few)?)
@@ -82,9 +82,9 @@ impl<'a> Trace<'a> {
         &mut self,
         layer: &Layer<'_>,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         dims: Vec<Dim>,
-    ) -> Result<Value> {
+    ) -> Result<GraphTensor> {
         self.graph.add(layer.name, operator, inputs, ElementType::Float, dims)
     }
 
@@ -92,13 +92,23 @@ impl<'a> Trace<'a> {
     ///
     /// # Errors
     /// Those of [`Trace::add`].
-    pub fn same(&mut self, layer: &Layer<'_>, operator: Operator, inputs: &[&Value]) -> Result<Value> {
+    pub fn same(
+        &mut self,
+        layer: &Layer<'_>,
+        operator: Operator,
+        inputs: &[&GraphTensor],
+    ) -> Result<GraphTensor> {
         let dims = inputs.first().map(|input| input.dims().to_vec()).unwrap_or_default();
         self.add(layer, operator, inputs, dims)
     }
 
     /// Adds an input of the model: an image, of open size where neither text nor options fix it.
-    fn open(&mut self, layer: &Layer<'a>, layers: &[Layer<'a>], options: &ImportOptions) -> Result<Value> {
+    fn open(
+        &mut self,
+        layer: &Layer<'a>,
+        layers: &[Layer<'a>],
+        options: &ImportOptions,
+    ) -> Result<GraphTensor> {
         let name = layer.outputs.first().copied().unwrap_or_default();
         let given = |key: i64| layer.parameters.size(key, 0).map(|size| Some(size).filter(|size| *size > 0));
         let (width, height, own) = (given(0)?, given(1)?, given(2)?);

@@ -7,7 +7,7 @@ use opendr_engine::{Error, Result};
 use super::call::Call;
 use super::layout::Order;
 use super::value::Value;
-use opendr_onnx::{Builder, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Builder, Dim, ElementType, GraphTensor, Operator};
 
 /// Maximum number of axes, above that of real tensors; a hostile file could double them with every operator.
 pub const MAX_RANK: usize = 32;
@@ -30,7 +30,7 @@ impl Lowering {
         &mut self,
         call: &Call,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         kind: ElementType,
         dims: &[Dim],
         order: Order,
@@ -50,7 +50,7 @@ impl Lowering {
         &mut self,
         call: &Call,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         kind: ElementType,
         dims: &[Dim],
     ) -> Result<Value> {
@@ -61,7 +61,7 @@ impl Lowering {
     ///
     /// # Errors
     /// `Internal` when the ranks differ.
-    pub fn ordered(&mut self, value: &Value, order: &Order) -> Result<Value> {
+    pub fn ordered(&mut self, value: &Value, order: &Order) -> Result<GraphTensor> {
         if value.order == *order {
             return Ok(value.wire.clone());
         }
@@ -77,7 +77,7 @@ impl Lowering {
         let open = dims.iter().filter(|dim| dim.is_none()).count();
         let hint = value.wire.hint();
         if free && open <= 1 {
-            let shape = Value::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
+            let shape = GraphTensor::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
             return self.graph.add(
                 &hint,
                 Operator::new("Reshape"),
@@ -94,7 +94,7 @@ impl Lowering {
     ///
     /// # Errors
     /// `Format` when the graph exceeds the maximum number of nodes.
-    pub fn plain(&mut self, value: &Value) -> Result<Value> {
+    pub fn plain(&mut self, value: &Value) -> Result<GraphTensor> {
         self.ordered(value, &Order::plain(value.rank()))
     }
 
@@ -103,12 +103,12 @@ impl Lowering {
     ///
     /// # Errors
     /// `Internal` when the tensor has more axes than `order`.
-    pub fn broadcastable(&mut self, value: &Value, order: &Order) -> Result<Value> {
+    pub fn broadcastable(&mut self, value: &Value, order: &Order) -> Result<GraphTensor> {
         let missing = order.rank().checked_sub(value.rank());
         let missing =
             missing.ok_or_else(|| Error::internal("a tensor cannot be broadcast to a lower rank"))?;
         if value.wire.element_count() == Some(1) && value.array().is_some() {
-            let empty = Value::ints([]);
+            let empty = GraphTensor::ints([]);
             return self.graph.add(
                 "",
                 Operator::new("Reshape"),
@@ -123,7 +123,7 @@ impl Lowering {
         let wide = match missing {
             0 => value.clone(),
             _ => {
-                let axes = Value::ints(0..missing as i64);
+                let axes = GraphTensor::ints(0..missing as i64);
                 let dims = [vec![Some(1); missing], value.wire.dims().to_vec()].concat();
                 let unsqueeze = Operator::new("Unsqueeze");
                 let hint = value.wire.hint();
@@ -137,7 +137,7 @@ impl Lowering {
             return Ok(stored);
         }
         let leading = stored.dims().iter().take_while(|dim| **dim == Some(1)).count();
-        let axes = Value::ints(0..leading as i64);
+        let axes = GraphTensor::ints(0..leading as i64);
         let dims = stored.dims()[leading..].to_vec();
         self.graph.add("", Operator::new("Squeeze"), &[&stored, &axes], value.kind(), dims)
     }
@@ -146,7 +146,7 @@ impl Lowering {
     ///
     /// # Errors
     /// `Format` when the graph exceeds the maximum number of nodes.
-    pub fn cast(&mut self, wire: &Value, kind: ElementType) -> Result<Value> {
+    pub fn cast(&mut self, wire: &GraphTensor, kind: ElementType) -> Result<GraphTensor> {
         if wire.kind() == kind {
             return Ok(wire.clone());
         }
@@ -156,14 +156,14 @@ impl Lowering {
 
     /// Records that `flat` is `source` flattened in TensorFlow's order though stored in another, so that an operator
     /// that can work in any order reads `source` instead.
-    pub fn note_flattened(&mut self, flat: &Value, source: &Value) {
+    pub fn note_flattened(&mut self, flat: &GraphTensor, source: &Value) {
         if flat.array().is_none() {
             self.flattened.insert(flat.hint(), source.clone());
         }
     }
 
     /// Returns the source recorded by [`Lowering::note_flattened`].
-    pub fn flattened(&self, flat: &Value) -> Option<&Value> {
+    pub fn flattened(&self, flat: &GraphTensor) -> Option<&Value> {
         self.flattened.get(&flat.hint())
     }
 }

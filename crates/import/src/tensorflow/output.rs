@@ -1,7 +1,7 @@
 //! Outputs of models, and the file around the graph.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Value, bytes_from_model, model_from_graph, passes};
+use opendr_onnx::{GraphTensor, bytes_from_model, model_from_graph, passes};
 
 use super::layout::Order;
 use super::lowering::Lowering;
@@ -51,7 +51,7 @@ pub fn finish<'a>(
 }
 
 /// Images are returned in stored order, all other outputs in the original's order.
-fn output_wire(ctx: &mut Lowering, value: &Value) -> Result<(Value, &'static str)> {
+fn output_wire(ctx: &mut Lowering, value: &Value) -> Result<(GraphTensor, &'static str)> {
     let image = value.order == Order::channels_first() && value.wire.dims()[2..] != [Some(1), Some(1)];
     match image {
         true => Ok((value.wire.clone(), "NCHW")),

@@ -1,25 +1,25 @@
 //! Tensors of a TensorFlow graph during conversion.
 
 use super::layout::Order;
-use opendr_onnx::{Array, Dim, ElementType, Value};
+use opendr_onnx::{Array, Dim, ElementType, GraphTensor};
 
 /// A tensor of a TensorFlow graph: the ONNX tensor and its storage order.
 #[derive(Debug, Clone)]
 pub struct Value {
     /// The ONNX tensor.
-    pub wire: Value,
+    pub wire: GraphTensor,
     /// TensorFlow's axes in stored order. Constants are always in TensorFlow's order.
     pub order: Order,
 }
 
 impl Value {
     /// Creates a tensor stored in the given order; the ranks must match.
-    pub fn new(wire: Value, order: Order) -> Self {
+    pub fn new(wire: GraphTensor, order: Order) -> Self {
         Self { wire, order }
     }
 
     /// Creates a tensor stored in TensorFlow's order.
-    pub fn plain(wire: Value) -> Self {
+    pub fn plain(wire: GraphTensor) -> Self {
         let order = Order::plain(wire.rank());
         Self { wire, order }
     }

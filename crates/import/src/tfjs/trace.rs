@@ -6,7 +6,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use super::model_json::{Node, producer};
 use crate::tensorflow::{Call, ImportOptions, Lowering, Value, input, ops};
-use opendr_onnx::{Array, ElementType, Value};
+use opendr_onnx::{Array, ElementType, GraphTensor};
 
 /// The traversal of a TensorFlow graph from its outputs.
 pub struct Trace<'a> {
@@ -116,7 +116,7 @@ impl<'a> Trace<'a> {
             "Const" => {
                 let array = self.weights.get(&node.name);
                 let array = array.ok_or_else(|| Error::format("the manifest has no such weight"))?;
-                Ok(vec![Value::plain(Value::named_constant(&node.name, array.clone()))])
+                Ok(vec![Value::plain(GraphTensor::named_constant(&node.name, array.clone()))])
             }
             "Placeholder" | "PlaceholderWithDefault" => Ok(vec![self.input(node)?]),
             op => {

@@ -1,7 +1,7 @@
 //! Mapping of TensorFlow Lite's operators to TensorFlow's.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Value};
+use opendr_onnx::{Array, GraphTensor};
 
 use super::model::Node;
 use super::names::{name, same};
@@ -43,12 +43,12 @@ pub fn missing(node: &Node, index: usize) -> Error {
 }
 
 fn integer(value: i64) -> Value {
-    Value::plain(Value::constant(Array::int(value)))
+    Value::plain(GraphTensor::constant(Array::int(value)))
 }
 
 /// Returns a list of integers.
 pub fn list(values: impl IntoIterator<Item = i64>) -> Value {
-    Value::plain(Value::ints(values))
+    Value::plain(GraphTensor::ints(values))
 }
 
 /// Returns the equivalent of an operator in TensorFlow.
@@ -116,7 +116,7 @@ pub fn step<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Resul
         "SOFTMAX" => {
             let beta = options.float(0, 1.0)?;
             if beta != 1.0 {
-                let beta = Value::plain(Value::scalar(beta));
+                let beta = Value::plain(GraphTensor::scalar(beta));
                 inputs =
                     trace.call(name, "Mul", &none, inputs.into_iter().take(1).chain([beta]).collect())?;
             }
@@ -173,7 +173,7 @@ fn normalised<'a, 'f>(trace: &mut Trace<'_, 'a, 'f>, node: &Node<'a, 'f>) -> Res
     let squares = trace.call(&name, "Square", &none, vec![x.clone()])?;
     let sum = [squares, vec![list([last as i64])]].concat();
     let sum = trace.call(&name, "Sum", &keep, sum)?;
-    let least = [sum, vec![Value::plain(Value::scalar(1e-12))]].concat();
+    let least = [sum, vec![Value::plain(GraphTensor::scalar(1e-12))]].concat();
     let least = trace.call(&name, "Maximum", &none, least)?;
     let factor = trace.call(&name, "Rsqrt", &none, least)?;
     let activation = Options::of(node).activation(0)?;

@@ -1,7 +1,7 @@
 //! Affine quantisation: `real = (integer - zero_point) * scale`.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Data, ElementType, Operator, Value};
+use opendr_onnx::{Array, Data, ElementType, GraphTensor, Operator};
 
 use super::element::Element;
 use super::flatbuffer::Table;
@@ -54,7 +54,7 @@ impl Quantisation {
     }
 
     /// Returns scale and zero point as inputs of ONNX's operators; sums have no zero point.
-    fn parameters(&self) -> Result<Vec<Value>> {
+    fn parameters(&self) -> Result<Vec<GraphTensor>> {
         let several = self.scales.len() > 1;
         let dims = if several { vec![self.scales.len()] } else { Vec::new() };
         let zeros = (0..self.scales.len()).map(|i| self.zero_points.get(i).or(self.zero_points.first()));
@@ -66,7 +66,7 @@ impl Quantisation {
         };
         let mut arrays = vec![Array::new(dims.clone(), Data::Float(self.scales.clone()))];
         arrays.extend(zeros.map(|zeros| Array::new(dims, zeros)));
-        let wires = arrays.into_iter().map(|array| array.map(Value::constant));
+        let wires = arrays.into_iter().map(|array| array.map(GraphTensor::constant));
         wires.collect::<Option<_>>().ok_or_else(|| Error::internal("the scales have the wrong shape"))
     }
 
@@ -83,9 +83,9 @@ impl Quantisation {
         &self,
         ctx: &mut Lowering,
         name: &str,
-        stored: &Value,
+        stored: &GraphTensor,
         axes: &[usize],
-    ) -> Result<Value> {
+    ) -> Result<GraphTensor> {
         let axis = axes.iter().position(|&axis| axis == self.axis).unwrap_or(0);
         let positions = stored.dims().get(axis).copied().flatten();
         if self.scales.len() > 1 && positions.is_some_and(|count| count != self.scales.len()) {
@@ -95,7 +95,7 @@ impl Quantisation {
             )));
         }
         let parameters = self.parameters()?;
-        let inputs: Vec<&Value> = std::iter::once(stored).chain(&parameters).collect();
+        let inputs: Vec<&GraphTensor> = std::iter::once(stored).chain(&parameters).collect();
         let operator = self.operator("DequantizeLinear", axis);
         ctx.graph.add(name, operator, &inputs, ElementType::Float, stored.dims().to_vec())
     }
@@ -116,7 +116,7 @@ impl Quantisation {
             )));
         }
         let parameters = self.parameters()?;
-        let inputs: Vec<&Value> = std::iter::once(&value.wire).chain(&parameters).collect();
+        let inputs: Vec<&GraphTensor> = std::iter::once(&value.wire).chain(&parameters).collect();
         let operator = self.operator("QuantizeLinear", value.order.stored(self.axis));
         let dims = value.wire.dims().to_vec();
         let stored = ctx.graph.add(name, operator, &inputs, ElementType::Int, dims)?;

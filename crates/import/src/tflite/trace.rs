@@ -1,7 +1,7 @@
 //! Conversion of the operators in order, as far as the outputs need them.
 
 use opendr_engine::{Error, Result, ResultExt};
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::model::{Model, Node};
 use super::names::name;
@@ -19,7 +19,7 @@ pub struct Trace<'m, 'a, 'f> {
     /// Converted tensors.
     values: Vec<Option<Value>>,
     /// Elements of constants in stored form.
-    constants: Vec<Option<Value>>,
+    constants: Vec<Option<GraphTensor>>,
     /// Tensors that are copies of constants.
     same: Vec<Option<usize>>,
 }
@@ -157,7 +157,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
     }
 
     /// Returns the elements of a constant, with its axes in the given order.
-    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<Value> {
+    fn constant(&mut self, index: usize, axes: Vec<usize>) -> Result<GraphTensor> {
         let tensor = &self.model.tensors[index];
         if !tensor.is_constant() {
             return Err(Error::format(format!(
@@ -167,7 +167,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         }
         let wire = match &self.constants[index] {
             Some(wire) => wire.clone(),
-            None => Value::named_constant(tensor.name, tensor.array()?),
+            None => GraphTensor::named_constant(tensor.name, tensor.array()?),
         };
         self.constants[index] = Some(wire.clone());
         let stored = match axes.is_sorted() {
@@ -176,7 +176,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
                 let transpose = Operator::new("Transpose").ints("perm", axes.iter().map(|&axis| axis as i64));
                 let dims = axes.iter().map(|&axis| wire.dims()[axis]).collect();
                 let moved = self.lowering.graph.add(tensor.name, transpose, &[&wire], wire.kind(), dims)?;
-                moved.array().cloned().map_or(moved, |array| Value::named_constant(tensor.name, array))
+                moved.array().cloned().map_or(moved, |array| GraphTensor::named_constant(tensor.name, array))
             }
         };
         match &tensor.quantisation {

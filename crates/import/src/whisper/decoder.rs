@@ -2,7 +2,7 @@
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::layers::Layers;
 use super::sizes::{CONTEXT, PLACES, Sizes};
@@ -59,7 +59,8 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
         places = layers.sum(&places, &found)?;
         places = layers.dense(&block, &places)?;
     }
-    let (from, to, axis) = (Value::ints([-1]), Value::ints([i64::from(i32::MAX)]), Value::ints([0]));
+    let (from, to, axis) =
+        (GraphTensor::ints([-1]), GraphTensor::ints([i64::from(i32::MAX)]), GraphTensor::ints([0]));
     let last = vec![Some(1), Some(width)];
     let last = layers.add("last", Operator::new("Slice"), &[&places, &from, &to, &axis], last)?;
     let last = layers.norm("decoder.layer_norm", &last)?;
@@ -75,7 +76,7 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
 }
 
 /// Returns the cached keys or values followed by the new ones.
-fn remembered(layers: &mut Layers<'_>, past: &Value, new: &Value) -> Result<Value> {
+fn remembered(layers: &mut Layers<'_>, past: &GraphTensor, new: &GraphTensor) -> Result<GraphTensor> {
     let width = new.dims().last().copied().flatten();
     layers.add("own", Operator::new("Concat").int("axis", 0), &[past, new], vec![None, width])
 }

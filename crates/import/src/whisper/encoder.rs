@@ -2,7 +2,7 @@
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::WhisperWeights;
 use super::layers::Layers;
@@ -41,7 +41,12 @@ pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> 
 }
 
 /// Writes two convolutions, of which the second halves the number of positions, and adds the position encodings.
-fn convolutions(layers: &mut Layers<'_>, mel: &Value, bands: usize, width: usize) -> Result<Value> {
+fn convolutions(
+    layers: &mut Layers<'_>,
+    mel: &GraphTensor,
+    bands: usize,
+    width: usize,
+) -> Result<GraphTensor> {
     let mut features = mel.clone();
     for (name, channels, stride, places) in
         [("encoder.conv1", bands, 1, FRAMES), ("encoder.conv2", width, 2, PLACES)]
@@ -58,7 +63,7 @@ fn convolutions(layers: &mut Layers<'_>, mel: &Value, bands: usize, width: usize
         features = layers.add(name, operator, &[&features, &weight, &bias], dims)?;
         features = layers.gelu(&features)?;
     }
-    let shape = Value::ints([width as i64, -1]);
+    let shape = GraphTensor::ints([width as i64, -1]);
     let dims = vec![Some(width), Some(PLACES)];
     let features = layers.add("places", Operator::new("Reshape"), &[&features, &shape], dims)?;
     let order = Operator::new("Transpose").ints("perm", [1, 0]);

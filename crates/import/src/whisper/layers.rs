@@ -1,7 +1,7 @@
 //! Layers of encoder and decoder. Positions are rows: tensors are `[positions, features]`.
 
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Builder, Data, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Array, Builder, Data, Dim, ElementType, GraphTensor, Operator};
 
 use super::{HEAD, WhisperWeights};
 
@@ -19,8 +19,8 @@ impl<'a> Layers<'a> {
     }
 
     /// Returns a weight of known shape.
-    pub fn weight(&self, name: &str, dims: &[usize]) -> Result<Value> {
-        self.array(name, dims).map(|array| Value::named_constant(name, array))
+    pub fn weight(&self, name: &str, dims: &[usize]) -> Result<GraphTensor> {
+        self.array(name, dims).map(|array| GraphTensor::named_constant(name, array))
     }
 
     fn array(&self, name: &str, dims: &[usize]) -> Result<Array> {
@@ -38,17 +38,18 @@ impl<'a> Layers<'a> {
         &mut self,
         hint: &str,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         dims: Vec<Dim>,
-    ) -> Result<Value> {
+    ) -> Result<GraphTensor> {
         self.graph.add(hint, operator, inputs, ElementType::Float, dims)
     }
 
     /// Adds a dense layer; a missing or zero bias is omitted.
-    pub fn linear(&mut self, name: &str, input: &Value, columns: usize) -> Result<Value> {
+    pub fn linear(&mut self, name: &str, input: &GraphTensor, columns: usize) -> Result<GraphTensor> {
         let rows = input.dims().last().copied().flatten().unwrap_or_default();
         let (weight, bias) = (format!("{name}.weight"), format!("{name}.bias"));
-        let matrix = Value::named_constant(&weight, transposed(&self.array(&weight, &[columns, rows])?)?);
+        let matrix =
+            GraphTensor::named_constant(&weight, transposed(&self.array(&weight, &[columns, rows])?)?);
         let dims = with_last(input.dims(), columns);
         let product = self.add(name, Operator::new("MatMul"), &[input, &matrix], dims.clone())?;
         if !self.weights.has(&bias) {
@@ -59,10 +60,10 @@ impl<'a> Layers<'a> {
         if array.as_floats().is_some_and(|values| values.iter().all(|value| *value == 0.0)) {
             return Ok(product);
         }
-        self.add(name, Operator::new("Add"), &[&product, &Value::named_constant(&bias, array)], dims)
+        self.add(name, Operator::new("Add"), &[&product, &GraphTensor::named_constant(&bias, array)], dims)
     }
 
-    pub fn norm(&mut self, name: &str, input: &Value) -> Result<Value> {
+    pub fn norm(&mut self, name: &str, input: &GraphTensor) -> Result<GraphTensor> {
         let scale = self.weight(&format!("{name}.weight"), &[self.width])?;
         let bias = self.weight(&format!("{name}.bias"), &[self.width])?;
         let operator = Operator::new("LayerNormalization").int("axis", -1).float("epsilon", 1e-5);
@@ -70,22 +71,22 @@ impl<'a> Layers<'a> {
     }
 
     /// Adds the activation x / 2 (1 + erf(x / sqrt 2)), in the order of operations that runtimes recognise and fuse.
-    pub fn gelu(&mut self, input: &Value) -> Result<Value> {
+    pub fn gelu(&mut self, input: &GraphTensor) -> Result<GraphTensor> {
         let dims = input.dims().to_vec();
-        let scaled = Value::scalar(std::f32::consts::SQRT_2);
+        let scaled = GraphTensor::scalar(std::f32::consts::SQRT_2);
         let scaled = self.add("gelu", Operator::new("Div"), &[input, &scaled], dims.clone())?;
         let erf = self.add("gelu", Operator::new("Erf"), &[&scaled], dims.clone())?;
-        let sum = self.add("gelu", Operator::new("Add"), &[&erf, &Value::scalar(1.0)], dims.clone())?;
+        let sum = self.add("gelu", Operator::new("Add"), &[&erf, &GraphTensor::scalar(1.0)], dims.clone())?;
         let product = self.add("gelu", Operator::new("Mul"), &[input, &sum], dims.clone())?;
-        self.add("gelu", Operator::new("Mul"), &[&product, &Value::scalar(0.5)], dims)
+        self.add("gelu", Operator::new("Mul"), &[&product, &GraphTensor::scalar(0.5)], dims)
     }
 
-    pub fn sum(&mut self, a: &Value, b: &Value) -> Result<Value> {
+    pub fn sum(&mut self, a: &GraphTensor, b: &GraphTensor) -> Result<GraphTensor> {
         self.add("sum", Operator::new("Add"), &[a, b], a.dims().to_vec())
     }
 
     /// Adds the block's feed-forward network with its residual connection.
-    pub fn dense(&mut self, block: &str, input: &Value) -> Result<Value> {
+    pub fn dense(&mut self, block: &str, input: &GraphTensor) -> Result<GraphTensor> {
         let hidden = self.norm(&format!("{block}.final_layer_norm"), input)?;
         let hidden = self.linear(&format!("{block}.fc1"), &hidden, self.inner)?;
         let hidden = self.gelu(&hidden)?;
@@ -94,9 +95,9 @@ impl<'a> Layers<'a> {
     }
 
     /// Splits positions by heads: `[heads, positions, HEAD]`, or transposed for keys, `[heads, HEAD, positions]`.
-    pub fn heads(&mut self, input: &Value, transpose: bool) -> Result<Value> {
+    pub fn heads(&mut self, input: &GraphTensor, transpose: bool) -> Result<GraphTensor> {
         let (places, heads) = (input.dims().first().copied().flatten(), self.width / HEAD);
-        let shape = Value::ints([-1, heads as i64, HEAD as i64]);
+        let shape = GraphTensor::ints([-1, heads as i64, HEAD as i64]);
         let parted = vec![places, Some(heads), Some(HEAD)];
         let parted = self.add("heads", Operator::new("Reshape"), &[input, &shape], parted)?;
         let (order, dims) = match transpose {
@@ -110,14 +111,14 @@ impl<'a> Layers<'a> {
     /// to the scores.
     pub fn attend(
         &mut self,
-        queries: &Value,
-        keys: &Value,
-        values: &Value,
-        mask: Option<&Value>,
-    ) -> Result<Value> {
+        queries: &GraphTensor,
+        keys: &GraphTensor,
+        values: &GraphTensor,
+        mask: Option<&GraphTensor>,
+    ) -> Result<GraphTensor> {
         let places = queries.dims().first().copied().flatten();
         let heads = Some(self.width / HEAD);
-        let scale = Value::scalar((HEAD as f32).powf(-0.5));
+        let scale = GraphTensor::scalar((HEAD as f32).powf(-0.5));
         let queries =
             self.add("queries", Operator::new("Mul"), &[queries, &scale], queries.dims().to_vec())?;
         let queries = self.heads(&queries, false)?;
@@ -132,7 +133,7 @@ impl<'a> Layers<'a> {
         let found = self.add("found", Operator::new("MatMul"), &[&weights, values], dims)?;
         let order = Operator::new("Transpose").ints("perm", [1, 0, 2]);
         let found = self.add("found", order, &[&found], vec![places, heads, Some(HEAD)])?;
-        let shape = Value::ints([-1, self.width as i64]);
+        let shape = GraphTensor::ints([-1, self.width as i64]);
         self.add("found", Operator::new("Reshape"), &[&found, &shape], vec![places, Some(self.width)])
     }
 }

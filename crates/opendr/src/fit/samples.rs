@@ -69,7 +69,7 @@ impl DatasetOpener<'_> {
     /// Opens the validation samples.
     ///
     /// # Errors
-    /// As [`Opening::to_train`].
+    /// As [`DatasetOpener::open_training`].
     pub fn open_validation<'d>(&self, dataset: DatasetRef<'d>, split: Option<&str>) -> Result<Samples<'d>> {
         match dataset {
             DatasetRef::Iterator(samples) => Ok(Box::new(samples)),

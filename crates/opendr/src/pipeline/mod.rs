@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use opendr_engine::learner::{AnyLearner, Entry, Output, Outputs, Port, Ports};
 use opendr_engine::params::ParamMap;
 use opendr_engine::target::Classes;
-use opendr_engine::{Device, Error, Progress, Result, Silent, Value, ValueType, assembly_line};
+use opendr_engine::{Device, Error, Progress, Result, Silent, Value, ValueType, map_in_stages};
 
 use crate::{learner_with, registry};
 use opendr_evaluation::Predictor;

@@ -12,7 +12,7 @@ use opendr_tuning::Training;
 use super::data::nothing_measured;
 use super::until::Until;
 use super::{TuneData, TuneOptions};
-use crate::{FitData, FitEnvironments, FitOptions, PolicyController, eval_in, fit, fit_policy};
+use crate::{FitData, FitEnvironments, FitOptions, PolicyController, evaluate_policy, fit, fit_policy};
 
 /// Training of one configuration with one seed, which stops with a checkpoint at each evaluation and resumes.
 pub struct LearnerTraining<'a> {

@@ -44,7 +44,7 @@ impl ImageNetwork {
         Ok(Self { session, preprocess, inputs: Pool::default() })
     }
 
-    /// Returns the index of an output in the slice that [`PictureNetwork::run`] passes to its sink.
+    /// Returns the index of an output in the slice that [`ImageNetwork::run`] passes to its sink.
     pub fn output(&self, name: &str) -> Result<usize> {
         self.session.output_index(name)
     }

@@ -2,17 +2,17 @@
 //!
 //! The crate holds no learner. Its modules, by purpose:
 //!
-//! * Inputs: [`picture_network`] (a session with fused pre-processing of one image), [`described_input`] (pre-processing from
+//! * Inputs: [`image_network`] (a session with fused pre-processing of one image), [`preprocess_from_manifest`] (pre-processing from
 //!   a model's manifest), [`clip_frames`], [`frame_features`] (features of skeletons).
 //! * Outputs: [`category_scores`] (categories from logits), [`suppression`] (non-maximum suppression),
-//!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`turned_square`].
+//!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
 //! * Second passes over parts of a large image: [`regions`].
-//! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`open_sides`],
+//! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`with_dynamic_sides`],
 //!   [`small_backbone`] and [`small_classifier`].
 //!
 //! Data and target types are in `opendr-engine`, sessions in `opendr-inference`, image pre-processing in `opendr-vision`, the
 //! training loop in `opendr-training`, tiles of large images in `opendr-tiling`. Code that only one family needs is in the crate
-//! of that family. A learner of one image begins with [`picture_network::PictureNetwork`].
+//! of that family. A learner of one image begins with [`image_network::ImageNetwork`].
 //!
 //! ```
 //! use opendr_perception_common::suppression::{Candidate, Suppression, SuppressionKind};

@@ -79,7 +79,7 @@ fn main() -> Result<()> {
         variant: NmsVariant::Light,
         classes: vec!["person".to_owned()],
         detector: Some(detector.clone()),
-        versions: 8,
+        augmented_versions: 8,
         dropout: 0.1,
         ..Default::default()
     };

@@ -1,7 +1,7 @@
 //! Face detection in images: boxes and landmarks of faces.
 //!
 //! [`face_detection::Yunet`] detects faces with five landmarks, optionally with and without a mask,
-//! [`face_detection::UltraLightFace`] boxes only. [`face_finder`] is the detector that other learners of faces contain as a part.
+//! [`face_detection::UltraLightFace`] boxes only. [`face_detector`] is the detector that other learners of faces contain as a part.
 //!
 //! Recognition, expressions and dense landmarks of faces are in `opendr-faces`, detectors of other objects in
 //! `opendr-detection`. Begin with [`face_detection::Yunet`].

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use opendr_engine::target::Keypoint;
 use opendr_pose::pose_estimation::part_affinity::{
-    FIELDS, Grid, HEAT_MAPS, JOINTS, MapEncoder, PartAffinity, PartMaps, Scratch,
+    DecodeScratch, FIELDS, Grid, HEAT_MAPS, JOINTS, MapEncoder, PartAffinity, PartMaps,
 };
 
 /// The maps of a 16:9 image at a height of 256 pixels.
@@ -35,7 +35,7 @@ fn part_affinity(criterion: &mut Criterion) {
         });
         painter.encode(GRID, &persons, &mut heat, &mut fields);
         let maps = PartMaps::new(GRID, &heat, &fields).expect("as many numbers as the grid says");
-        let (how, mut memory, mut found) = (PartAffinity::default(), Scratch::default(), Vec::new());
+        let (how, mut memory, mut found) = (PartAffinity::default(), DecodeScratch::default(), Vec::new());
         group.bench_function(BenchmarkId::new("decode", count), |bencher| {
             bencher.iter(|| how.decode(black_box(&maps), &mut memory, &mut found));
         });

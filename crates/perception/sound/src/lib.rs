@@ -1,7 +1,7 @@
 //! Audio features: MFCC, resampling, and audio as an input of learners.
 //!
 //! [`mfcc`] computes mel-frequency cepstral coefficients, of a whole recording or a stream; [`resampler`] changes the sample
-//! rate; [`Sound`] is the input type of the learners of audio. Learners are in `opendr-speech` and `opendr-multimodal`, reading
+//! rate; [`AudioInput`] is the input type of the learners of audio. Learners are in `opendr-speech` and `opendr-multimodal`, reading
 //! and writing of WAVE files is in `opendr-datasets`.
 //!
 //! Begin with [`mfcc::Mfcc`].

@@ -2,9 +2,9 @@
 //!
 //! Networks with inputs of a few hundred pixels miss small objects in large images; over tiles they detect them. [`Tiles`]
 //! selects the tiles to process in each image and their order: tiles with detail that are new or changed, those with objects
-//! and others in turn. [`look_side_by_side`] processes them on several threads until the time budget is used. With little time,
-//! small parts of several tiles share one inference ([`Looks`]). [`merge_pieces`] merges the boxes of overlapping tiles and of
-//! objects that tile borders cut. [`PictureLearner`] is a learner of one image without state, which runs on the tiles.
+//! and others in turn. [`run_within_budget`] processes them on several threads until the time budget is used. With little time,
+//! small parts of several tiles share one inference ([`TileInferences`]). [`merge_pieces`] merges the boxes of overlapping tiles and of
+//! objects that tile borders cut. [`ImageLearner`] is a learner of one image without state, which runs on the tiles.
 //!
 //! Tiles without a change keep the result of their last inference, so a fixed camera pays for motion only. The regions of
 //! interest by difference follow B. Unel et al., "The Power of Tiling for Small Object Detection", CVPR Workshops 2019; tiles

@@ -55,7 +55,7 @@ impl Tiles {
     /// one, so that no previous result is valid.
     ///
     /// # Errors
-    /// As [`CoarsePicture::look`].
+    /// As [`CellBrightness::compute`].
     pub fn plan(
         &mut self,
         params: &TilingParams,

@@ -72,7 +72,7 @@ macro_rules! method {
             type FitParams = $fit_params;
             type Algorithm = $algorithm;
 
-            fn for_environment(params: &$fit_params, id: &str) -> $fit_params {
+            fn with_preset(params: &$fit_params, id: &str) -> $fit_params {
                 let preset: fn(&str) -> Option<Preset<$config>> = $preset;
                 let Some(Preset { environments, timesteps, config }) =
                     preset(id).filter(|_| params.training.preset)

@@ -73,7 +73,7 @@ impl Policy {
         clip: Option<f32>,
     ) -> Result<Self> {
         let encoder = ObservationEncoder::new(&spec.observation, clip)?;
-        let extractor = Extractor::new(&encoder, config.picture_network)?;
+        let extractor = Extractor::new(&encoder, config.image_network)?;
         let trunk = config.trunk(extractor.outputs(), head.outputs())?;
         let parameters = vec![0.0; extractor.parameters() + trunk.parameters() + head.parameters()];
         let (action, config) = (spec.action.clone(), config.clone());
@@ -144,7 +144,7 @@ impl Policy {
             && self.encoder.normaliser.is_some() == other.encoder.normaliser.is_some()
     }
 
-    /// Returns whether the policy is recurrent. Its memory must be [`reset`](PolicyMemory::reset) at the start of an episode.
+    /// Returns whether the policy is recurrent. Its memory must be [`reset`](PolicyScratch::reset) at the start of an episode.
     pub fn is_recurrent(&self) -> bool {
         self.trunk.gru().is_some()
     }

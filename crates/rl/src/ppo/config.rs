@@ -106,7 +106,7 @@ impl PpoConfig {
     }
 
     /// Returns the settings of rl-zoo for an environment, if PPO alone can use them (twice as many steps for `Pendulum-v1`), or those
-    /// tuned here for `UavDepthCorridor-v1` wrapped in [`Remembered`](opendr_simulation::uav_corridor::Remembered).
+    /// tuned here for `UavDepthCorridor-v1` wrapped in [`FlightMemoryWrapper`](opendr_simulation::uav_corridor::FlightMemoryWrapper).
     pub fn preset(id: &str) -> Option<Preset<Self>> {
         let base = Self::default();
         let (environments, timesteps, config) = match id {

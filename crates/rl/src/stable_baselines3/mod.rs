@@ -95,7 +95,7 @@ fn read(bytes: &[u8], spec: &EnvironmentSpec) -> Result<Policy> {
     let config = NetworkConfig {
         net_arch: sizes.map(|layer| layer.outputs()).collect(),
         activation_fn: family.activation_of(&settings.policy_kwargs)?,
-        picture_network: ImageNetwork::Flat,
+        image_network: ImageNetwork::Flat,
         gru_size: None,
     };
     let mut policy = Policy::new(spec, family.head(spec)?, &config, None)?;

@@ -85,7 +85,7 @@ impl Subscription {
     }
 
     /// Calls `take` with every message, on a thread of its own, until the listener is dropped. Messages queue while it runs. A panic
-    /// in it is reported to `NodeOptions::on_problem`.
+    /// in it is reported to `NodeOptions::on_error`.
     ///
     /// # Errors
     /// `Network` after the shutdown of the node, `Io` when the system has no more threads.

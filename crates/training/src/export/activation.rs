@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_1_SQRT_2;
 
 use burn::backend::ir::{ActivationOperationIr, DimOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Value};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -50,9 +50,9 @@ fn along(graph: &mut Lowering<'_>, name: &'static str, op: &DimOpIr) -> Result<(
 /// Exact GELU, `x / 2 * (1 + erf(x / √2))`; ONNX has an operator for it only from opset 20 on.
 fn gelu(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result<()> {
     let x = graph.wire(input)?;
-    let scaled = graph.step_like(Operator::new("Mul"), &[&x, &Value::scalar(FRAC_1_SQRT_2)], &x)?;
+    let scaled = graph.step_like(Operator::new("Mul"), &[&x, &GraphTensor::scalar(FRAC_1_SQRT_2)], &x)?;
     let erf = graph.step_like(Operator::new("Erf"), &[&scaled], &x)?;
-    let shifted = graph.step_like(Operator::new("Add"), &[&erf, &Value::scalar(1.0)], &x)?;
+    let shifted = graph.step_like(Operator::new("Add"), &[&erf, &GraphTensor::scalar(1.0)], &x)?;
     let product = graph.step_like(Operator::new("Mul"), &[&x, &shifted], &x)?;
-    graph.write(Operator::new("Mul"), &[&product, &Value::scalar(0.5)], out)
+    graph.write(Operator::new("Mul"), &[&product, &GraphTensor::scalar(0.5)], out)
 }

@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{BinaryOpIr, NumericOperationIr, PadModeIr, PadOpIr, ScalarOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::{Lowering, kind_from_dtype, scalar};
 
@@ -61,7 +61,7 @@ pub(super) fn power(graph: &mut Lowering<'_>, op: &ScalarOpIr) -> Result<()> {
 }
 
 /// Burn's remainder has the sign of the divisor: ONNX's `Mod` for integers, `x - y * floor(x / y)` for floats.
-fn remainder(graph: &mut Lowering<'_>, x: &Value, y: &Value, out: &TensorIr) -> Result<()> {
+fn remainder(graph: &mut Lowering<'_>, x: &GraphTensor, y: &GraphTensor, out: &TensorIr) -> Result<()> {
     if kind_from_dtype(out.dtype)? == ElementType::Int {
         return graph.write(Operator::new("Mod"), &[x, y], out);
     }
@@ -75,7 +75,7 @@ fn remainder(graph: &mut Lowering<'_>, x: &Value, y: &Value, out: &TensorIr) -> 
 fn pad(graph: &mut Lowering<'_>, op: &PadOpIr) -> Result<()> {
     let missing = op.input.shape.num_dims().saturating_sub(op.padding.len());
     let pads = || std::iter::repeat_n(&(0, 0), missing).chain(&op.padding);
-    let pads = Value::ints(pads().map(|pad| pad.0 as i64).chain(pads().map(|pad| pad.1 as i64)));
+    let pads = GraphTensor::ints(pads().map(|pad| pad.0 as i64).chain(pads().map(|pad| pad.1 as i64)));
     let x = graph.wire(&op.input)?;
     match op.mode {
         PadModeIr::Constant(value) => {

@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{AttentionOpIr, ModuleOperationIr};
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Data, ElementType, Operator, Value};
+use opendr_onnx::{Data, ElementType, GraphTensor, Operator};
 
 use super::lowering::{Lowering, array};
 
@@ -16,7 +16,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &ModuleOperationIr) -> 
     Ok(true)
 }
 
-fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<Value> {
+fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<GraphTensor> {
     let (query, key) = (graph.wire(&op.query)?, graph.wire(&op.key)?);
     let [batch, heads, steps, _] = query.dims() else { return Err(rank()) };
     let [_, _, others, depth] = key.dims() else { return Err(rank()) };
@@ -38,9 +38,10 @@ fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<Value> {
         transposed,
     )?;
     let product = graph.step(Operator::new("MatMul"), &[&query, &key], ElementType::Float, dims)?;
-    let mut scores = graph.step_like(Operator::new("Mul"), &[&product, &Value::scalar(scale)], &product)?;
+    let mut scores =
+        graph.step_like(Operator::new("Mul"), &[&product, &GraphTensor::scalar(scale)], &product)?;
     if let Some(cap) = op.options.softcap {
-        let cap = Value::scalar(cap.elem());
+        let cap = GraphTensor::scalar(cap.elem());
         scores = graph.step_like(Operator::new("Div"), &[&scores, &cap], &product)?;
         scores = graph.step_like(Operator::new("Tanh"), &[&scores], &product)?;
         scores = graph.step_like(Operator::new("Mul"), &[&scores, &cap], &product)?;
@@ -48,7 +49,7 @@ fn scores(graph: &mut Lowering<'_>, op: &AttentionOpIr) -> Result<Value> {
     let mask = op.mask.as_ref().map(|mask| graph.wire(mask)).transpose()?;
     let causal = if op.options.is_causal { Some(future(steps, others)?) } else { None };
     // A finite value, so that a fully masked row is not NaN.
-    let lowest = Value::scalar(f32::MIN);
+    let lowest = GraphTensor::scalar(f32::MIN);
     for mask in mask.iter().chain(&causal) {
         scores = graph.step_like(Operator::new("Where"), &[mask, &lowest, &scores], &product)?;
     }
@@ -64,10 +65,10 @@ fn rank() -> Error {
 }
 
 /// Returns the mask of causal attention: which of `others` come after each of `steps`.
-fn future(steps: Option<usize>, others: Option<usize>) -> Result<Value> {
+fn future(steps: Option<usize>, others: Option<usize>) -> Result<GraphTensor> {
     let (Some(steps), Some(others)) = (steps, others) else {
         return Err(Error::unsupported("causal attention over an open number of steps is not supported"));
     };
     let after = (0..steps).flat_map(|step| (0..others).map(move |other| other > step)).collect();
-    Ok(Value::constant(array(vec![1, 1, steps, others], Data::Bool(after))?))
+    Ok(GraphTensor::constant(array(vec![1, 1, steps, others], Data::Bool(after))?))
 }

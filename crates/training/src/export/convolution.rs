@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{ModuleOperationIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Value};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -52,7 +52,7 @@ fn write(
 ) -> Result<()> {
     let (x, weight) = (graph.wire(x)?, graph.wire(weight)?);
     let bias = bias.map(|bias| graph.wire(bias)).transpose()?;
-    let inputs: Vec<&Value> = [&x, &weight].into_iter().chain(&bias).collect();
+    let inputs: Vec<&GraphTensor> = [&x, &weight].into_iter().chain(&bias).collect();
     graph.write(operator, &inputs, out)
 }
 

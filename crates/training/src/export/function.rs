@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{FloatOperationIr, IntOperationIr, TensorIr, UnaryOpIr};
 use opendr_engine::Result;
-use opendr_onnx::{Operator, Value};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::arithmetic::power;
 use super::lowering::Lowering;
@@ -35,7 +35,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &FloatOperationIr) -> R
         Op::IsInf(op) => unary(graph, "IsInf", op)?,
         Op::Log1p(op) => {
             let x = graph.wire(&op.input)?;
-            let shifted = graph.step_like(Operator::new("Add"), &[&x, &Value::scalar(1.0)], &x)?;
+            let shifted = graph.step_like(Operator::new("Add"), &[&x, &GraphTensor::scalar(1.0)], &x)?;
             graph.write(Operator::new("Log"), &[&shifted], &op.out)?;
         }
         Op::Trunc(op) => {

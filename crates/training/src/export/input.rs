@@ -63,7 +63,7 @@ pub trait ElementKind: Basic + Sized {
 macro_rules! impl_element_kind {
     ($($kind:ident),*) => {$(
         impl ElementKind for $kind {
-            const ONNX: Kind = Kind::$kind;
+            const ONNX: ElementType = ElementType::$kind;
 
             fn id<const D: usize>(tensor: Tensor<D, Self>) -> Result<TensorId> {
                 let tensor = tensor.try_into_primitive::<CaptureBackend>().map_err(|_| {

@@ -6,7 +6,7 @@ use burn::backend::capture::TensorId;
 use burn::backend::ir::{ScalarIr, TensorIr};
 use burn::tensor::{DType, Element, TensorData};
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Array, Builder, Data, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Array, Builder, Data, Dim, ElementType, GraphTensor, Operator};
 
 use super::input::Declared;
 use super::sizes::{Size, Sizes};
@@ -17,9 +17,9 @@ pub(super) struct Lowering<'a> {
     pub(super) trace: &'a Trace,
     pub(super) sizes: &'a Sizes,
     pub(super) builder: Builder,
-    pub(super) wires: HashMap<TensorId, Value>,
+    pub(super) wires: HashMap<TensorId, GraphTensor>,
     /// An input with an open axis, and the axis: the source of the batch size.
-    open: Option<(Value, usize)>,
+    open: Option<(GraphTensor, usize)>,
 }
 
 impl<'a> Lowering<'a> {
@@ -58,12 +58,12 @@ impl<'a> Lowering<'a> {
     }
 
     /// Returns the wire of a tensor.
-    pub(super) fn wire(&mut self, tensor: &TensorIr) -> Result<Value> {
+    pub(super) fn wire(&mut self, tensor: &TensorIr) -> Result<GraphTensor> {
         self.wire_of(tensor.id)
     }
 
     /// Returns the wire of the tensor with this id.
-    pub(super) fn wire_of(&mut self, id: TensorId) -> Result<Value> {
+    pub(super) fn wire_of(&mut self, id: TensorId) -> Result<GraphTensor> {
         if let Some(wire) = self.wires.get(&id) {
             return Ok(wire.clone());
         }
@@ -73,7 +73,7 @@ impl<'a> Lowering<'a> {
             )
         })?;
         let name = self.trace.names.get(&id).map_or("constant", String::as_str);
-        let wire = Value::named_constant(name, array_from_data(value)?);
+        let wire = GraphTensor::named_constant(name, array_from_data(value)?);
         self.wires.insert(id, wire.clone());
         Ok(wire)
     }
@@ -89,18 +89,23 @@ impl<'a> Lowering<'a> {
     }
 
     /// Binds `out` to `wire`.
-    pub(super) fn define(&mut self, out: &TensorIr, wire: Value) {
+    pub(super) fn define(&mut self, out: &TensorIr, wire: GraphTensor) {
         self.wires.insert(out.id, wire);
     }
 
     /// Writes an operator between tensors of the recording.
     pub(super) fn apply(&mut self, operator: Operator, inputs: &[&TensorIr], out: &TensorIr) -> Result<()> {
-        let inputs: Vec<Value> = inputs.iter().map(|input| self.wire(input)).collect::<Result<_>>()?;
+        let inputs: Vec<GraphTensor> = inputs.iter().map(|input| self.wire(input)).collect::<Result<_>>()?;
         self.write(operator, &inputs.iter().collect::<Vec<_>>(), out)
     }
 
     /// Writes an operator whose output is a tensor of the recording.
-    pub(super) fn write(&mut self, operator: Operator, inputs: &[&Value], out: &TensorIr) -> Result<()> {
+    pub(super) fn write(
+        &mut self,
+        operator: Operator,
+        inputs: &[&GraphTensor],
+        out: &TensorIr,
+    ) -> Result<()> {
         let wire = self.step(operator, inputs, kind_from_dtype(out.dtype)?, self.dims(out))?;
         self.define(out, wire);
         Ok(())
@@ -110,10 +115,10 @@ impl<'a> Lowering<'a> {
     pub(super) fn step(
         &mut self,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         kind: ElementType,
         dims: Vec<Dim>,
-    ) -> Result<Value> {
+    ) -> Result<GraphTensor> {
         let hint = operator.name().to_lowercase();
         self.builder.add(&hint, operator, inputs, kind, dims)
     }
@@ -122,9 +127,9 @@ impl<'a> Lowering<'a> {
     pub(super) fn step_like(
         &mut self,
         operator: Operator,
-        inputs: &[&Value],
-        model: &Value,
-    ) -> Result<Value> {
+        inputs: &[&GraphTensor],
+        model: &GraphTensor,
+    ) -> Result<GraphTensor> {
         self.step(operator, inputs, model.kind(), model.dims().to_vec())
     }
 
@@ -132,39 +137,39 @@ impl<'a> Lowering<'a> {
     pub(super) fn step_many(
         &mut self,
         operator: Operator,
-        inputs: &[&Value],
+        inputs: &[&GraphTensor],
         outputs: Vec<(ElementType, Vec<Dim>)>,
-    ) -> Result<Vec<Value>> {
+    ) -> Result<Vec<GraphTensor>> {
         let hint = operator.name().to_lowercase();
         self.builder.add_many(&hint, operator, inputs, outputs)
     }
 
     /// Returns sizes as a tensor, which the graph computes where they are open.
-    pub(super) fn shape(&mut self, sizes: &[Size]) -> Result<Value> {
+    pub(super) fn shape(&mut self, sizes: &[Size]) -> Result<GraphTensor> {
         let fixed: Option<Vec<usize>> = sizes.iter().map(|size| size.fixed()).collect();
         if let Some(fixed) = fixed {
-            return Ok(Value::ints(fixed.into_iter().map(|size| size as i64)));
+            return Ok(GraphTensor::ints(fixed.into_iter().map(|size| size as i64)));
         }
         let mut parts = Vec::with_capacity(sizes.len());
         for size in sizes {
             parts.push(match size {
-                Size::Fixed(size) => Value::ints([*size as i64]),
+                Size::Fixed(size) => GraphTensor::ints([*size as i64]),
                 Size::Batch(times) => self.batch(*times)?,
             });
         }
-        let parts: Vec<&Value> = parts.iter().collect();
+        let parts: Vec<&GraphTensor> = parts.iter().collect();
         self.step(Operator::new("Concat").int("axis", 0), &parts, ElementType::Int, vec![Some(sizes.len())])
     }
 
     /// Returns `times` the batch size, as a tensor of one element.
-    fn batch(&mut self, times: usize) -> Result<Value> {
+    fn batch(&mut self, times: usize) -> Result<GraphTensor> {
         let (input, axis) = self
             .open
             .clone()
             .ok_or_else(|| Error::internal("a size is open, but the model has no open axis"))?;
         let shape =
             self.step(Operator::new("Shape"), &[&input], ElementType::Int, vec![Some(input.rank())])?;
-        let index = Value::ints([axis as i64]);
+        let index = GraphTensor::ints([axis as i64]);
         let size = self.step(
             Operator::new("Gather").int("axis", 0),
             &[&shape, &index],
@@ -174,7 +179,7 @@ impl<'a> Lowering<'a> {
         match times {
             1 => Ok(size),
             times => {
-                let times = Value::ints([times as i64]);
+                let times = GraphTensor::ints([times as i64]);
                 self.step(Operator::new("Mul"), &[&size, &times], ElementType::Int, vec![Some(1)])
             }
         }
@@ -194,8 +199,8 @@ pub(super) fn kind_from_dtype(dtype: DType) -> Result<ElementType> {
 }
 
 /// Returns a scalar of the element type of `dtype`.
-pub(super) fn scalar(value: ScalarIr, dtype: DType) -> Result<Value> {
-    Ok(Value::constant(match kind_from_dtype(dtype)? {
+pub(super) fn scalar(value: ScalarIr, dtype: DType) -> Result<GraphTensor> {
+    Ok(GraphTensor::constant(match kind_from_dtype(dtype)? {
         ElementType::Float => Array::scalar(value.elem()),
         ElementType::Int => Array::int(value.elem()),
         ElementType::Bool => array(Vec::new(), Data::Bool(vec![value.elem()]))?,

@@ -3,7 +3,7 @@
 use burn::backend::ir::{BaseOperationIr, SliceOpIr, TensorIr};
 use burn::tensor::Slice;
 use opendr_engine::{Error, Result};
-use opendr_onnx::{Operator, Value};
+use opendr_onnx::{GraphTensor, Operator};
 
 use super::lowering::{Lowering, kind_from_dtype};
 use super::sizes::Size;
@@ -22,12 +22,12 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &BaseOperationIr) -> Re
         Op::Flip(op) => {
             let axes = || op.axes.iter().map(|&axis| axis as i64);
             let count = op.axes.len();
-            let (starts, steps) = (Value::ints(vec![-1; count]), Value::ints(vec![-1; count]));
-            let ends = Value::ints(vec![i64::MIN; count]);
+            let (starts, steps) = (GraphTensor::ints(vec![-1; count]), GraphTensor::ints(vec![-1; count]));
+            let ends = GraphTensor::ints(vec![i64::MIN; count]);
             let x = graph.wire(&op.input)?;
             graph.write(
                 Operator::new("Slice"),
-                &[&x, &starts, &ends, &Value::ints(axes()), &steps],
+                &[&x, &starts, &ends, &GraphTensor::ints(axes()), &steps],
                 &op.out,
             )?;
         }
@@ -63,7 +63,7 @@ fn reshape(graph: &mut Lowering<'_>, input: &TensorIr, out: &TensorIr) -> Result
     }
     let open = to.iter().filter(|size| size.fixed().is_none()).count();
     let shape = match open {
-        1 => Value::ints(to.iter().map(|size| size.fixed().map_or(-1, |size| size as i64))),
+        1 => GraphTensor::ints(to.iter().map(|size| size.fixed().map_or(-1, |size| size as i64))),
         _ => graph.shape(&to)?,
     };
     graph.write(Operator::new("Reshape"), &[&x, &shape], out)
@@ -108,7 +108,7 @@ fn repeat(
         _ => {
             let repeats = (0..from.len()).map(|other| if other == axis { times as i64 } else { 1 });
             let x = graph.wire(input)?;
-            graph.write(Operator::new("Tile"), &[&x, &Value::ints(repeats)], out)
+            graph.write(Operator::new("Tile"), &[&x, &GraphTensor::ints(repeats)], out)
         }
     }
 }
@@ -129,10 +129,10 @@ fn slice(graph: &mut Lowering<'_>, op: &SliceOpIr) -> Result<()> {
         return Ok(());
     }
     let bounds: Vec<(i64, i64)> = cut.iter().map(|(_, range)| bounds(range)).collect();
-    let starts = Value::ints(bounds.iter().map(|bounds| bounds.0));
-    let ends = Value::ints(bounds.iter().map(|bounds| bounds.1));
-    let axes = Value::ints(cut.iter().map(|(axis, _)| *axis as i64));
-    let steps = Value::ints(cut.iter().map(|(_, range)| range.step as i64));
+    let starts = GraphTensor::ints(bounds.iter().map(|bounds| bounds.0));
+    let ends = GraphTensor::ints(bounds.iter().map(|bounds| bounds.1));
+    let axes = GraphTensor::ints(cut.iter().map(|(axis, _)| *axis as i64));
+    let steps = GraphTensor::ints(cut.iter().map(|(_, range)| range.step as i64));
     graph.write(Operator::new("Slice"), &[&x, &starts, &ends, &axes, &steps], &op.out)
 }
 

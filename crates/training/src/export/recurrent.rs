@@ -5,7 +5,7 @@ use burn::backend::ir::{CustomOpIr, OperationIr, TensorIr};
 use burn::tensor::Tensor;
 use burn_router::RouterClient;
 use opendr_engine::{Error, Result};
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -69,15 +69,19 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &CustomOpIr) -> Result<
         vec![time, Some(1), batch, Some(hidden)],
     )?;
     let one_way = vec![time, batch, Some(hidden)];
-    let states =
-        graph.step(Operator::new("Squeeze"), &[&states, &Value::ints([1])], ElementType::Float, one_way)?;
+    let states = graph.step(
+        Operator::new("Squeeze"),
+        &[&states, &GraphTensor::ints([1])],
+        ElementType::Float,
+        one_way,
+    )?;
     let states = swapped(graph, &states)?;
     graph.define(out, states);
     Ok(true)
 }
 
 /// Swaps batch and time.
-fn swapped(graph: &mut Lowering<'_>, x: &Value) -> Result<Value> {
+fn swapped(graph: &mut Lowering<'_>, x: &GraphTensor) -> Result<GraphTensor> {
     let mut dims = x.dims().to_vec();
     dims.swap(0, 1);
     graph.step(Operator::new("Transpose").ints("perm", [1, 0, 2]), &[x], ElementType::Float, dims)
@@ -85,12 +89,12 @@ fn swapped(graph: &mut Lowering<'_>, x: &Value) -> Result<Value> {
 
 /// Returns weights or biases of one direction with the gates in ONNX's order (update, reset, new) instead of PyTorch's (reset,
 /// update, new).
-fn gates(graph: &mut Lowering<'_>, tensor: &TensorIr, hidden: usize) -> Result<Value> {
+fn gates(graph: &mut Lowering<'_>, tensor: &TensorIr, hidden: usize) -> Result<GraphTensor> {
     let all = graph.wire(tensor)?;
     let mut dims = all.dims().to_vec();
     let rows = [hidden..2 * hidden, 0..hidden, 2 * hidden..3 * hidden];
-    let rows = Value::ints(rows.into_iter().flatten().map(|row| row as i64));
+    let rows = GraphTensor::ints(rows.into_iter().flatten().map(|row| row as i64));
     let ordered = graph.step_like(Operator::new("Gather").int("axis", 0), &[&all, &rows], &all)?;
     dims.insert(0, Some(1));
-    graph.step(Operator::new("Unsqueeze"), &[&ordered, &Value::ints([0])], ElementType::Float, dims)
+    graph.step(Operator::new("Unsqueeze"), &[&ordered, &GraphTensor::ints([0])], ElementType::Float, dims)
 }

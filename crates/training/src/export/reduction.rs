@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{BaseOperationIr, NumericOperationIr, ReduceDimOpIr, TensorIr};
 use opendr_engine::Result;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -42,7 +42,7 @@ pub(super) fn lower(graph: &mut Lowering<'_>, operation: &NumericOperationIr) ->
         }
         Op::CumSum(op) => {
             let (x, axis) =
-                (graph.wire(&op.input)?, Value::constant(opendr_onnx::Array::int(op.axis as i64)));
+                (graph.wire(&op.input)?, GraphTensor::constant(opendr_onnx::Array::int(op.axis as i64)));
             graph.write(Operator::new("CumSum"), &[&x, &axis], &op.out)?;
         }
         _ => return Ok(false),
@@ -86,7 +86,7 @@ fn whole(graph: &mut Lowering<'_>, name: &'static str, input: &TensorIr, out: &T
 fn reduce(
     graph: &mut Lowering<'_>,
     name: &'static str,
-    x: &Value,
+    x: &GraphTensor,
     axes: &[usize],
     out: &TensorIr,
 ) -> Result<()> {
@@ -97,25 +97,30 @@ fn reduce(
 }
 
 /// Returns the reduction with size one along the axes.
-fn reduced(graph: &mut Lowering<'_>, name: &'static str, x: &Value, axes: &[usize]) -> Result<Value> {
+fn reduced(
+    graph: &mut Lowering<'_>,
+    name: &'static str,
+    x: &GraphTensor,
+    axes: &[usize],
+) -> Result<GraphTensor> {
     let mut dims = x.dims().to_vec();
     axes.iter().for_each(|&axis| dims[axis] = Some(1));
     let axes = axes.iter().map(|&axis| axis as i64);
     let operator = Operator::new(name).int("keepdims", 1);
     match name {
         // The axes are an input of the sum from opset 13 on, of the others from 18 on.
-        "ReduceSum" => graph.step(operator, &[x, &Value::ints(axes)], x.kind(), dims),
+        "ReduceSum" => graph.step(operator, &[x, &GraphTensor::ints(axes)], x.kind(), dims),
         _ => graph.step(operator.ints("axes", axes), &[x], x.kind(), dims),
     }
 }
 
 /// Burn's reductions keep the axis, or return `[1]`.
-fn reshaped_as(graph: &mut Lowering<'_>, x: Value, out: &TensorIr) -> Result<Value> {
+fn reshaped_as(graph: &mut Lowering<'_>, x: GraphTensor, out: &TensorIr) -> Result<GraphTensor> {
     if x.rank() == out.shape.num_dims() {
         return Ok(x);
     }
     let dims = graph.dims(out);
-    let shape = Value::ints(out.shape.iter().map(|&dim| dim as i64));
+    let shape = GraphTensor::ints(out.shape.iter().map(|&dim| dim as i64));
     graph.step(Operator::new("Reshape"), &[&x, &shape], x.kind(), dims)
 }
 

@@ -8,7 +8,7 @@ use burn::tensor::module::{adaptive_avg_pool2d, interpolate};
 use burn::tensor::ops::InterpolateOptions;
 use burn::tensor::{Device, Tensor};
 use opendr_engine::{Error, Result};
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::{Lowering, array_from_data};
 
@@ -69,9 +69,10 @@ fn resize(graph: &mut Lowering<'_>, op: &InterpolateOpIr) -> Result<()> {
     };
     let scales = [1.0, 1.0, scale(height, size[0])?, scale(width, size[1])?];
     let scales = opendr_onnx::Array::new(vec![4], opendr_onnx::Data::Float(scales.to_vec()));
-    let scales = scales.map(Value::constant).ok_or_else(|| Error::internal("resizing needs four scales"))?;
+    let scales =
+        scales.map(GraphTensor::constant).ok_or_else(|| Error::internal("resizing needs four scales"))?;
     let x = graph.wire(&op.x)?;
-    graph.write(operator, &[&x, &Value::absent(), &scales], &op.out)
+    graph.write(operator, &[&x, &GraphTensor::absent(), &scales], &op.out)
 }
 
 /// Returns the factor with which a runtime, which rounds down in single precision, gets from one size to the other. The sizes
@@ -124,7 +125,8 @@ fn matrix(rows: usize, function: impl Fn(Tensor<4>) -> Tensor<4>) -> Result<Tens
 fn separable(graph: &mut Lowering<'_>, x: &TensorIr, matrices: &[Tensor<2>], out: &TensorIr) -> Result<()> {
     let mut picture = graph.wire(x)?;
     let dims = graph.dims(out);
-    let constant = |matrix: Tensor<2>| Ok::<_, Error>(Value::constant(array_from_data(&matrix.into_data())?));
+    let constant =
+        |matrix: Tensor<2>| Ok::<_, Error>(GraphTensor::constant(array_from_data(&matrix.into_data())?));
     let columns = match matrices {
         [rows, columns] => {
             let mut between = picture.dims().to_vec();

@@ -2,7 +2,7 @@
 
 use burn::backend::ir::{NumericOperationIr, TensorIr};
 use opendr_engine::{Error, Result};
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::lowering::Lowering;
 
@@ -38,7 +38,7 @@ fn sort(
     let operator =
         Operator::new("TopK").int("axis", axis as i64).int("largest", i64::from(descending)).int("sorted", 1);
     let outputs = vec![(x.kind(), dims.clone()), (ElementType::Int, dims)];
-    let sorted = graph.step_many(operator, &[&x, &Value::ints([count as i64])], outputs)?;
+    let sorted = graph.step_many(operator, &[&x, &GraphTensor::ints([count as i64])], outputs)?;
     for (out, wire) in [values, places].into_iter().zip(sorted) {
         if let Some(out) = out {
             graph.define(out, wire);

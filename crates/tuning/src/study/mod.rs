@@ -169,7 +169,7 @@ impl Study {
     /// Saves the state from which trial `number` resumes if its worker dies.
     ///
     /// # Errors
-    /// As [`Study::note`].
+    /// As [`Study::set_user_attribute`].
     pub fn checkpoint(&self, number: usize, state: Value) -> Result<()> {
         self.write_of(number, |_, trial| Ok(vec![outcome::checkpoint(trial, state)]))
     }

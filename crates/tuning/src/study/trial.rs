@@ -100,7 +100,7 @@ impl Trial<'_> {
     /// Sets a user attribute of the trial.
     ///
     /// # Errors
-    /// As [`Study::note`].
+    /// As [`Study::set_user_attribute`].
     pub fn set_user_attribute(&self, key: &str, value: impl Into<Value>) -> Result<()> {
         self.study.set_user_attribute(self.number, key, value.into())
     }
@@ -108,7 +108,7 @@ impl Trial<'_> {
     /// Saves the state from which the trial resumes if this process dies; without it the trial would be lost.
     ///
     /// # Errors
-    /// As [`Study::note`].
+    /// As [`Study::set_user_attribute`].
     pub fn checkpoint(&self, state: impl Into<Value>) -> Result<()> {
         self.study.checkpoint(self.number, state.into())
     }

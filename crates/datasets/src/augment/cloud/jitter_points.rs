@@ -14,8 +14,8 @@ pub struct JitterPoints {
     #[param(default = 0.01, range = 0.0..=10.0, unit = "m")]
     pub deviation: f32,
     /// Largest displacement along each axis.
-    #[param(default = 0.05, range = 0.0..=10.0, unit = "m")]
-    pub most: f32,
+    #[param(default = 0.05, range = 0.0..=10.0, unit = "m", alias = "most")]
+    pub max_offset: f32,
 }
 
 impl Augmentation for JitterPoints {
@@ -29,7 +29,7 @@ impl Augment for JitterPoints {
             for point in data.chunks_exact_mut(channels) {
                 for part in &mut point[..3] {
                     let noise = random.normal() as f32 * self.deviation;
-                    *part += noise.clamp(-self.most, self.most);
+                    *part += noise.clamp(-self.max_offset, self.max_offset);
                 }
             }
         })

@@ -19,8 +19,8 @@ pub struct PasteObjects {
     #[param(default = 2, range = 1..=100)]
     pub scenes: usize,
     /// Largest number of objects from each scene.
-    #[param(default = 10, range = 1..=1000)]
-    pub most: usize,
+    #[param(default = 10, range = 1..=1000, alias = "most")]
+    pub max_objects: usize,
     /// Smallest number of points of a pasted object.
     #[param(default = 5, range = 1..=100_000)]
     pub min_points: usize,
@@ -42,7 +42,7 @@ impl Augment for PasteObjects {
                 .into_iter()
                 .filter_map(|index| boxes.boxes.get(index))
                 .filter(|object| is_object(boxes, object));
-            for object in candidates.take(self.most) {
+            for object in candidates.take(self.max_objects) {
                 self.paste(sample, object, boxes, from, Frame::of(&other.data[0])?)?;
             }
         }

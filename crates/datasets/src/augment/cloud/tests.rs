@@ -112,7 +112,7 @@ fn dropped_points_are_gone_and_jitter_is_small() {
     let [kept, all] = [&sample, &before].map(|sample| cloud(&sample.data[0]).unwrap());
     assert!(kept.len() < all.len() && kept.points().all(|point| all.points().any(|other| other == point)));
     let mut sample = before.clone();
-    apply(&JitterPoints { deviation: 0.1, most: 0.15 }, &mut sample, 5);
+    apply(&JitterPoints { deviation: 0.1, max_offset: 0.15 }, &mut sample, 5);
     let moved: Vec<f32> = cloud(&sample.data[0])
         .unwrap()
         .as_slice()

@@ -6,7 +6,7 @@ use super::elementwise::{apply, apply_unary};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 pub fn activation(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let alpha = call.attr().float("alpha").unwrap_or(0.2);
@@ -33,7 +33,7 @@ fn activate(
         "HardSwish" => Operator::new("HardSwish"),
         "Relu6" | "ReluN1To1" | "Relu0To1" => {
             let (low, high) = clipped_to(name);
-            let (low, high) = (Value::scalar(low), Value::scalar(high));
+            let (low, high) = (GraphTensor::scalar(low), GraphTensor::scalar(high));
             let clip = Operator::new("Clip");
             return ctx.emit(
                 call,

@@ -8,7 +8,7 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, ElementType, Operator, Value};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 /// Returns the filter's dimensions, which must be known.
 fn filter_dims(call: &Call) -> Result<[usize; 4]> {
@@ -21,7 +21,7 @@ fn filter_dims(call: &Call) -> Result<[usize; 4]> {
 }
 
 /// Returns the filter stored in the given order.
-fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<Value> {
+fn filter(ctx: &mut Lowering, call: &Call, order: [usize; 4]) -> Result<GraphTensor> {
     ctx.ordered(call.input(1)?, &Order::new(order.to_vec()))
 }
 
@@ -60,7 +60,7 @@ pub fn depthwise(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let weights = filter(ctx, call, [2, 3, 0, 1])?;
     let shape = [filters, 1, height, width];
     let dims = shape.map(Some).to_vec();
-    let target = Value::ints(shape.map(|dim| dim as i64));
+    let target = GraphTensor::ints(shape.map(|dim| dim as i64));
     let weights = ctx.graph.add(
         &weights.hint(),
         Operator::new("Reshape"),
@@ -77,7 +77,7 @@ fn convolve(
     call: &Call,
     axes: Axes,
     kernel: Pair<usize>,
-    weights: Value,
+    weights: GraphTensor,
     groups: usize,
     filters: usize,
 ) -> Result<Vec<Value>> {
@@ -95,17 +95,17 @@ fn convolve(
     if let Some(bias) = &epilogue.bias {
         inputs.push(channel_vector(ctx, bias, filters)?);
     }
-    let inputs: Vec<&Value> = inputs.iter().collect();
+    let inputs: Vec<&GraphTensor> = inputs.iter().collect();
     let output = ctx.emit(call, operator, &inputs, ElementType::Float, &dims, axes.order())?;
     Ok(vec![epilogue.activate(ctx, call, output)?])
 }
 
 /// Returns a bias of one element per filter.
-fn channel_vector(ctx: &mut Lowering, bias: &Value, filters: usize) -> Result<Value> {
+fn channel_vector(ctx: &mut Lowering, bias: &Value, filters: usize) -> Result<GraphTensor> {
     match bias.known_dims().as_deref() {
         Some([length]) if *length == filters => Ok(bias.wire.clone()),
         Some([1]) | Some([]) => {
-            let shape = Value::ints([filters as i64]);
+            let shape = GraphTensor::ints([filters as i64]);
             let dims = vec![Some(filters)];
             ctx.graph.add(
                 &bias.wire.hint(),
@@ -208,7 +208,7 @@ pub fn batch_norm(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     for index in 1..5 {
         inputs.push(call.input(index)?.wire.clone());
     }
-    let inputs: Vec<&Value> = inputs.iter().collect();
+    let inputs: Vec<&GraphTensor> = inputs.iter().collect();
     let operator = Operator::new("BatchNormalization").float("epsilon", epsilon);
     Ok(vec![ctx.emit(call, operator, &inputs, ElementType::Float, &x.dims(), axes.order())?])
 }

@@ -6,11 +6,11 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, ElementType, Operator, Value};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 /// Operands with a common element type and order, ready to broadcast.
 struct Aligned {
-    wires: Vec<Value>,
+    wires: Vec<GraphTensor>,
     order: Order,
     /// TensorFlow's dimensions of the result.
     dims: Vec<Dim>,
@@ -136,7 +136,7 @@ pub fn squared_difference(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>>
 pub fn atan2(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     use std::f32::consts::{FRAC_PI_2, PI};
     let (y, x) = (call.input(0)?, call.input(1)?);
-    let constant = |value: f32| Value::plain(Value::scalar(value));
+    let constant = |value: f32| Value::plain(GraphTensor::scalar(value));
     let zero = constant(0.0);
     let quotient = apply(ctx, call, "Div", y, x)?;
     let angle = apply_unary(ctx, call, Operator::new("Atan"), &quotient)?;

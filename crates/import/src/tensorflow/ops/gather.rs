@@ -7,7 +7,7 @@ use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Array, Dim, ElementType, GraphTensor, Operator};
 
 pub fn gather(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, indices) = (call.input(0)?, call.input(1)?);
@@ -40,7 +40,7 @@ fn gather_batched(ctx: &mut Lowering, call: &Call, axis: usize) -> Result<Vec<Va
     }
     let data = ctx.plain(x)?;
     let picked = ctx.plain(indices)?;
-    let last = Value::ints([indices.rank() as i64]);
+    let last = GraphTensor::ints([indices.rank() as i64]);
     let tuple = [indices.dims(), vec![Some(1)]].concat();
     let picked =
         ctx.graph.add(call.name(), Operator::new("Unsqueeze"), &[&picked, &last], ElementType::Int, tuple)?;
@@ -64,8 +64,8 @@ pub fn gather_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 pub fn scatter_nd(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (indices, updates, shape) = (call.input(0)?, call.input(1)?, call.input(2)?);
     let zero = match updates.kind() {
-        ElementType::Float => Value::scalar(0.0),
-        _ => Value::constant(Array::int(0)),
+        ElementType::Float => GraphTensor::scalar(0.0),
+        _ => GraphTensor::constant(Array::int(0)),
     };
     let zeros = fill_shape(ctx, call, &zero, shape)?;
     let (indices, updates) = (ctx.plain(indices)?, ctx.plain(updates)?);

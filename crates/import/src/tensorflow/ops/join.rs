@@ -7,7 +7,7 @@ use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, ElementType, Operator, Value};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 pub fn concat(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let last = call.inputs().len().checked_sub(1).ok_or_else(|| Error::format("it has no inputs"))?;
@@ -64,7 +64,7 @@ fn joined(ctx: &mut Lowering, call: &Call, parts: &[Value], axis: usize) -> Resu
         return Ok(Value::new(single.clone(), order));
     }
     let operator = Operator::new("Concat").int("axis", order.stored(axis) as i64);
-    let wires: Vec<&Value> = wires.iter().collect();
+    let wires: Vec<&GraphTensor> = wires.iter().collect();
     ctx.emit(call, operator, &wires, kind, &dims, order)
 }
 

@@ -7,7 +7,7 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, ElementType, Operator, Value};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 /// Converts `MatMul` of two matrices, and `_FusedMatMul` with bias and activation.
 pub fn matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -52,7 +52,7 @@ pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let a = operand(ctx, a, call.attr().flag("adj_x"))?;
     let b = operand(ctx, b, call.attr().flag("adj_y"))?;
     check_inner(a.dims()[a.rank() - 1], b.dims()[b.rank() - 2])?;
-    let outer = |wire: &Value, axis: usize| {
+    let outer = |wire: &GraphTensor, axis: usize| {
         (axis + wire.rank()).checked_sub(rank).map_or(Some(1), |i| wire.dims()[i])
     };
     let batch = |axis: usize| match (outer(&a, axis), outer(&b, axis)) {
@@ -65,7 +65,7 @@ pub fn batch_matmul(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 /// Returns a matrix, or one per batch element, transposed where requested. Runtimes multiply floats only.
-fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<Value> {
+fn operand(ctx: &mut Lowering, x: &Value, transposed: bool) -> Result<GraphTensor> {
     let mut perm: Vec<usize> = (0..x.rank()).collect();
     if transposed {
         perm.swap(x.rank() - 2, x.rank() - 1);

@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, ElementType, Operator, Value};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
@@ -23,7 +23,7 @@ pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let dims: Vec<Dim> = x.dims().into_iter().enumerate().map(padded).collect();
     let before = x.order.axes().iter().map(|&axis| pads[2 * axis]);
     let after = x.order.axes().iter().map(|&axis| pads[2 * axis + 1]);
-    let mut inputs = vec![x.wire.clone(), Value::ints(before.chain(after))];
+    let mut inputs = vec![x.wire.clone(), GraphTensor::ints(before.chain(after))];
     let operator = Operator::new("Pad");
     let operator = match call.op() {
         "MirrorPad" if call.attr().text("mode") == Some("REFLECT") => operator.text("mode", "reflect"),
@@ -34,11 +34,11 @@ pub fn pad(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
             operator
         }
         _ if x.kind() == ElementType::Float => {
-            inputs.push(Value::scalar(0.0));
+            inputs.push(GraphTensor::scalar(0.0));
             operator
         }
         _ => operator,
     };
-    let inputs: Vec<&Value> = inputs.iter().collect();
+    let inputs: Vec<&GraphTensor> = inputs.iter().collect();
     Ok(vec![ctx.emit(call, operator, &inputs, x.kind(), &dims, x.order.clone())?])
 }

@@ -7,7 +7,7 @@ use crate::tensorflow::call::Call;
 use crate::tensorflow::layout::Order;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
@@ -41,7 +41,7 @@ pub fn reduce(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     };
     let operator = Operator::new(name).int("keepdims", keep.into());
     let value = if name == "ReduceSum" {
-        ctx.emit(call, operator, &[&x.wire, &Value::ints(stored)], x.kind(), &dims, order)
+        ctx.emit(call, operator, &[&x.wire, &GraphTensor::ints(stored)], x.kind(), &dims, order)
     } else {
         ctx.emit(call, operator.ints("axes", stored), &[&x.wire], x.kind(), &dims, order)
     };

@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Dim, ElementType, Operator, Value};
+use opendr_onnx::{Dim, ElementType, GraphTensor, Operator};
 
 pub fn reshape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let x = call.input(0)?;
@@ -13,7 +13,7 @@ pub fn reshape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let Some(wanted) = shape.array() else { return reshape_to_computed(ctx, call, x, shape) };
     let wanted = wanted.as_ints().ok_or_else(|| Error::format("the shape must be integers"))?;
     let dims = resolved(wanted, x)?;
-    let target = |dims: &[Dim]| Value::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
+    let target = |dims: &[Dim]| GraphTensor::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
     let known: Option<Vec<usize>> = dims.iter().copied().collect();
     if let (Some(from), Some(to)) = (x.known_dims(), known)
         && let Some(order) = x.order.reshaped(&from, &to)
@@ -99,7 +99,7 @@ pub fn squeezed(ctx: &mut Lowering, call: &Call, x: &Value, axes: &[usize]) -> R
     stored.sort_unstable();
     stored.dedup();
     let kept: Vec<Dim> = (0..x.rank()).filter(|axis| !axes.contains(axis)).map(|axis| dims[axis]).collect();
-    let inputs = [&x.wire, &Value::ints(stored)];
+    let inputs = [&x.wire, &GraphTensor::ints(stored)];
     ctx.emit(call, Operator::new("Squeeze"), &inputs, x.kind(), &kept, x.order.without(axes))
 }
 
@@ -114,7 +114,7 @@ pub fn expanded(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize) -> Resu
     let (order, position) = x.order.with(axis);
     let mut dims = x.dims();
     dims.insert(axis, Some(1));
-    let inputs = [&x.wire, &Value::ints([position as i64])];
+    let inputs = [&x.wire, &GraphTensor::ints([position as i64])];
     ctx.emit(call, Operator::new("Unsqueeze"), &inputs, x.kind(), &dims, order)
 }
 
@@ -139,7 +139,13 @@ pub fn transpose(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 /// Returns integers of any shape as a list, for operators that need a list where TensorFlow has a scalar.
-pub fn as_list(ctx: &mut Lowering, wire: &Value) -> Result<Value> {
+pub fn as_list(ctx: &mut Lowering, wire: &GraphTensor) -> Result<GraphTensor> {
     let dims = vec![wire.element_count()];
-    ctx.graph.add(&wire.hint(), Operator::new("Reshape"), &[wire, &Value::ints([-1])], ElementType::Int, dims)
+    ctx.graph.add(
+        &wire.hint(),
+        Operator::new("Reshape"),
+        &[wire, &GraphTensor::ints([-1])],
+        ElementType::Int,
+        dims,
+    )
 }

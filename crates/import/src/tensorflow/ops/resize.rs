@@ -6,7 +6,7 @@ use super::window::Axes;
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{ElementType, Operator, Value};
+use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let (x, size) = (call.input(0)?, call.input(1)?);
@@ -36,7 +36,7 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let image = ctx.ordered(x, &axes.order())?;
     let shape =
         ctx.graph.add(&image.hint(), Operator::new("Shape"), &[&image], ElementType::Int, vec![Some(4)])?;
-    let (zero, two, one) = (Value::ints([0]), Value::ints([2]), Value::ints([1]));
+    let (zero, two, one) = (GraphTensor::ints([0]), GraphTensor::ints([2]), GraphTensor::ints([1]));
     let slice = Operator::new("Slice");
     let outer = ctx.graph.add(
         &image.hint(),
@@ -48,7 +48,7 @@ pub fn resize(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     let concat = Operator::new("Concat").int("axis", 0);
     let sizes =
         ctx.graph.add(&image.hint(), concat, &[&outer, &size.wire], ElementType::Int, vec![Some(4)])?;
-    let inputs = [&image, &Value::absent(), &Value::absent(), &sizes];
+    let inputs = [&image, &GraphTensor::absent(), &GraphTensor::absent(), &sizes];
     Ok(vec![ctx.emit(call, operator, &inputs, ElementType::Float, &dims, axes.order())?])
 }
 

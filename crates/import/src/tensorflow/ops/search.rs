@@ -7,7 +7,7 @@ use super::reshape::as_list;
 use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Array, Dim, ElementType, GraphTensor, Operator};
 
 /// Returns the largest values of the last axis, and their positions.
 pub fn top_k(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -48,7 +48,7 @@ fn unflattened(ctx: &Lowering, x: &Value) -> Option<Value> {
 /// Returns the elements of `source` in stored order, in the shape of `x`.
 fn stored_flat(ctx: &mut Lowering, source: &Value, x: &Value) -> Result<Value> {
     let dims = x.wire.dims().to_vec();
-    let shape = Value::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
+    let shape = GraphTensor::ints(dims.iter().map(|dim| dim.map_or(-1, |dim| dim as i64)));
     let hint = source.wire.hint();
     Ok(Value::plain(ctx.graph.add(
         &hint,
@@ -89,7 +89,7 @@ fn runs(source: &Value) -> Option<Vec<Run>> {
 /// Converts positions in `source` flattened as stored to positions in `source` flattened in TensorFlow's order.
 fn logical_positions(ctx: &mut Lowering, call: &Call, positions: &Value, source: &Value) -> Result<Value> {
     let runs = runs(source).ok_or_else(|| Error::internal("a flattened tensor has an open size"))?;
-    let constant = |value: usize| Value::plain(Value::constant(Array::int(value as i64)));
+    let constant = |value: usize| Value::plain(GraphTensor::constant(Array::int(value as i64)));
     let mut total: Option<Value> = None;
     for (i, run) in runs.iter().enumerate() {
         let mut index = positions.clone();
@@ -146,10 +146,10 @@ pub fn non_max_suppression(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>
     }
     let (boxes, scores) = (call.input(0)?, call.input(1)?);
     let [boxes_plain, scores_plain] = [ctx.plain(boxes)?, ctx.plain(scores)?];
-    let mut unsqueeze = |wire: &Value, axes: &[i64]| {
+    let mut unsqueeze = |wire: &GraphTensor, axes: &[i64]| {
         let dims: Vec<Dim> =
             vec![Some(1); axes.len()].into_iter().chain(wire.dims().iter().copied()).collect();
-        let axes = Value::ints(axes.iter().copied());
+        let axes = GraphTensor::ints(axes.iter().copied());
         ctx.graph.add(call.name(), Operator::new("Unsqueeze"), &[wire, &axes], wire.kind(), dims)
     };
     let (batch_boxes, batch_scores) = (unsqueeze(&boxes_plain, &[0])?, unsqueeze(&scores_plain, &[0, 1])?);
@@ -159,7 +159,7 @@ pub fn non_max_suppression(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>
     let operator = Operator::new("NonMaxSuppression");
     let found = ctx.graph.add(call.name(), operator, &inputs, ElementType::Int, vec![None, Some(3)])?;
     // Rows are (batch, class, box).
-    let last = Value::constant(Array::int(2));
+    let last = GraphTensor::constant(Array::int(2));
     let boxes = ctx.emit_plain(
         call,
         Operator::new("Gather").int("axis", 1),

@@ -5,7 +5,7 @@ use opendr_engine::{Error, Result};
 use crate::tensorflow::call::Call;
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Data, Dim, ElementType, Operator, Value};
+use opendr_onnx::{Array, Data, Dim, ElementType, GraphTensor, Operator};
 
 /// Returns TensorFlow's dimensions as integers; known ones stay known in later arithmetic.
 pub fn shape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -15,7 +15,7 @@ pub fn shape(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     if x.order.is_plain() {
         return Ok(vec![stored]);
     }
-    let positions = Value::ints((0..x.rank()).map(|axis| x.order.stored(axis) as i64));
+    let positions = GraphTensor::ints((0..x.rank()).map(|axis| x.order.stored(axis) as i64));
     let gather = Operator::new("Gather").int("axis", 0);
     Ok(vec![ctx.emit_plain(call, gather, &[&stored.wire, &positions], ElementType::Int, &rank)?])
 }
@@ -26,7 +26,7 @@ pub fn size(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 pub fn rank(_: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
-    Ok(vec![Value::plain(Value::constant(Array::int(call.input(0)?.rank() as i64)))])
+    Ok(vec![Value::plain(GraphTensor::constant(Array::int(call.input(0)?.rank() as i64)))])
 }
 
 pub fn fill(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
@@ -35,7 +35,7 @@ pub fn fill(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
 }
 
 /// Returns a scalar repeated over a shape.
-pub fn fill_shape(ctx: &mut Lowering, call: &Call, scalar: &Value, shape: &Value) -> Result<Value> {
+pub fn fill_shape(ctx: &mut Lowering, call: &Call, scalar: &GraphTensor, shape: &Value) -> Result<Value> {
     let dims = shape_dims(shape)?;
     ctx.emit_plain(call, Operator::new("Expand"), &[scalar, &shape.wire], scalar.kind(), &dims)
 }
@@ -58,7 +58,7 @@ pub fn range(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
     for index in 0..3 {
         limits.push(ctx.cast(&call.input(index)?.wire, kind)?);
     }
-    let inputs: Vec<&Value> = limits.iter().collect();
+    let inputs: Vec<&GraphTensor> = limits.iter().collect();
     let value = ctx.emit_plain(call, Operator::new("Range"), &inputs, kind, &[None])?;
     // If it was evaluated, the length is known.
     Ok(vec![Value::plain(value.wire)])
@@ -76,7 +76,7 @@ pub fn filled_like(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {
         }
     };
     let shape = shape(ctx, call)?.remove(0);
-    Ok(vec![fill_shape(ctx, call, &Value::constant(scalar), &shape)?])
+    Ok(vec![fill_shape(ctx, call, &GraphTensor::constant(scalar), &shape)?])
 }
 
 pub fn broadcast_to(ctx: &mut Lowering, call: &Call) -> Result<Vec<Value>> {

@@ -6,7 +6,7 @@ use super::reshape::expanded;
 use crate::tensorflow::call::{Call, axis_in};
 use crate::tensorflow::lowering::Lowering;
 use crate::tensorflow::value::Value;
-use opendr_onnx::{Array, Dim, ElementType, Operator, Value, slice_range};
+use opendr_onnx::{Array, Dim, ElementType, GraphTensor, Operator, slice_range};
 
 /// Maximum number of parts, above that of real models.
 const MAX_PARTS: usize = 4096;
@@ -45,8 +45,8 @@ fn cut(ctx: &mut Lowering, call: &Call, x: &Value, ranges: &[Range]) -> Result<V
     if kept.is_empty() {
         return Ok(x.clone());
     }
-    let list = |f: fn(&Range) -> i64| Value::ints(kept.iter().map(f));
-    let axes = Value::ints(kept.iter().map(|range| x.order.stored(range.axis) as i64));
+    let list = |f: fn(&Range) -> i64| GraphTensor::ints(kept.iter().map(f));
+    let axes = GraphTensor::ints(kept.iter().map(|range| x.order.stored(range.axis) as i64));
     let inputs =
         [&x.wire, &list(|range| range.start), &list(|range| range.end), &axes, &list(|range| range.step)];
     ctx.emit(call, Operator::new("Slice"), &inputs, x.kind(), &dims, x.order.clone())
@@ -62,10 +62,10 @@ fn pick(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize, index: i64) -> 
     let order = x.order.without(&[axis]);
     let stored = x.order.stored(axis) as i64;
     if size == Some(1) {
-        let inputs = [&x.wire, &Value::ints([stored])];
+        let inputs = [&x.wire, &GraphTensor::ints([stored])];
         return ctx.emit(call, Operator::new("Squeeze"), &inputs, x.kind(), &dims, order);
     }
-    let index = Value::constant(Array::int(index));
+    let index = GraphTensor::constant(Array::int(index));
     ctx.emit(call, Operator::new("Gather").int("axis", stored), &[&x.wire, &index], x.kind(), &dims, order)
 }
 
@@ -206,7 +206,7 @@ fn parts(ctx: &mut Lowering, call: &Call, x: &Value, axis: usize, sizes: &[usize
     });
     let outputs: Vec<(ElementType, Vec<Dim>)> = outputs.collect();
     let operator = Operator::new("Split").int("axis", x.order.stored(axis) as i64);
-    let lengths = Value::ints(sizes.iter().map(|&size| size as i64));
+    let lengths = GraphTensor::ints(sizes.iter().map(|&size| size as i64));
     let wires = ctx.graph.add_many(call.name(), operator, &[&x.wire, &lengths], outputs)?;
     Ok(wires.into_iter().map(|wire| Value::new(wire, x.order.clone())).collect())
 }

@@ -50,7 +50,7 @@ impl RangeImage {
         }
     }
 
-    /// Returns the point of each pixel, row-major from the upper left; [`NOWHERE`] where there is none.
+    /// Returns the point of each pixel, row-major from the upper left; [`NONE`] where there is none.
     pub fn points(&self) -> &[u32] {
         &self.points
     }
@@ -60,7 +60,7 @@ impl RangeImage {
         &self.ranges
     }
 
-    /// Returns the pixel of each point; [`NOWHERE`] outside of the view.
+    /// Returns the pixel of each point; [`NONE`] outside of the view.
     pub fn pixels(&self) -> &[u32] {
         &self.pixels
     }

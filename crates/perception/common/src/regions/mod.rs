@@ -1,7 +1,7 @@
 //! Regions of interest of a large image for a second pass.
 //!
 //! A first pass marks cells of a [`CellGrid`]; connected cells become a [`Region`]. Regions are grown by a margin, merged
-//! where they overlap, and divided into tiles where they are larger than the second pass can magnify. A [`CoarsePicture`]
+//! where they overlap, and divided into tiles where they are larger than the second pass can magnify. A [`CellBrightness`]
 //! has the brightness per cell, which shows detail and motion.
 
 mod cell_grid;

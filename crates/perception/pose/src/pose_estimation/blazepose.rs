@@ -25,8 +25,8 @@ pub struct BlazePoseParams {
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub keypoint_threshold: f32,
     /// Number of passes for a person who is not tracked yet; each pass starts from the square of the previous one.
-    #[param(default = 2, range = 1..=4, live)]
-    pub looks: usize,
+    #[param(default = 2, range = 1..=4, live, alias = "looks")]
+    pub passes: usize,
     /// Whether the person is tracked from frame to frame; switch it off for single images.
     #[param(default = true, live)]
     pub track: bool,
@@ -100,7 +100,7 @@ impl Learner for BlazePose {
         let known = state.square.take().filter(|_| self.params.track && state.size == size);
         state.size = size;
         poses.poses.resize_with(1, Pose::default);
-        let looks = if known.is_some() { 1 } else { self.params.looks };
+        let looks = if known.is_some() { 1 } else { self.params.passes };
         let mut square = Some(known.unwrap_or_else(|| whole(size)));
         for _ in 0..looks {
             let Some(at) = square.filter(|square| square.is_in(size)) else { break };

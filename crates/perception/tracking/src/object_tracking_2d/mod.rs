@@ -3,7 +3,7 @@
 //! [`Sort`], [`ByteTrack`] and [`OcSort`] take the detections of any detector; their predictions are the detector's own
 //! boxes with the identities of the objects, from 1. Time is counted in frames. With the frames as optional inputs, the
 //! motion of the camera is compensated. Boxes that are not finite or have no area are dropped, and of more than
-//! [`MOST_BOXES`](crate::tracking::MOST_BOXES) those with the highest scores are kept. [`DeepSort`] also uses the
+//! [`MAX_BOXES`](crate::tracking::MAX_BOXES) those with the highest scores are kept. [`DeepSort`] also uses the
 //! appearance in the boxes, and [`FairMot`] contains its detector. [`NanoTrack`] tracks one object of any class, from a box
 //! in the first frame.
 

@@ -17,7 +17,7 @@ pub struct ValidBox {
 }
 
 /// Fills `sound` with the boxes of a list that have at least the score `threshold`, are finite and have an area, in the
-/// order of the list; of more than [`MOST_BOXES`], those with the highest scores.
+/// order of the list; of more than [`MAX_BOXES`], those with the highest scores.
 pub fn valid_boxes(list: &BoundingBoxList, threshold: f64, sound: &mut Vec<ValidBox>) {
     sound.clear();
     sound.extend(list.boxes.iter().enumerate().filter_map(|(index, found)| {

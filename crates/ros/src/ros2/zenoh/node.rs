@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::{Error, Result};
-use opendr_messages::{Message, MessageType, StdSrvsTrigger, Wire};
+use opendr_messages::{Message, MessageType, StdSrvsTrigger, WireFormat};
 use twox_hash::XxHash3_128;
 use zenoh::Wait;
 use zenoh::liveliness::LivelinessToken;
@@ -17,7 +17,7 @@ use super::keys::{KeyType, Kind, Owner, data_key};
 use super::listeners::Listeners;
 use super::publisher::ZenohPublisher;
 use crate::clock::{self, NO_SIM_TIME};
-use crate::graph::{Clock, Deliver, Graph, Log, Publisher, Qos, Trigger, answer_to};
+use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
 use crate::ros2::typed_services::TypedServices as _;
 use crate::ros2::{Ros2Node, lifecycle, log, network_error, parameter_services};
 use crate::{Names, ParameterTable, Severity};
@@ -129,7 +129,7 @@ impl Graph for ZenohNode {
         topic: &str,
         message_type: MessageType,
         qos: Qos,
-        deliver: Deliver,
+        deliver: MessageCallback,
     ) -> Result<()> {
         let topic = self.names.resolve(topic)?;
         let of = KeyType::from(message_type);
@@ -138,7 +138,7 @@ impl Graph for ZenohNode {
             .session
             .declare_subscriber(data_key(self.domain_id, &topic, &of))
             .callback(move |sample| {
-                let read = Message::from_bytes(message_type, Wire::Cdr, &sample.payload().to_bytes());
+                let read = Message::from_bytes(message_type, WireFormat::Cdr, &sample.payload().to_bytes());
                 let message = read.map_err(|error: Error| error.context(name.clone()));
                 deliver.lock().unwrap_or_else(PoisonError::into_inner)(message);
             })
@@ -148,7 +148,7 @@ impl Graph for ZenohNode {
         self.announce(Kind::Subscription, &topic, &of, qos).map(drop)
     }
 
-    fn serve(&mut self, service: &str, mut trigger: Trigger) -> Result<()> {
+    fn serve(&mut self, service: &str, mut trigger: TriggerHandler) -> Result<()> {
         self.serve_typed::<StdSrvsTrigger>(service, move |_| answer_to(&mut trigger))
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
 use opendr_engine::Result;
-use opendr_messages::{Message, Wire};
+use opendr_messages::{Message, WireFormat};
 use zenoh::Wait;
 
 use super::attachment::Attachment;
@@ -30,7 +30,7 @@ impl Publisher for ZenohPublisher {
             source_gid: self.gid,
         };
         self.publisher
-            .put(message.to_bytes(Wire::Cdr)?)
+            .put(message.to_bytes(WireFormat::Cdr)?)
             .attachment(attachment.to_bytes())
             .wait()
             .map_err(|error| network_error("sending", &error))

@@ -24,7 +24,8 @@ pub struct GemFitParams {
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
     /// How images are resized to that side.
-    pub fitting: Resizing,
+    #[param(alias = "fitting")]
+    pub resizing: Resizing,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
     /// Stride of the finest level, 8 or 16.
@@ -72,7 +73,7 @@ impl Fit for Gem {
         let dataset = open_for_training::<Self>(dataset, job)?;
         let options = LayoutOptions {
             img_size: fit_params.img_size,
-            fitting: fit_params.fitting,
+            fitting: fit_params.resizing,
             stride: fit_params.stride,
             anchor_scales: &fit_params.anchor_scales,
             aspect_ratios: &fit_params.aspect_ratios,

@@ -35,7 +35,7 @@ impl<'a> Candidates<'a> {
     /// recoloured at random.
     ///
     /// # Errors
-    /// As [`open_picture_learner`].
+    /// As [`open_image_learner`].
     pub fn new(
         dataset: &'a dyn DatasetIterator,
         detector: &str,

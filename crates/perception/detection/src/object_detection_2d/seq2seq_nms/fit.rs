@@ -47,8 +47,8 @@ pub struct Seq2SeqNmsFitParams {
     /// detector.
     pub detector: Option<String>,
     /// Number of versions of each image, with a detector; all but the first are flipped, cropped and recoloured at random.
-    #[param(default = 1, range = 1..=1000)]
-    pub versions: usize,
+    #[param(default = 1, range = 1..=1000, alias = "versions")]
+    pub augmented_versions: usize,
 }
 
 impl Fit for Seq2SeqNms {
@@ -74,7 +74,7 @@ impl Fit for Seq2SeqNms {
             |dataset, versions| Candidates::new(dataset, detector, versions, seed, Device::Cpu);
         let val_dataset = val_dataset.as_deref().map(|dataset| with_detections(dataset, 1)).transpose()?;
         let val_dataset = val_dataset.as_ref().map(|dataset| dataset as &dyn DatasetIterator);
-        training.run(&with_detections(&*dataset, fit_params.versions)?, val_dataset)
+        training.run(&with_detections(&*dataset, fit_params.augmented_versions)?, val_dataset)
     }
 }
 

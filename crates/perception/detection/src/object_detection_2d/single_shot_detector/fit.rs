@@ -54,7 +54,8 @@ pub struct SingleShotDetectorFitParams {
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
     /// How an image is resized to that side.
-    pub fitting: Resizing,
+    #[param(alias = "fitting")]
+    pub resizing: Resizing,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
     /// Stride of the finest level, 8 or 16. The coarser one suits larger objects and is faster.
@@ -72,8 +73,8 @@ pub struct SingleShotDetectorFitParams {
     #[param(default = 0, range = 0..=14)]
     pub freeze: usize,
     /// Score below which boxes, such as those of a teacher, are neither object nor background.
-    #[param(default = 0.5, range = 0.0..=1.0)]
-    pub least_score: f32,
+    #[param(default = 0.5, range = 0.0..=1.0, alias = "least_score")]
+    pub min_score: f32,
     /// Whether images are augmented at random: mosaic, crop, expansion, flip, colour.
     #[param(default = true)]
     pub augment: bool,
@@ -128,7 +129,7 @@ impl SingleShotDetectorFitParams {
     fn objective(&self, base: Option<&Model>, dataset: &dyn DatasetIterator) -> Result<DetectionObjective> {
         let options = LayoutOptions {
             img_size: self.img_size,
-            fitting: self.fitting,
+            fitting: self.resizing,
             stride: self.stride,
             anchor_scales: &self.anchor_scales,
             aspect_ratios: &self.aspect_ratios,
@@ -137,7 +138,7 @@ impl SingleShotDetectorFitParams {
             layout: options.layout(base)?,
             classes: selected_classes(&self.classes, &dataset.classes())?,
             matching: Matching::default(),
-            min_score: self.least_score,
+            min_score: self.min_score,
             augment: self.augment,
             frozen: None,
         })

@@ -29,7 +29,7 @@ use opendr_inference::TensorView;
 use opendr_perception_common::image_network::ImageNetwork;
 use opendr_vision::{InputGeometry, LetterboxAlign, Preprocess};
 
-use crate::pose_estimation::part_affinity::{Grid, PartAffinity, PartMaps, Person, Scratch};
+use crate::pose_estimation::part_affinity::{DecodeScratch, Grid, PartAffinity, PartMaps, Person};
 use crate::pose_estimation::pose_tracks::PoseTracks;
 
 /// Parameters of [`LightweightOpenPose`].
@@ -67,7 +67,7 @@ pub struct LightweightOpenPose {
 
 #[derive(Default)]
 struct Scratch {
-    memory: Scratch,
+    decoding: DecodeScratch,
     persons: Vec<Person>,
 }
 
@@ -169,7 +169,7 @@ impl LightweightOpenPose {
         poses: &mut Vec<Pose>,
         mut sink: impl FnMut(&PartMaps<'_>),
     ) -> Result<()> {
-        let Scratch { memory, persons } = &mut *self.scratch.take();
+        let Scratch { decoding, persons } = &mut *self.scratch.take();
         let LightweightOpenPoseParams { keypoint_threshold, upsample_ratio, threshold, .. } = *params;
         let how =
             PartAffinity { peak_threshold: keypoint_threshold, upsample_ratio, ..PartAffinity::default() };
@@ -177,7 +177,7 @@ impl LightweightOpenPose {
         self.network.run_sized(view, size, |outputs, geometry| {
             let maps = self.maps(outputs)?;
             sink(&maps);
-            how.decode(&maps, memory, persons);
+            how.decode(&maps, decoding, persons);
             let sure = persons.iter().filter(|person| person.score >= threshold);
             poses.extend(sure.map(|person| pose_in_image(person, geometry)));
             Ok(())

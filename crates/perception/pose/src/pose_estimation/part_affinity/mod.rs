@@ -10,7 +10,7 @@
 //! 3. Persons grow from candidates, highest score first. A candidate that would give a person a second joint of a kind is
 //!    skipped. This is the greedy matching of each limb (Cao et al., section 2.4) and the assembly of limbs in one pass.
 //!
-//! [`Painter`] encodes the target maps of a training. Joints and their order are OpenDR's
+//! [`MapEncoder`] encodes the target maps of a training. Joints and their order are OpenDR's
 //! ([`Skeleton::Opendr18`](opendr_engine::target::Skeleton)).
 
 mod limbs;
@@ -78,7 +78,7 @@ impl Default for PartAffinity {
 
 /// Work memory of [`PartAffinity::decode`].
 #[derive(Debug, Clone, Default)]
-pub struct Scratch {
+pub struct DecodeScratch {
     peaks: Vec<Peak>,
     candidates: Vec<Candidate>,
     growing: Growing,
@@ -91,8 +91,8 @@ impl PartAffinity {
     /// Fills `persons`, highest score first. Nothing is allocated once `memory` and `persons` are large enough.
     ///
     /// At most 64 peaks per joint are used, the highest. NaN and infinite values have no peaks and no limbs.
-    pub fn decode(&self, maps: &PartMaps<'_>, memory: &mut Scratch, persons: &mut Vec<Person>) {
-        let Scratch { peaks, candidates, growing } = memory;
+    pub fn decode(&self, maps: &PartMaps<'_>, memory: &mut DecodeScratch, persons: &mut Vec<Person>) {
+        let DecodeScratch { peaks, candidates, growing } = memory;
         let ends = peaks::find(self, maps, peaks);
         limbs::find(self, maps, peaks, &ends, candidates);
         growing.grow(peaks, candidates);

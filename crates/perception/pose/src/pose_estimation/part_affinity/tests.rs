@@ -49,7 +49,7 @@ fn painted(persons: &[[Keypoint; JOINTS]]) -> [Vec<f32>; 2] {
 fn decoded(how: &PartAffinity, [heat, fields]: &[Vec<f32>; 2]) -> Vec<Person> {
     let mut persons = Vec::new();
     let maps = PartMaps::new(GRID, heat, fields).unwrap();
-    how.decode(&maps, &mut Scratch::default(), &mut persons);
+    how.decode(&maps, &mut DecodeScratch::default(), &mut persons);
     persons
 }
 
@@ -188,7 +188,7 @@ fn persons_far_outside_are_painted_nowhere() {
 fn memory_is_reused() {
     let maps = painted(&[body([60.0, 20.0], 200.0), body([250.0, 20.0], 200.0)]);
     let maps = PartMaps::new(GRID, &maps[0], &maps[1]).unwrap();
-    let (mut memory, mut persons) = (Scratch::default(), Vec::new());
+    let (mut memory, mut persons) = (DecodeScratch::default(), Vec::new());
     let how = PartAffinity::default();
     how.decode(&maps, &mut memory, &mut persons);
     let before = (persons.as_ptr(), persons.clone());

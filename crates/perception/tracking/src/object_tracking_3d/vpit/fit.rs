@@ -21,11 +21,11 @@ pub struct VpitFitParams {
     #[param(default = 0.2, range = 0.02..=5.0, unit = "m")]
     pub pillar: f32,
     /// Maximum number of steps between the two scans of a pair.
-    #[param(default = 5, range = 1..=1000)]
-    pub apart: usize,
+    #[param(default = 5, range = 1..=1000, alias = "apart")]
+    pub max_frame_gap: usize,
     /// Maximum number of objects per scan in a batch.
-    #[param(default = 4, range = 1..=1000)]
-    pub objects: usize,
+    #[param(default = 4, range = 1..=1000, alias = "objects")]
+    pub max_objects: usize,
     /// Whether views are shifted and rotated at random relative to their objects.
     #[param(default = true)]
     pub augment: bool,
@@ -72,11 +72,11 @@ impl Fit for Vpit {
         let objective = VpitObjective {
             layout,
             context: f64::from(params.context_amount),
-            objects: fit_params.objects,
+            objects: fit_params.max_objects,
             augment: fit_params.augment,
         };
         let network = network_from_base(VpitNetwork::new(&seeded_device(job, training)?), base)?;
-        let pairs = Pairs { dataset: &*dataset, apart: fit_params.apart, seed: training.seed };
+        let pairs = Pairs { dataset: &*dataset, apart: fit_params.max_frame_gap, seed: training.seed };
         fit_learner::<Self, _>(&objective, network, params, training, &pairs, None, job)
     }
 }

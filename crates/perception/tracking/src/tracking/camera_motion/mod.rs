@@ -44,7 +44,7 @@ impl CameraMotion {
     /// Returns the motion from the last frame to `image`. `objects` are boxes of moving objects in `image`, in pixels;
     /// corners in them are not tracked to the next frame.
     ///
-    /// The result is [`PlaneMotion::NONE`] for the first frame, after a change of the image size, and when too few corners
+    /// The result is [`SimilarityMotion::NONE`] for the first frame, after a change of the image size, and when too few corners
     /// agree.
     ///
     /// # Errors

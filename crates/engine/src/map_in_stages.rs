@@ -24,7 +24,7 @@ const AHEAD: usize = 2;
 /// ```
 /// let mut lines = Vec::new();
 /// let items = (1..=3).map(|n| n.to_string());
-/// opendr_engine::assembly_line(&mut ["a", "b"], items, |stage, item| item.push_str(stage), |item| {
+/// opendr_engine::map_in_stages(&mut ["a", "b"], items, |stage, item| item.push_str(stage), |item| {
 ///     lines.push(item);
 ///     Ok::<_, ()>(())
 /// })

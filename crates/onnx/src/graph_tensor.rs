@@ -9,14 +9,14 @@ pub type Dim = Option<usize>;
 
 /// A tensor of a graph under construction: name, element type, dimensions, and elements as far as they are known.
 #[derive(Debug, Clone)]
-pub struct Value {
+pub struct GraphTensor {
     pub(super) name: Rc<str>,
     kind: ElementType,
     dims: Vec<Dim>,
     known: Option<Rc<Array>>,
 }
 
-impl Value {
+impl GraphTensor {
     pub(super) fn new(name: &str, kind: ElementType, dims: Vec<Dim>, known: Option<Array>) -> Self {
         Self { name: name.into(), kind, dims, known: known.map(Rc::new) }
     }
