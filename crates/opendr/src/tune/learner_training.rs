@@ -34,7 +34,7 @@ impl<'a> LearnerTraining<'a> {
     /// Creates a training that has not begun, with a folder of its own below `work`.
     ///
     /// # Errors
-    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::RecordingWriter`], which trains nothing.
+    /// `InvalidParam` for wrong parameters, `Unsupported` for [`TuneData::Inference`], which trains nothing.
     pub fn new(
         entry: &'static Entry,
         data: TuneData<'a>,
