@@ -31,9 +31,9 @@ impl Bag {
     ///
     /// # Errors
     ///
-    /// [`NotFound`](opendr_engine::ErrorElementType::NotFound) if the path does not exist,
-    /// [`Format`](opendr_engine::ErrorElementType::Format) if it is not a recording or too damaged to read anything, and
-    /// [`Unsupported`](opendr_engine::ErrorElementType::Unsupported) for encryption, older formats and unknown
+    /// [`NotFound`](opendr_engine::ErrorKind::NotFound) if the path does not exist,
+    /// [`Format`](opendr_engine::ErrorKind::Format) if it is not a recording or too damaged to read anything, and
+    /// [`Unsupported`](opendr_engine::ErrorKind::Unsupported) for encryption, older formats and unknown
     /// compression.
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
@@ -115,7 +115,7 @@ impl Bag {
     ///
     /// # Errors
     ///
-    /// [`Io`](opendr_engine::ErrorElementType::Io) if the file cannot be opened again.
+    /// [`Io`](opendr_engine::ErrorKind::Io) if the file cannot be opened again.
     pub fn messages(&self) -> Result<Messages> {
         self.select(&Selection::default())
     }

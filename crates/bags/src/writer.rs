@@ -54,9 +54,9 @@ impl BagWriter {
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`](opendr_engine::ErrorElementType::InvalidInput) if the path exists and may not be overwritten,
-    /// [`InvalidParam`](opendr_engine::ErrorElementType::InvalidParam) for a compression that the format does not support,
-    /// and [`Io`](opendr_engine::ErrorElementType::Io) if it cannot be written.
+    /// [`InvalidInput`](opendr_engine::ErrorKind::InvalidInput) if the path exists and may not be overwritten,
+    /// [`InvalidParam`](opendr_engine::ErrorKind::InvalidParam) for a compression that the format does not support,
+    /// and [`Io`](opendr_engine::ErrorKind::Io) if it cannot be written.
     pub fn create(path: impl AsRef<Path>, options: impl Into<WriteOptions>) -> Result<Self> {
         let (path, options) = (path.as_ref(), options.into());
         let storage = start(path, &options).context(|| format!("writing {}", path.display()))?;
@@ -67,7 +67,7 @@ impl BagWriter {
     ///
     /// # Errors
     ///
-    /// [`Unsupported`](opendr_engine::ErrorElementType::Unsupported) if the format does not support the encoding: rosbag 1
+    /// [`Unsupported`](opendr_engine::ErrorKind::Unsupported) if the format does not support the encoding: rosbag 1
     /// supports ROS 1's, rosbag 2 CDR, MCAP both.
     pub fn add_channel(&mut self, channel: Channel) -> Result<usize> {
         let is_kept = match channel.encoding {
@@ -96,9 +96,9 @@ impl BagWriter {
     ///
     /// # Errors
     ///
-    /// [`InvalidInput`](opendr_engine::ErrorElementType::InvalidInput) for an unknown channel, a message of more than 1
+    /// [`InvalidInput`](opendr_engine::ErrorKind::InvalidInput) for an unknown channel, a message of more than 1
     /// GiB and a time that the format does not support (before 1970; rosbag 1: 0 and after 2106), and
-    /// [`Io`](opendr_engine::ErrorElementType::Io) if the disk is full.
+    /// [`Io`](opendr_engine::ErrorKind::Io) if the disk is full.
     pub fn write(&mut self, channel: usize, log_time_ns: i64, bytes: &[u8]) -> Result<()> {
         self.write_published(channel, log_time_ns, log_time_ns, bytes)
     }
@@ -139,7 +139,7 @@ impl BagWriter {
     ///
     /// # Errors
     ///
-    /// [`Io`](opendr_engine::ErrorElementType::Io) if the disk is full.
+    /// [`Io`](opendr_engine::ErrorKind::Io) if the disk is full.
     pub fn flush(&mut self) -> Result<()> {
         self.with_storage(|storage| storage.flush())
     }

@@ -77,7 +77,7 @@ pub fn recognise(path: &Path) -> Result<&'static FormatEntry> {
 /// Returns the format of a data set: the named one or, for `""` and `"auto"`, the recognised one.
 ///
 /// # Errors
-/// As [`find`] and [`recognise`].
+/// As [`find_format`] and [`recognise`].
 pub fn format_of(dataset: &ExternalDataset) -> Result<&'static FormatEntry> {
     match dataset.dataset_type() {
         "" | "auto" => recognise(dataset.path()),

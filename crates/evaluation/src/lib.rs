@@ -1,8 +1,8 @@
 //! Evaluation of any learner on any data set, with the metric of its task.
 //!
 //! An [`Evaluation`] predicts the samples of a data set, writes every prediction to a journal from which it resumes, matches classes by
-//! name ([`ClassMap`]) and ends in an [`Transition`]: numbers with a confidence interval, tables, figures, and the samples with the lowest
-//! scores. [`RecordingWriter`] are predictions read from files instead of a learner, and [`score_coco_results`] evaluates files of COCO
+//! name ([`ClassMap`]) and ends in an [`Outcome`]: numbers with a confidence interval, tables, figures, and the samples with the lowest
+//! scores. [`FilePredictions`] are predictions read from files instead of a learner, and [`score_coco_results`] evaluates files of COCO
 //! results. A [`Teacher`] annotates samples for the training of another learner.
 //!
 //! Nothing here depends on a single learner or format: metrics are in `opendr-metrics`, data sets in `opendr-datasets`, learners in

@@ -2,7 +2,7 @@
 //!
 //! Contents:
 //! * [`model_from_bytes`] and [`bytes_from_model`]: ONNX files; [`proto`] has the messages of the format.
-//! * [`Builder`]: construction of a graph from [`Operator`]s and [`WireFormat`]s, with constant folding. Begin here to
+//! * [`Builder`]: construction of a graph from [`Operator`]s and [`GraphTensor`]s, with constant folding. Begin here to
 //!   write one.
 //! * [`passes`]: graph rewriting, such as [`passes::simplify`].
 //! * [`Array`]: tensors with known elements.

@@ -2,12 +2,12 @@
 //!
 //! The crate holds no learner. Its modules, by purpose:
 //!
-//! * Inputs: [`image_network`] (a session with fused pre-processing of one image), [`preprocess_from_manifest`] (pre-processing from
+//! * Inputs: [`image_network`] (a session with fused pre-processing of one image), [`manifest_preprocess`] (pre-processing from
 //!   a model's manifest), [`clip_frames`], [`frame_features`] (features of skeletons).
 //! * Outputs: [`category_scores`] (categories from logits), [`suppression`] (non-maximum suppression),
 //!   [`boxes_from_candidates`], [`part_tree`] (PersonLab's decoder of poses), [`joints`], [`rotated_square`].
 //! * Second passes over parts of a large image: [`regions`].
-//! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`with_dynamic_sides`],
+//! * Training, with the feature `training`: [`labelled`], [`trainable_weights`], [`frozen_layers`], [`dynamic_sides`],
 //!   [`small_backbone`] and [`small_classifier`].
 //!
 //! Data and target types are in `opendr-engine`, sessions in `opendr-inference`, image pre-processing in `opendr-vision`, the

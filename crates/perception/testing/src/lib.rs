@@ -1,7 +1,7 @@
 //! Shared test code of the perception learners.
 //!
 //! The crate has real models and data for tests ([`test_models`]), the check that a learner overfits one batch
-//! ([`overfit`]), and the checks of the learner's contract ([`promises`]). It is a dev-dependency of the families only; no
+//! ([`overfit`]), and the checks of the learner's contract ([`learner_checks`]). It is a dev-dependency of the families only; no
 //! program contains it. Begin with [`test_models::test_data`].
 #![allow(clippy::unwrap_used)]
 

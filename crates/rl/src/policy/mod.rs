@@ -144,7 +144,7 @@ impl Policy {
             && self.encoder.normaliser.is_some() == other.encoder.normaliser.is_some()
     }
 
-    /// Returns whether the policy is recurrent. Its memory must be [`reset`](PolicyScratch::reset) at the start of an episode.
+    /// Returns whether the policy is recurrent. Its memory must be [`reset`](PolicyMemory::reset) at the start of an episode.
     pub fn is_recurrent(&self) -> bool {
         self.trunk.gru().is_some()
     }

@@ -20,7 +20,7 @@ use crate::sine_cosine::sine_cosine;
 /// It writes [`LEN`](Self::LEN) numbers: the free distance in each of [`WAYS`](Self::WAYS) directions, from left to right, as a
 /// fraction of 10 m; how much nearer the end of the map comes in each, at two distances; a proposed action; then detour, offset, sine
 /// and cosine of the yaw, progress, height to gain, and the last action. A policy need not find the way: its action is added to the
-/// proposal by [`corrected`](Self::corrected) (residual reinforcement learning; Silver et al., 2018, Johannink et al., 2019).
+/// proposal by [`corrected_action`](Self::corrected_action) (residual reinforcement learning; Silver et al., 2018, Johannink et al., 2019).
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightMemory {
     sight: CorridorObservation,

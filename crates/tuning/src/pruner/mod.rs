@@ -15,10 +15,10 @@ pub use median::Median;
 pub enum Advice {
     /// Continue the trial.
     Continue,
-    /// Save the state and return [`Transition::Paused`](crate::Transition::Paused). If the trial later turns out to
+    /// Save the state and return [`Outcome::Paused`](crate::Outcome::Paused). If the trial later turns out to
     /// be among the best, it is resumed from that state.
     Pause,
-    /// End the trial: return [`Transition::Pruned`](crate::Transition::Pruned).
+    /// End the trial: return [`Outcome::Pruned`](crate::Outcome::Pruned).
     Stop,
 }
 
