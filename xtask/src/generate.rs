@@ -2,7 +2,7 @@
 
 use crate::pages;
 use crate::shell::{Result, command, root, step, target};
-use crate::test::TEST_LEARNER;
+use crate::surfaces::TEST_LEARNER;
 use crate::wheel;
 
 /// Writes the table of the crates in README.md, the diagram of the layers in DESIGN.md, the ROS messages, the type stubs of Python,

@@ -20,6 +20,7 @@ mod rust_tests;
 mod shell;
 mod ship;
 mod speed;
+mod suite;
 mod surfaces;
 mod test;
 mod tools;

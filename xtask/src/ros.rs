@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use crate::shell::{Result, command, step, target};
-use crate::test::Suite;
+use crate::suite::Suite;
 use crate::tools::{Python, install_debian, requirements};
 use crate::{surfaces, wheel};
 

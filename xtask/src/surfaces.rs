@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use crate::shell::{Result, command, step, target};
-use crate::test::TEST_LEARNER;
+
+/// Feature of the test learner, which every build for tests has.
+pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
 
 /// The examples that tests start.
 pub const EXAMPLES: [&str; 22] = [

@@ -8,29 +8,16 @@ use std::sync::{Mutex, PoisonError};
 use crate::checks::{Checks, Output};
 use crate::inputs::{Tree, of_file};
 use crate::shell::{Result, command, output, root, step, target, task};
+use crate::suite::Suite;
+use crate::surfaces::TEST_LEARNER;
 use crate::tools::{self, Python, install_debian};
 use crate::{install_c, layers, parity, ros, rust_tests, surfaces, wheel, words};
-
-/// Feature of the test learner, which every build for tests has.
-pub const TEST_LEARNER: &str = "--features=opendr/test-learner";
 
 /// Features that need a GPU, and ROS 2 over Zenoh.
 const DEVICES: &str = "--features=opendr-training/cuda,opendr-training/wgpu,opendr-ros/zenoh";
 
 /// Number of Python suites that run in parallel: they mostly wait for programs, sockets and clocks.
 const LANES: usize = 2;
-
-/// A suite of tests in Python.
-pub struct Suite {
-    /// Name of the check.
-    pub name: &'static str,
-    /// Folders of the tests, and files that they share.
-    pub folders: &'static [&'static str],
-    /// The program with its arguments and environment, without the report.
-    pub command: Command,
-    /// Hash of its other inputs.
-    pub inputs: Vec<u64>,
-}
 
 /// Runs every check, or without `all` those whose inputs have changed since they passed. Fails if a check fails.
 pub fn run(all: bool) -> Result<()> {

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, command, root, step, target};
-use crate::test::TEST_LEARNER;
+use crate::surfaces::TEST_LEARNER;
 use crate::tools::Python;
 
 /// Purpose of a wheel.

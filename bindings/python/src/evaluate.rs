@@ -12,7 +12,7 @@ use crate::bar::PythonBar;
 use crate::dataset::{GivenDataset, type_of};
 use crate::datum::{python_from_value, value_from_python};
 use crate::error::{ToPython, error_from_exception};
-use crate::handle::json_of;
+use crate::report::json_of;
 
 /// Port names of positional inputs.
 const POSITIONS: [&str; 8] = ["0", "1", "2", "3", "4", "5", "6", "7"];

@@ -24,6 +24,7 @@ use crate::error::ToPython;
 use crate::evaluate::eval_options_from_json;
 use crate::param::{params_from_python, python_from_params};
 use crate::pixels::image_from_python;
+use crate::report::json_of;
 use crate::target::{Payload, payloads};
 use crate::{plugin, zoo};
 
@@ -274,12 +275,6 @@ impl Stream {
 fn options_from_json(json: &str) -> opendr::Result<FitOptions> {
     serde_json::from_str(json)
         .map_err(|error| Error::invalid_param("invalid options of fit").with_source(error))
-}
-
-/// Returns the JSON of a report.
-pub fn json_of(report: &impl serde::Serialize) -> opendr::Result<String> {
-    serde_json::to_string(report)
-        .map_err(|error| Error::internal("the report cannot be written as JSON").with_source(error))
 }
 
 /// Converts the argument `teacher` of `fit`.

@@ -24,6 +24,7 @@ mod param;
 mod pixels;
 mod plugin;
 mod registry;
+mod report;
 #[cfg(feature = "ros")]
 mod ros_bridge;
 mod source;

@@ -8,7 +8,6 @@ use opendr_engine::{Error, Result, Task};
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
-use crate::check::check_card;
 use crate::source::Source;
 
 /// One file `models/<learner>.toml`. `models/README.md` describes the format.
@@ -216,23 +215,6 @@ fn model_onnx() -> String {
 }
 
 impl Card {
-    /// Parses a card and validates its names, paths, addresses, sizes and default variant.
-    ///
-    /// # Errors
-    /// `Format` for an invalid card, `Integrity` when a name in it could leave its folder.
-    pub fn from_toml(text: &str) -> Result<Self> {
-        if text.len() > MAX_CARD_BYTES {
-            return Err(Error::format(format!(
-                "the card has {} bytes; at most {MAX_CARD_BYTES} are allowed",
-                text.len()
-            )));
-        }
-        let card: Self = toml::from_str(text)
-            .map_err(|error| Error::format("the card cannot be parsed").with_source(error))?;
-        check_card(&card).map_err(|error| error.context(format!("the card {:?}", card.learner)))?;
-        Ok(card)
-    }
-
     /// Returns the variant called `name`, or the default one.
     ///
     /// # Errors
@@ -263,5 +245,3 @@ impl Variant {
         self.files.iter().map(|file| file.size).sum()
     }
 }
-
-const MAX_CARD_BYTES: usize = 1 << 20;

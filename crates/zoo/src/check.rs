@@ -1,4 +1,4 @@
-//! Validation of cards.
+//! Parsing and validation of cards.
 
 use std::collections::HashSet;
 
@@ -12,7 +12,28 @@ use crate::source::{FilePlaces, Package, Source};
 /// Maximum size of a file or package, in bytes.
 const MAX_BYTES: u64 = 2 << 30;
 
-pub(crate) fn check_card(card: &Card) -> Result<()> {
+const MAX_CARD_BYTES: usize = 1 << 20;
+
+impl Card {
+    /// Parses a card and validates its names, paths, addresses, sizes and default variant.
+    ///
+    /// # Errors
+    /// `Format` for an invalid card, `Integrity` when a name in it could leave its folder.
+    pub fn from_toml(text: &str) -> Result<Self> {
+        if text.len() > MAX_CARD_BYTES {
+            return Err(Error::format(format!(
+                "the card has {} bytes; at most {MAX_CARD_BYTES} are allowed",
+                text.len()
+            )));
+        }
+        let card: Self = toml::from_str(text)
+            .map_err(|error| Error::format("the card cannot be parsed").with_source(error))?;
+        check_card(&card).map_err(|error| error.context(format!("the card {:?}", card.learner)))?;
+        Ok(card)
+    }
+}
+
+fn check_card(card: &Card) -> Result<()> {
     check_name("learner", &card.learner)?;
     ensure(card.kind == ItemKind::Sample || card.task.is_some(), || {
         "the card of a model must name its task".into()

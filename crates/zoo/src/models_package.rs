@@ -9,16 +9,7 @@ use opendr_engine::{Error, Result, ResultExt};
 
 use crate::card::CardFile;
 use crate::loaded_from::loaded_from;
-use crate::source::{FilePlaces, Package};
-
-/// Name of the package in the Python package index.
-pub(crate) const PACKAGE: &str = "opendr-rs-models";
-
-/// Folder of the weights in its wheel.
-const MEMBERS: &str = "opendr_rs_models/weights";
-
-/// Size of the wheel in bytes, for the progress bar.
-const WHEEL_BYTES: u64 = 12_900_000;
+use crate::source::{MEMBERS, PACKAGE};
 
 /// Folders in which the weights are searched.
 #[derive(Debug)]
@@ -72,18 +63,6 @@ impl ModelsPackage {
                  (models/weights of OpenDR's sources)"
             ),
         )
-    }
-}
-
-/// Returns the wheel of this version in the package index.
-pub(crate) fn published(files: &FilePlaces) -> Package {
-    Package {
-        package: PACKAGE.to_owned(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        size: WHEEL_BYTES,
-        python: None,
-        platform: None,
-        files: files.iter().map(|(name, place)| (name.clone(), format!("{MEMBERS}/{place}"))).collect(),
     }
 }
 

@@ -6,7 +6,14 @@ use std::fmt;
 
 use serde::Deserialize;
 
-use crate::models_package::{PACKAGE, published};
+/// Name of the data package with OpenDR's own weights in the Python package index.
+pub(crate) const PACKAGE: &str = "opendr-rs-models";
+
+/// Folder of the weights in its wheel.
+pub(crate) const MEMBERS: &str = "opendr_rs_models/weights";
+
+/// Size of the wheel in bytes, for the progress bar.
+const WHEEL_BYTES: u64 = 12_900_000;
 
 /// Place in the source for each file name of the card.
 pub type FilePlaces = BTreeMap<String, String>;
@@ -106,6 +113,18 @@ impl Source {
             Self::Npm(package) | Self::Pypi(package) => Some(package),
             _ => None,
         }
+    }
+}
+
+/// Returns the wheel of OpenDR's own weights of this version in the package index.
+fn published(files: &FilePlaces) -> Package {
+    Package {
+        package: PACKAGE.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        size: WHEEL_BYTES,
+        python: None,
+        platform: None,
+        files: files.iter().map(|(name, place)| (name.clone(), format!("{MEMBERS}/{place}"))).collect(),
     }
 }
 

@@ -1,22 +1,22 @@
 //! ROS 2, over DDS or Zenoh.
 
 mod dds;
+mod error;
 mod lifecycle;
 mod log;
 mod parameter_services;
+mod ros2_node;
 mod typed_services;
 #[cfg(feature = "zenoh")]
 mod zenoh;
 
-use std::fmt::Debug;
 use std::net::IpAddr;
 use std::str::FromStr;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
-use opendr_engine::{Error, ErrorKind, Result};
+use opendr_engine::{Error, Result};
 
-use crate::{Graph, Names};
+use crate::Names;
+pub use ros2_node::Ros2Node;
 
 /// Middleware of ROS 2.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,21 +64,6 @@ enum Joined {
     Dds(dds::Participant),
     #[cfg(feature = "zenoh")]
     Zenoh(zenoh::Session),
-}
-
-/// A ROS 2 node.
-pub trait Ros2Node: Graph {
-    /// Makes the node a lifecycle node, whose services set `active`; it is false until then. Call it before [`Ros2Node::start`].
-    ///
-    /// # Errors
-    /// `Io` when the network cannot be used.
-    fn manage(&mut self, active: Arc<AtomicBool>) -> Result<()>;
-
-    /// Starts the services; call it after all declarations.
-    ///
-    /// # Errors
-    /// `Io` when the network cannot be used.
-    fn start(&mut self) -> Result<()>;
 }
 
 impl Ros2 {
@@ -132,13 +117,10 @@ impl Ros2 {
     }
 }
 
-#[cold]
-fn network_error(what: &str, error: &dyn Debug) -> Error {
-    Error::new(ErrorKind::Io, format!("{what}: {error:?}; check the network"))
-}
-
 #[cfg(test)]
 mod tests {
+    use opendr_engine::ErrorKind;
+
     use super::*;
 
     #[test]

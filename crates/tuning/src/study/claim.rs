@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use opendr_engine::Result;
+use opendr_engine::{Error, Result};
 use serde_json::Value;
 
 use crate::Timestamp;
@@ -13,6 +13,15 @@ use crate::storage::{NewTrial, Notes, Operation, is_dead};
 use crate::study::{FIXED, Study, Trial, check_compatible, last_sign, outcome};
 
 impl Study {
+    /// Returns the next trial: a paused one to resume, one of the queue, or a new one.
+    ///
+    /// # Errors
+    /// `InvalidParam` when the space is incompatible with earlier trials; `Io` and `Format` of the storage.
+    pub fn ask(&self, space: &SearchSpace) -> Result<Trial<'_>> {
+        let trial = self.claim(space, |_| true)?;
+        trial.ok_or_else(|| Error::internal("the study returned no trial, though a new one was allowed"))
+    }
+
     /// Returns the next trial: an interrupted one, a paused one to resume, one of the queue, a new one if `may_begin`
     /// allows it, or the one to finish. Choice and parameters are written under the lock, so no two workers get
     /// the same trial, and each takes all others into account.
@@ -25,9 +34,8 @@ impl Study {
         self.write(|study| Ok(self.end_abandoned(study)))?;
         let mut claimed = None;
         self.storage().transact(|replay, _| {
-            let study = replay
-                .study(self.id)
-                .ok_or_else(|| opendr_engine::Error::not_found("the study has been deleted"))?;
+            let study =
+                replay.study(self.id).ok_or_else(|| Error::not_found("the study has been deleted"))?;
             let mut operations = Vec::new();
             let interrupted = study.trials.iter().find(|trial| trial.is_interrupted());
             let queued =

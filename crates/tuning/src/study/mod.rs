@@ -16,7 +16,6 @@ use serde_json::{Map, Value};
 use crate::pruner::{Advice, NoPruner, Pruner};
 use crate::records::{Direction, StudyRecord, TrialRecord, TrialState};
 use crate::sampler::{Sampler, Tpe};
-use crate::space::SearchSpace;
 use crate::storage::{NewTrial, Notes, Operation, Replay, Storage};
 use crate::{Distribution, Timestamp};
 
@@ -27,8 +26,6 @@ pub use trial::Trial;
 
 /// System attribute with the time of a running trial's last sign of life, in microseconds since 1970.
 const ALIVE: &str = "opendr:alive";
-/// System attribute with the reason of a failure.
-const REASON: &str = "fail_reason";
 /// Optuna's system attribute with the parameters of a queued trial.
 const FIXED: &str = "fixed_params";
 
@@ -108,15 +105,6 @@ impl Study {
     pub fn with_abandoned_after(mut self, time: Duration) -> Self {
         self.abandoned_after = Some(time);
         self
-    }
-
-    /// Returns the next trial: a paused one to resume, one of the queue, or a new one.
-    ///
-    /// # Errors
-    /// `InvalidParam` when the space is incompatible with earlier trials; `Io` and `Format` of the storage.
-    pub fn ask(&self, space: &SearchSpace) -> Result<Trial<'_>> {
-        let trial = self.claim(space, |_| true)?;
-        trial.ok_or_else(|| Error::internal("the study returned no trial, though a new one was allowed"))
     }
 
     /// Adds a trial with these parameters to the queue; missing ones are drawn when it starts.

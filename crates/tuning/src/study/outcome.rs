@@ -6,7 +6,9 @@ use serde_json::Value;
 use crate::Timestamp;
 use crate::records::{INTERRUPTED, PAUSED_STATE, StudyRecord, TrialRecord, TrialState};
 use crate::storage::{Notes, Operation};
-use crate::study::REASON;
+
+/// System attribute with the reason of a failure.
+const REASON: &str = "fail_reason";
 
 /// Outcome of a trial.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,7 +5,7 @@ use opendr_engine::ErrorKind;
 use serde_json::json;
 
 use super::*;
-use crate::{Asha, Median, RandomSearch};
+use crate::{Asha, Median, RandomSearch, SearchSpace};
 
 fn study() -> Study {
     Study::open(Storage::memory(), "s", &[Direction::Minimize]).unwrap().with_sampler(RandomSearch::new(5))

@@ -3,7 +3,7 @@
 use clap::ArgMatches;
 use opendr::{Error, Pipeline, Result};
 
-use super::{InferenceResult, Job, Stream, of_item};
+use super::job::{InferenceResult, Job, Stream, of_item};
 use crate::item::Next;
 use crate::timings::Timings;
 

@@ -1,25 +1,25 @@
 //! `opendr infer`: runs a learner on images, folders, videos, cameras, files of other input types, and recordings.
 
 mod chain;
+mod job;
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
+use opendr::learner::{AnyLearner, Outputs};
 use opendr::target::Classes;
 use opendr::{Error, ErrorKind, Pipeline, Progress, Result, Unit, ValueType, map_in_order};
 
 use crate::exit::Outcome;
 use crate::inputs::Inputs;
 use crate::item::{Datum, Item, Next};
-use crate::port_file::PortFile;
 use crate::progress_bar::{ProgressBar, interrupted};
 use crate::recordings::RecordingSink;
 use crate::report::{Json, Report};
 use crate::timings::Timings;
 use crate::writer::{Failures, Writer};
 use crate::{learner_flags, loading, recordings, then_flag};
+use job::{InferenceResult, Job, Stream, of_item};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -142,17 +142,6 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
     Ok(if report.finish()? == 0 { Outcome::Done } else { Outcome::SomeFailed })
 }
 
-/// Processing of the items.
-struct Job {
-    entry: &'static Entry,
-    port: &'static str,
-    further: Vec<PortFile>,
-    sequence: bool,
-}
-
-/// Video of the last processed frame; for an image sequence, its folder.
-type Stream = Option<Arc<Path>>;
-
 /// A learner with its stream.
 struct Worker {
     learner: Box<dyn AnyLearner>,
@@ -196,15 +185,6 @@ impl Out {
             Self::Recorded(sink) => sink.finish().err().map(|error| (None, error)).into_iter().collect(),
         }
     }
-}
-
-/// An item with its outputs (several for a chunk of a stream), or an error with its input.
-type InferenceResult = std::result::Result<(Item, Vec<Outputs>, Timings), (Option<PathBuf>, Error)>;
-
-/// Adds the file of `item` to an error.
-fn of_item(item: &Item, error: Error) -> (Option<PathBuf>, Error) {
-    let path = item.path();
-    (Some(path.to_path_buf()), error.context(path.display().to_string()))
 }
 
 impl Learners {
@@ -273,20 +253,6 @@ impl Job {
         }
     }
 
-    /// Returns the values of the ports for an item.
-    fn ports<'a>(&'a self, item: &'a Item, begins: bool) -> Result<Ports<'a>> {
-        let mut ports = Ports::default().with(self.port, item.value());
-        for (name, value) in &item.from_files {
-            if begins || !self.is_init(name) {
-                ports = ports.with(name, value);
-            }
-        }
-        for (name, value) in item.further() {
-            ports = ports.with(name, value);
-        }
-        Ok(ports)
-    }
-
     fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Vec<Outputs>, Timings)> {
         let ports = self.ports(item, begins)?;
         let is_chunk = self.entry.capabilities.streaming && item.recorded.is_some();
@@ -301,36 +267,5 @@ impl Job {
             }
             Ok(outputs)
         })
-    }
-
-    /// Updates `last` with the item's stream and returns whether a new stream begins. Each video and each recording is a stream, and
-    /// so is each other file unless `--sequence` is set; an init port in the middle of a recording begins a new stream too.
-    fn follow(&self, last: &mut Stream, item: &Item) -> bool {
-        let stream = match (item.is_of_stream(), self.sequence) {
-            (true, _) => Some(item.path().clone()),
-            (false, true) => item.path().parent().map(Arc::from),
-            (false, false) => None,
-        };
-        let is_begun = item.further().iter().any(|(name, _)| self.is_init(name));
-        let begins = is_begun || stream.is_none() || stream != *last;
-        *last = stream;
-        begins
-    }
-
-    /// Adds the values of the further ports' files to an item.
-    fn with_files(&self, mut item: Item) -> Next {
-        for file in &self.further {
-            match file.value(item.index()) {
-                Ok(value) => item.from_files.push((file.name(), value)),
-                // An init port is used only where a stream begins.
-                Err(_) if self.is_init(file.name()) => {}
-                Err(error) => return Err((Some(item.path().to_path_buf()), error)),
-            }
-        }
-        Ok(item)
-    }
-
-    fn is_init(&self, name: &str) -> bool {
-        self.entry.ports.iter().any(|port| port.name == name && port.init)
     }
 }

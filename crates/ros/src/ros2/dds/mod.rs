@@ -19,8 +19,9 @@ use ros2_client::dds::rustdds::discovery::DiscoveredReaderData;
 use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions};
 
+use super::error::network_error;
 use super::typed_services::TypedServices as _;
-use super::{Ros2Node, lifecycle, log, network_error, parameter_services};
+use super::{Ros2Node, lifecycle, log, parameter_services};
 use crate::clock::{self, NO_SIM_TIME};
 use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
 use crate::{Names, ParameterTable};

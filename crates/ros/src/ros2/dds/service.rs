@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::DdsNode;
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 use crate::ros2::typed_services::TypedServices;
 
 /// A message with the marker trait of ros2-client.

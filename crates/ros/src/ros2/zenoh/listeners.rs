@@ -8,7 +8,7 @@ use zenoh::Wait;
 use zenoh::sample::SampleKind;
 
 use super::keys::{all_tokens, subscribed_topic, topic_in_tokens};
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 
 /// Maximum number of counted tokens, which bounds the memory.
 const MAX_TOKENS: usize = 100_000;

@@ -12,14 +12,15 @@ use zenoh::pubsub::Subscriber;
 use zenoh::qos::CongestionControl;
 use zenoh::query::Queryable;
 
-use super::Session;
 use super::keys::{KeyType, Kind, Owner, data_key};
 use super::listeners::Listeners;
 use super::publisher::ZenohPublisher;
+use super::session::Session;
 use crate::clock::{self, NO_SIM_TIME};
 use crate::graph::{Clock, Graph, Log, MessageCallback, Publisher, Qos, TriggerHandler, answer_to};
+use crate::ros2::error::network_error;
 use crate::ros2::typed_services::TypedServices as _;
-use crate::ros2::{Ros2Node, lifecycle, log, network_error, parameter_services};
+use crate::ros2::{Ros2Node, lifecycle, log, parameter_services};
 use crate::{Names, ParameterTable, Severity};
 
 /// A ROS 2 node over Zenoh.

@@ -11,7 +11,7 @@ use super::attachment::Attachment;
 use super::listeners::Listeners;
 use crate::Publisher;
 use crate::clock::system_time_ns;
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 
 pub(super) struct ZenohPublisher {
     pub publisher: zenoh::pubsub::Publisher<'static>,

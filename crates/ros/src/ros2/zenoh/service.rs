@@ -12,7 +12,7 @@ use super::keys::{KeyType, Kind, data_key};
 use super::node::ZenohNode;
 use crate::Qos;
 use crate::clock::system_time_ns;
-use crate::ros2::network_error;
+use crate::ros2::error::network_error;
 use crate::ros2::typed_services::TypedServices;
 
 impl TypedServices for ZenohNode {

@@ -4,7 +4,7 @@ use opendr_engine::data::ImageView;
 use opendr_engine::{Pool, Result};
 use opendr_perception_common::regions::{CellBrightness, CellGrid, Region, merge_overlapping};
 
-use super::{HighResolutionPoseEstimationParams, RegionMethod};
+use super::params::{HighResolutionPoseEstimationParams, RegionMethod};
 
 /// A region, and the height of the network's input for it.
 #[derive(Debug, Clone, Copy, PartialEq)]

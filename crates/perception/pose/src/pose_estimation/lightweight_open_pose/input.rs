@@ -1,6 +1,7 @@
 //! Size of the network's input.
 
-use super::STRIDE;
+/// Pixels per cell.
+pub(super) const STRIDE: usize = 8;
 
 /// Input sizes of a network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

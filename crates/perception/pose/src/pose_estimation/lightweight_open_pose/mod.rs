@@ -18,7 +18,7 @@ mod tests;
 
 #[cfg(feature = "training")]
 pub use fit::LightweightOpenPoseFitParams;
-use input::InputSize;
+use input::{InputSize, STRIDE};
 use opendr_engine::data::{Image, ImageView};
 use opendr_engine::learner::{Learner, Spec};
 use opendr_engine::model::Model;
@@ -73,8 +73,6 @@ struct Scratch {
 
 /// Names of the outputs: heatmaps `[1, 19, rows, columns]` and fields `[1, 38, rows, columns]`.
 const OUTPUTS: [&str; 2] = ["heat", "fields"];
-/// Pixels per cell.
-const STRIDE: usize = 8;
 /// Mean and scale of the levels, for inputs in -1..=1.
 const LEVEL: f32 = 127.5;
 

@@ -1,25 +1,9 @@
 //! Limb candidates from peaks and fields.
 
-use opendr_engine::target::Skeleton;
-
+use super::layout::{JOINTS, LIMBS};
 use super::maps::{PartMaps, Plane};
+use super::parameters::PartAffinity;
 use super::peaks::Peak;
-use super::{JOINTS, PartAffinity};
-
-/// The limbs: the skeleton's bones, and two from shoulder to ear, which connect a person with a hidden neck. Fields are in
-/// this order and point from the first joint to the second.
-pub const LIMBS: [[usize; 2]; 19] = {
-    let bones = Skeleton::Opendr18.bones();
-    let mut limbs = [[0; 2]; 19];
-    let mut limb = 0;
-    while limb < bones.len() {
-        limbs[limb] = bones[limb];
-        limb += 1;
-    }
-    limbs[limb] = [2, 16];
-    limbs[limb + 1] = [5, 17];
-    limbs
-};
 
 /// Two peaks that may be the ends of a limb.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,7 +2,7 @@
 
 use opendr_engine::{Error, Result};
 
-use super::{FIELDS, HEAT_MAPS, JOINTS};
+use super::layout::{FIELDS, HEAT_MAPS, JOINTS};
 
 /// Cells over a network's input.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,68 +13,25 @@
 //! [`MapEncoder`] encodes the target maps of a training. Joints and their order are OpenDR's
 //! ([`Skeleton::Opendr18`](opendr_engine::target::Skeleton)).
 
+mod layout;
 mod limbs;
 mod maps;
 mod paint;
+mod parameters;
 mod peaks;
+mod person;
 mod persons;
 #[cfg(test)]
 mod tests;
 
+pub use layout::{FIELDS, HEAT_MAPS, JOINTS, LIMBS};
 use limbs::Candidate;
-pub use limbs::LIMBS;
 pub use maps::{Grid, PartMaps};
-use opendr_engine::target::Keypoint;
 pub use paint::MapEncoder;
+pub use parameters::PartAffinity;
 use peaks::Peak;
+pub use person::Person;
 use persons::Growing;
-
-/// Number of joints of a person.
-pub const JOINTS: usize = 18;
-/// Number of heatmaps: one per joint, and the background.
-pub const HEAT_MAPS: usize = JOINTS + 1;
-/// Number of maps of fields: x and y of each limb.
-pub const FIELDS: usize = 2 * LIMBS.len();
-
-/// A person in pixels of the network's input.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Person {
-    /// Joints in OpenDR's order; the confidence of each is the height of its peak, 0..=1.
-    pub joints: [Keypoint; JOINTS],
-    /// Mean confidence of the joints, with 0 for missing ones; 0..=1.
-    pub score: f32,
-}
-
-/// Parameters of the decoder.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PartAffinity {
-    /// Height below which peaks are ignored, 0..=1.
-    pub peak_threshold: f32,
-    /// Upsampling factor around peaks; 1 to [`PartAffinity::MAX_UPSAMPLE_RATIO`].
-    pub upsample_ratio: usize,
-    /// Distance below which peaks of one joint are merged, in pixels of the network's input.
-    pub radius: f32,
-    /// Value of the field along a limb below which a sample does not count; 0..=1.
-    pub limb_threshold: f32,
-    /// Minimum share of samples of a limb that count, 0..=1.
-    pub limb_share: f32,
-    /// Minimum number of joints of a person.
-    pub min_joints: usize,
-}
-
-impl Default for PartAffinity {
-    /// Returns Osokin's parameters.
-    fn default() -> Self {
-        Self {
-            peak_threshold: 0.1,
-            upsample_ratio: 4,
-            radius: 12.0,
-            limb_threshold: 0.05,
-            limb_share: 0.8,
-            min_joints: 3,
-        }
-    }
-}
 
 /// Work memory of [`PartAffinity::decode`].
 #[derive(Debug, Clone, Default)]
@@ -85,9 +42,6 @@ pub struct DecodeScratch {
 }
 
 impl PartAffinity {
-    /// Maximum upsampling factor.
-    pub const MAX_UPSAMPLE_RATIO: usize = 8;
-
     /// Fills `persons`, highest score first. Nothing is allocated once `memory` and `persons` are large enough.
     ///
     /// At most 64 peaks per joint are used, the highest. NaN and infinite values have no peaks and no limbs.

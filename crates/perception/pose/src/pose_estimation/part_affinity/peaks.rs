@@ -1,7 +1,8 @@
 //! Peaks of heatmaps with subcell precision.
 
+use super::layout::JOINTS;
 use super::maps::{PartMaps, Plane};
-use super::{JOINTS, PartAffinity};
+use super::parameters::PartAffinity;
 
 /// A peak of a heatmap.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,10 +2,11 @@
 
 use opendr_engine::target::Keypoint;
 
+use super::layout::JOINTS;
 use super::limbs::Candidate;
 use super::maps::Grid;
 use super::peaks::Peak;
-use super::{JOINTS, Person};
+use super::person::Person;
 
 /// Persons during the assembly.
 #[derive(Debug, Clone, Default)]

@@ -1,5 +1,5 @@
 use opendr_engine::ErrorKind;
-use opendr_engine::target::Skeleton;
+use opendr_engine::target::{Keypoint, Skeleton};
 
 use super::*;
 

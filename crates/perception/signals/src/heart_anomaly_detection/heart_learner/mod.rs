@@ -6,6 +6,8 @@
 mod fit;
 #[cfg(feature = "training")]
 mod objective;
+#[cfg(feature = "training")]
+mod trainable;
 
 use opendr_engine::data::Timeseries;
 use opendr_engine::learner::{Learner, Spec, Streaming};
@@ -19,7 +21,7 @@ use opendr_perception_common::category_scores::category_from_logits;
 use crate::heart_anomaly_detection::beat_stream::{BeatStream, Beats};
 
 #[cfg(feature = "training")]
-pub use fit::{HeartSizes, TrainableHeart};
+pub use trainable::{HeartSizes, TrainableHeart};
 
 /// Parameters common to all learners of heart signals.
 #[derive(Debug, Clone, Params)]

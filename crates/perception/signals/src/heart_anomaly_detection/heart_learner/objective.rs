@@ -12,7 +12,7 @@ use opendr_perception_common::trainable_weights::{TRAINABLE, bytes_from_network}
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
-use super::fit::{HeartSizes, TrainableHeart};
+use super::trainable::{HeartSizes, TrainableHeart};
 use super::{FILE, check_series};
 
 /// Training objective: cross-entropy with class weights.

@@ -6,6 +6,8 @@
 mod fit;
 #[cfg(feature = "training")]
 mod objective;
+#[cfg(feature = "training")]
+mod trainable;
 
 use opendr_engine::learner::{Learner, Spec, Streaming};
 use opendr_engine::model::Model;
@@ -20,7 +22,7 @@ use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 use crate::speech_recognition::word_stream::{SpeechWindows, WordStream, WordStreamParams};
 
 #[cfg(feature = "training")]
-pub use fit::{TrainableWords, WordFitParams};
+pub use trainable::{TrainableWords, WordFitParams};
 
 /// Parameters common to all keyword spotting learners.
 #[derive(Debug, Clone, Params)]

@@ -17,7 +17,7 @@ use opendr_sound::AudioInput;
 use opendr_training::export::{self, Input};
 use opendr_training::{Container, Loss, Objective};
 
-use super::fit::TrainableWords;
+use super::trainable::TrainableWords;
 use super::{FILE, WordParams};
 use crate::speech_recognition::cepstra::{FRAMES, FrontEnd};
 

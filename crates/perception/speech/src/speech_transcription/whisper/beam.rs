@@ -2,7 +2,7 @@
 
 use opendr_engine::Result;
 
-use super::decode::{Candidate, Decoding, Prefilled};
+use super::decoding::{Candidate, Decoding, Prefilled};
 use super::network::KeyValueCache;
 use super::rules::log_sum_exp;
 

@@ -1,6 +1,6 @@
 //! Segments of a window, and the start of the next window.
 
-use super::decode::Decoded;
+use super::decoding::Decoded;
 use super::vocabulary::Vocabulary;
 
 /// Spectrogram frames per timestamp step.

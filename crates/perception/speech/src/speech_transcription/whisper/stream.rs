@@ -6,7 +6,7 @@ use opendr_engine::target::WhisperTranscription;
 use opendr_sound::AudioInput;
 use opendr_sound::resampler::Resampler;
 
-use super::Whisper;
+use super::model::Whisper;
 use super::phrases::{Phrases, Step};
 use super::spectrogram::{HOP, RATE, WINDOW};
 use super::transcribe::Transcript;

@@ -1,8 +1,9 @@
 //! Tests without weights. `crates/opendr/tests/whisper.rs` has those with weights.
 
-use super::decode::Decoded;
+use super::decoding::Decoded;
 use super::rules::Rules;
 use super::segments::{Part, cut};
+use super::spectrogram::Spectrogram;
 use super::tokenizer::tests::tiny;
 use super::*;
 

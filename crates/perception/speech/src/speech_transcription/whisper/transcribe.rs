@@ -3,12 +3,12 @@
 use opendr_engine::target::{WhisperSegment, WhisperTranscription};
 use opendr_engine::{Error, Result};
 
-use super::decode::{DecodeOptions, Decoded, Decoding};
+use super::decoding::{DecodeOptions, Decoded, Decoding};
+use super::model::{Whisper, Work};
 use super::network::{CONTEXT, EncoderOutput, KeyValueCache};
 use super::rules::Rules;
 use super::segments::cut;
 use super::spectrogram::{HOP, RATE, WINDOW};
-use super::{Whisper, Work};
 
 /// Maximum number of prompt tokens before a window.
 const PROMPT: usize = CONTEXT / 2 - 1;

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use opendr_engine::{Error, Result};
 
-use super::NanoTrackParams;
+use super::params::NanoTrackParams;
 
 /// Number of positions along each axis.
 pub const CELLS: usize = 16;

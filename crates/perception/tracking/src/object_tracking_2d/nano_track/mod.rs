@@ -6,31 +6,18 @@
 //! 2020). It has the interface of OpenDR's SiamRPN.
 
 mod choice;
+mod params;
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::{Inputs, Learner, Spec};
 use opendr_engine::model::Model;
-use opendr_engine::params::Params;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Name, TrackingAnnotation, TrackingAnnotationList};
 use opendr_engine::{Device, Error, Pool, Result, Task};
 use opendr_inference::{Session, TensorView};
 use opendr_vision::{Border, Preprocess, Similarity};
 
 use choice::{CELLS, Choice};
-
-/// Parameters of [`NanoTrack`].
-#[derive(Debug, Clone, Params)]
-pub struct NanoTrackParams {
-    /// Weight of the window that penalises positions far from the previous one.
-    #[param(default = 0.455, range = 0.0..=1.0, live)]
-    pub window_influence: f32,
-    /// Penalty of changes of size and aspect ratio.
-    #[param(default = 0.138, range = 0.0..=1.0, live)]
-    pub penalty: f32,
-    /// Rate at which the size of the box follows the network's.
-    #[param(default = 0.348, range = 0.0..=1.0, live)]
-    pub size_rate: f32,
-}
+pub use params::NanoTrackParams;
 
 /// A frame, and with the first one the object to track.
 #[derive(Debug, Clone, Copy, Inputs)]

@@ -2,8 +2,8 @@
 
 use std::f32::consts::PI;
 
-use super::VpitParams;
 use super::layout::{PLACES, VpitLayout};
+use super::params::VpitParams;
 use super::template::Comparison;
 
 /// Position and rotation of the object, relative to the centre of the best view.

@@ -5,7 +5,7 @@ use opendr_engine::target::{BoundingBox3DList, LidarBox, Name};
 use opendr_engine::{Error, Result};
 
 use super::choice::Found;
-use super::{Extrapolation, VpitParams};
+use super::params::{Extrapolation, VpitParams};
 
 pub(super) struct Object {
     pub name: Name,
