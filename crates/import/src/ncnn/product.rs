@@ -3,7 +3,7 @@
 use opendr_engine::{Error, Result};
 use opendr_onnx::{Array, Data, Dim, GraphTensor, Operator};
 
-use super::operator::activated;
+use super::activation::activated;
 use super::param::{Layer, Parameters};
 use super::shape::flat;
 use super::trace::Trace;

@@ -7,48 +7,13 @@ use super::model::Node;
 use super::names::{name, same};
 use super::options::Options;
 use super::product::{convolution, custom_transposed, fully_connected, transposed};
+use super::step::{Step, list};
 use super::trace::Trace;
 use super::window::{Fields, window};
 use crate::tensorflow::{Attribute, Attributes, Value};
 
-/// The equivalent of an operator in TensorFlow.
-pub struct Step {
-    /// TensorFlow's operator; empty where the results are `inputs` themselves.
-    pub op: &'static str,
-    pub attr: Attributes,
-    pub inputs: Vec<Value>,
-    /// TensorFlow operator that is applied to the results.
-    pub activation: Option<&'static str>,
-}
-
-impl<'a, 'f> Trace<'_, 'a, 'f> {
-    /// Returns an optional input.
-    pub fn optional(&mut self, node: &Node, index: usize) -> Result<Option<Value>> {
-        node.inputs.get(index).copied().flatten().map(|tensor| self.value(tensor)).transpose()
-    }
-
-    /// Returns a required input.
-    pub fn input(&mut self, node: &Node, index: usize) -> Result<Value> {
-        self.optional(node, index)?.ok_or_else(|| missing(node, index))
-    }
-
-    fn inputs(&mut self, node: &Node) -> Result<Vec<Value>> {
-        (0..node.inputs.len()).map(|index| self.input(node, index)).collect()
-    }
-}
-
-/// Returns the error of a missing input.
-pub fn missing(node: &Node, index: usize) -> Error {
-    Error::format(format!("it has {} inputs, but input {index} is needed", node.inputs.len()))
-}
-
 fn integer(value: i64) -> Value {
     Value::plain(GraphTensor::constant(Array::int(value)))
-}
-
-/// Returns a list of integers.
-pub fn list(values: impl IntoIterator<Item = i64>) -> Value {
-    Value::plain(GraphTensor::ints(values))
 }
 
 /// Returns the equivalent of an operator in TensorFlow.

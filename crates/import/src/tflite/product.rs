@@ -3,8 +3,8 @@
 use opendr_engine::{Error, Result};
 
 use super::model::Node;
-use super::operator::{Step, list, missing};
 use super::options::Options;
+use super::step::{Step, list, missing};
 use super::trace::Trace;
 use super::window::{Fields, four, padding, window};
 use crate::tensorflow::{Attribute, Attributes, Order, Value};

@@ -1,19 +1,15 @@
-//! Conversion of the operators in order, as far as the outputs need them.
+//! The graph under construction.
 
 use opendr_engine::{Error, Result, ResultExt};
 use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::model::{Model, Node};
-use super::names::name;
-use super::operator::{Step, step};
+use super::step::missing;
 use crate::tensorflow::{Attributes, Call, ImportOptions, Lowering, Order, Value, input, ops};
-
-/// Maximum number of inputs or outputs, above that of real operators.
-const MAX_PORTS: usize = 4096;
 
 /// The graph under construction, with the tensors of the model.
 pub struct Trace<'m, 'a, 'f> {
-    model: &'m Model<'a, 'f>,
+    pub(super) model: &'m Model<'a, 'f>,
     /// The graph under construction.
     pub lowering: Lowering,
     /// Converted tensors.
@@ -50,44 +46,6 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         Ok(trace)
     }
 
-    /// Writes the operators that these tensors need.
-    ///
-    /// # Errors
-    /// `Format` where operators are not in order, and the errors of writing an operator.
-    pub fn write(&mut self, outputs: &[usize]) -> Result<Vec<Value>> {
-        let needed = needed(self.model, outputs)?;
-        for (number, node) in self.model.operators.iter().enumerate().filter(|(number, _)| needed[*number]) {
-            let name = node.outputs.first().map_or("", |&output| self.model.tensors[output].name);
-            let at = || format!("importing operator {number} ({}), which produces {name:?}", described(node));
-            self.lower(node, name).context(at)?;
-        }
-        outputs.iter().map(|&output| self.value(output)).collect()
-    }
-
-    fn lower(&mut self, node: &Node<'a, 'f>, name: &str) -> Result<()> {
-        let Step { op, attr, inputs, activation } = step(self, node)?;
-        let made = if op.is_empty() { inputs } else { self.call(name, op, &attr, inputs)? };
-        if made.len() < node.outputs.len() {
-            return Err(Error::format(format!(
-                "it produces {} tensors instead of {}",
-                made.len(),
-                node.outputs.len()
-            )));
-        }
-        for (&output, mut value) in node.outputs.iter().zip(made) {
-            let quantisation = self.model.tensors[output].quantisation.as_ref();
-            if let Some(activation) = activation
-                && !quantisation.is_some_and(|quantisation| quantisation.includes(activation))
-            {
-                let active = self.call(name, activation, &Attributes::default(), vec![value])?;
-                value =
-                    active.into_iter().next().ok_or_else(|| Error::internal("activation without output"))?;
-            }
-            self.define(output, value)?;
-        }
-        Ok(())
-    }
-
     /// Writes TensorFlow's operator `op`.
     pub fn call(
         &mut self,
@@ -101,7 +59,7 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
     }
 
     /// Sets a computed tensor; quantised ones are rounded to the values of their integers.
-    fn define(&mut self, index: usize, value: Value) -> Result<()> {
+    pub(super) fn define(&mut self, index: usize, value: Value) -> Result<()> {
         let tensor = &self.model.tensors[index];
         if self.values[index].is_some() || tensor.is_constant() {
             return Err(Error::format(format!("tensor {:?} is produced twice", tensor.name)));
@@ -135,6 +93,21 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
         let value = Value::plain(self.constant(index, (0..rank).collect())?);
         self.values[index] = Some(value.clone());
         Ok(value)
+    }
+
+    /// Returns an optional input.
+    pub fn optional(&mut self, node: &Node, index: usize) -> Result<Option<Value>> {
+        node.inputs.get(index).copied().flatten().map(|tensor| self.value(tensor)).transpose()
+    }
+
+    /// Returns a required input.
+    pub fn input(&mut self, node: &Node, index: usize) -> Result<Value> {
+        self.optional(node, index)?.ok_or_else(|| missing(node, index))
+    }
+
+    /// Returns all inputs, which are required.
+    pub fn inputs(&mut self, node: &Node) -> Result<Vec<Value>> {
+        (0..node.inputs.len()).map(|index| self.input(node, index)).collect()
     }
 
     /// Returns a weight of which TensorFlow's axis `i` is axis `axes[i]`. The axes of a constant, quantised or not,
@@ -188,33 +161,5 @@ impl<'m, 'a, 'f> Trace<'m, 'a, 'f> {
     /// Returns the model that is converted.
     pub fn model(&self) -> &'m Model<'a, 'f> {
         self.model
-    }
-}
-
-/// Returns which operators these tensors need, searched backwards: operators are stored in order of execution.
-fn needed(model: &Model, outputs: &[usize]) -> Result<Vec<bool>> {
-    let mut wanted = vec![false; model.tensors.len()];
-    outputs.iter().for_each(|&output| wanted[output] = true);
-    let mut needed = vec![false; model.operators.len()];
-    for (number, node) in model.operators.iter().enumerate().rev() {
-        if node.inputs.len().max(node.outputs.len()) > MAX_PORTS {
-            return Err(Error::format(format!(
-                "an operator has {} inputs and {} outputs; the file is damaged or hostile",
-                node.inputs.len(),
-                node.outputs.len()
-            )));
-        }
-        if node.outputs.iter().any(|&output| wanted[output]) {
-            needed[number] = true;
-            node.inputs.iter().flatten().for_each(|&input| wanted[input] = true);
-        }
-    }
-    Ok(needed)
-}
-
-fn described(node: &Node) -> String {
-    match node.custom {
-        "" => name(node.code).map_or_else(|| format!("number {}", node.code), str::to_owned),
-        custom => format!("custom operator {custom}"),
     }
 }

@@ -5,8 +5,8 @@ use opendr_onnx::proto::GraphProto;
 use opendr_onnx::{ElementType, GraphTensor, Operator};
 
 use super::layers::Layers;
-use super::sizes::{CONTEXT, PLACES, Sizes};
-use super::{HEAD, WhisperWeights};
+use super::sizes::{CONTEXT, HEAD, PLACES, Sizes};
+use super::weights::WhisperWeights;
 
 /// Returns the graph of [`super::WhisperOnnx::decoder`].
 pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> {

@@ -4,9 +4,9 @@ use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
 use opendr_onnx::{ElementType, GraphTensor, Operator};
 
-use super::WhisperWeights;
 use super::layers::Layers;
 use super::sizes::{FRAMES, PLACES, Sizes};
+use super::weights::WhisperWeights;
 
 /// Returns the graph of [`super::WhisperOnnx::encoder`].
 pub fn graph(weights: &dyn WhisperWeights, sizes: &Sizes) -> Result<GraphProto> {

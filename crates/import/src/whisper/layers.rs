@@ -3,7 +3,8 @@
 use opendr_engine::{Error, Result};
 use opendr_onnx::{Array, Builder, Data, Dim, ElementType, GraphTensor, Operator};
 
-use super::{HEAD, WhisperWeights};
+use super::sizes::HEAD;
+use super::weights::WhisperWeights;
 
 /// A graph under construction and its weights.
 pub struct Layers<'a> {

@@ -8,35 +8,15 @@ mod encoder;
 mod layers;
 mod onnx;
 mod sizes;
+mod weights;
 
 use opendr_engine::Result;
 use opendr_onnx::proto::GraphProto;
-use opendr_onnx::{Array, bytes_from_model, model_from_graph, passes};
+use opendr_onnx::{bytes_from_model, model_from_graph, passes};
 
 pub use onnx::{is_exported_whisper, whisper_from_onnx};
 use sizes::Sizes;
-
-/// Features of an attention head, in Whispers of every size.
-const HEAD: usize = 64;
-
-/// A source of Whisper's weights, in the layout of PyTorch and with Hugging Face's names without the prefix `model.`,
-/// e.g. `decoder.layers.0.self_attn.q_proj.weight`. Implementations map these names to a file format.
-pub trait WhisperWeights {
-    /// Returns whether there is a weight of that name.
-    fn has(&self, name: &str) -> bool;
-
-    /// Returns the weight of that name.
-    ///
-    /// # Errors
-    /// `Format` when it is missing or cannot be read.
-    fn get(&self, name: &str) -> Result<Array>;
-
-    /// Returns the number of attention heads of `"encoder"` or `"decoder"`, where the file states it.
-    fn heads(&self, side: &str) -> Option<usize>;
-
-    /// Returns whether the weights have 16 bits, so that storing them in 16 bits is lossless.
-    fn is_half(&self) -> bool;
-}
+pub use weights::WhisperWeights;
 
 /// The two networks of a Whisper as ONNX files (opset 17), for ONNX Runtime and the built-in runtime.
 ///

@@ -2,8 +2,10 @@
 
 use opendr_engine::{Error, Result};
 
-use super::{HEAD, WhisperWeights};
+use super::weights::WhisperWeights;
 
+/// Features of an attention head, in Whispers of every size.
+pub const HEAD: usize = 64;
 /// Frames of a spectrogram of 30 s.
 pub const FRAMES: usize = 3000;
 /// Positions of the encoder: half as many.
