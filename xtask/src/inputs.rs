@@ -50,6 +50,11 @@ pub fn files() -> Result<Vec<String>> {
     Ok(files.map(str::to_owned).collect())
 }
 
+/// Returns the text of a file of the repository.
+pub fn text(file: &str) -> Result<String> {
+    fs::read_to_string(root().join(file)).map_err(|error| format!("{file}: {error}"))
+}
+
 /// Returns the hash of a file's content.
 pub fn of_file(path: &Path) -> Result<u64> {
     let failed = |error: std::io::Error| format!("{}: {error}", path.display());

@@ -1,14 +1,16 @@
-//! `cargo xtask layers`: checks that no crate depends on a higher layer, and that no two files of a crate import each other.
-
-use std::fs;
+//! `cargo xtask layers`: checks that no crate depends on a higher layer, and that no two files of a crate import each other, except
+//! pairs of a list.
 
 use crate::imports::{self, Import, Pair};
 use crate::inputs;
-use crate::shell::{Result, root};
+use crate::shell::Result;
 use crate::workspace::{Package, packages};
 
 /// The table of layers.
 const TABLE: &str = "xtask/layers.tsv";
+
+/// The list of pairs of files that may import each other.
+const ALLOWED: &str = "xtask/mutual_imports.tsv";
 
 /// Folder of the Python package, and the package in it.
 const PYTHON: (&str, &str) = ("bindings/python/python", "bindings/python/python/opendr/");
@@ -18,25 +20,25 @@ pub fn run() -> Result<()> {
     let packages = packages()?;
     let layers = Layers::read()?;
     let upwards = layers.violations(&packages, &line_of);
-    let pairs = pairs(&packages)?;
-    for violation in &upwards {
+    let mutual = mutual_imports(&pairs(&packages)?, &inputs::text(ALLOWED)?)?;
+    for violation in upwards.iter().chain(&mutual) {
         println!("{violation}\n");
     }
-    for Pair(first, second) in &pairs {
-        println!("{}\n{}\n", import_line(first), import_line(second));
-    }
-    match (upwards.len(), pairs.len()) {
+    match (upwards.len(), mutual.len()) {
         (0, 0) => Ok(()),
-        (upwards, pairs) => Err(format!(
-            "{upwards} dependencies that do not point downwards in {TABLE}, and {pairs} pairs of files that import each other; move \
-             the item that both sides need to the lower crate, or to the file that owns it"
+        (upwards, mutual) => Err(format!(
+            "{upwards} dependencies that do not point downwards in {TABLE}, and {mutual} differences between {ALLOWED} and the files \
+             that import each other; move the item that both sides need to the lower crate, or to the file that owns it"
         )),
     }
 }
 
 /// Returns whether a file of the repository is an input of this check.
 pub fn is_input(file: &str) -> bool {
-    file.ends_with(".rs") || file.ends_with("Cargo.toml") || file == TABLE || is_of_python(file)
+    file.ends_with(".rs")
+        || file.ends_with("Cargo.toml")
+        || [TABLE, ALLOWED].contains(&file)
+        || is_of_python(file)
 }
 
 fn is_of_python(file: &str) -> bool {
@@ -45,7 +47,7 @@ fn is_of_python(file: &str) -> bool {
 
 /// Returns the pairs of files that import each other, of every crate and of the Python package.
 fn pairs(packages: &[Package]) -> Result<Vec<Pair>> {
-    let read = |file: &str| fs::read_to_string(root().join(file)).ok();
+    let read = |file: &str| inputs::text(file).ok();
     let mut found = Vec::new();
     for source in packages.iter().flat_map(|package| &package.roots) {
         found.extend(imports::pairs(&imports::of_crate(source, &read)));
@@ -56,13 +58,42 @@ fn pairs(packages: &[Package]) -> Result<Vec<Pair>> {
     Ok(found)
 }
 
+/// Describes every pair that the list does not have, and every line of the list whose files do not import each other.
+fn mutual_imports(pairs: &[Pair], list: &str) -> Result<Vec<String>> {
+    let mut allowed = Vec::new();
+    for (line, text) in (1..).zip(list.lines()).filter(|(_, text)| !text.starts_with('#')) {
+        let [first, second, reason] = text.split('\t').collect::<Vec<_>>()[..] else {
+            return Err(format!(
+                "{ALLOWED}:{line}: write two files and how to separate them, with tabs between"
+            ));
+        };
+        if first >= second || reason.is_empty() {
+            return Err(format!(
+                "{ALLOWED}:{line}: write the files in the order of their paths, and a reason"
+            ));
+        }
+        allowed.push((line, first, second));
+    }
+    let is_of = |pair: &Pair, first: &str, second: &str| pair.0.from == first && pair.0.to == second;
+    let unknown =
+        pairs.iter().filter(|pair| !allowed.iter().any(|(_, first, second)| is_of(pair, first, second)));
+    let unknown =
+        unknown.map(|Pair(first, second)| format!("{}\n{}", import_line(first), import_line(second)));
+    let separate =
+        allowed.iter().filter(|(_, first, second)| !pairs.iter().any(|pair| is_of(pair, first, second)));
+    let separate = separate.map(|(line, first, second)| {
+        format!("{ALLOWED}:{line}: remove the line: {first} and {second} do not import each other")
+    });
+    Ok(unknown.chain(separate).collect())
+}
+
 fn import_line(import: &Import) -> String {
     format!("{}:{}: {}", import.from, import.line, import.path)
 }
 
 /// Returns the first line of a file that contains a text, as `file:line: text`.
 fn line_of(file: &str, text: &str) -> String {
-    let content = fs::read_to_string(root().join(file)).unwrap_or_default();
+    let content = inputs::text(file).unwrap_or_default();
     let line = (1..).zip(content.lines()).find(|(_, line)| line.contains(text));
     line.map_or_else(
         || format!("{file}: {text}"),
@@ -86,7 +117,7 @@ pub struct Place {
 impl Layers {
     /// Reads the table.
     pub fn read() -> Result<Self> {
-        Self::parse(&fs::read_to_string(root().join(TABLE)).map_err(|error| format!("{TABLE}: {error}"))?)
+        Self::parse(&inputs::text(TABLE)?)
     }
 
     fn parse(table: &str) -> Result<Self> {
@@ -177,6 +208,24 @@ mod tests {
             ["crates/a/Cargo.toml:7: c\nxtask/layers.tsv:2: low: a\nxtask/layers.tsv:4: high: c"]
         );
         assert_eq!(violations(&[("a", &["b"]), ("b", &["a"]), ("c", &["c"])]).len(), 2);
+    }
+
+    #[test]
+    fn only_listed_pairs_import_each_other() {
+        let import = |from: &str, to: &str| Import {
+            from: from.to_owned(),
+            to: to.to_owned(),
+            line: 3,
+            path: format!("use crate::{to}"),
+        };
+        let pairs = [Pair(import("a", "b"), import("b", "a"))];
+        assert!(mutual_imports(&pairs, "# comment\na\tb\tmove it\n").unwrap().is_empty());
+        assert_eq!(mutual_imports(&pairs, "").unwrap(), ["a:3: use crate::b\nb:3: use crate::a"]);
+        let stale = mutual_imports(&pairs, "a\tb\tmove it\na\tc\tmove it").unwrap();
+        assert_eq!(stale, ["xtask/mutual_imports.tsv:2: remove the line: a and c do not import each other"]);
+        for list in ["a\tb", "b\ta\tmove it", "a\tb\t"] {
+            assert!(mutual_imports(&pairs, list).unwrap_err().starts_with("xtask/mutual_imports.tsv:1: "));
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use crate::inputs;
 use crate::layers::Layers;
 use crate::shell::{Result, root};
 use crate::workspace::{Package, packages};
@@ -28,8 +29,7 @@ fn pages() -> Result<[(&'static str, String); 2]> {
     let (packages, layers) = (packages()?, Layers::read()?);
     let packages = ordered(&packages, &layers);
     let with = |file, part: &str, text: &str| {
-        let page = fs::read_to_string(root().join(file)).map_err(|error| format!("{file}: {error}"))?;
-        let page = replaced(&page, part, text).map_err(|error| format!("{file}: {error}"))?;
+        let page = replaced(&inputs::text(file)?, part, text).map_err(|error| format!("{file}: {error}"))?;
         Ok::<_, String>((file, page))
     };
     Ok([with("README.md", "crates", &table(&packages)?)?, with("DESIGN.md", "layers", &diagram(&packages))?])
@@ -59,7 +59,7 @@ fn table(packages: &[(&str, &Package)]) -> Result<String> {
     let mut table = "\n| crate | contents |\n|---|---|\n".to_owned();
     for (_, package) in packages {
         let source = package.roots.first().ok_or_else(|| format!("{}: no source file", package.folder))?;
-        let text = fs::read_to_string(root().join(source)).map_err(|error| format!("{source}: {error}"))?;
+        let text = inputs::text(source)?;
         let title = title(&text).ok_or_else(|| {
             format!("{source}: begin with a line `//! TITLE.` of at most {LONGEST_TITLE} characters: the table of the crates shows it")
         })?;
@@ -135,8 +135,10 @@ mod tests {
     #[test]
     fn generated_parts_are_up_to_date() {
         for (file, page) in pages().unwrap() {
-            let current = fs::read_to_string(root().join(file)).unwrap();
-            assert!(current == page, "{file} is not up to date; run `cargo xtask generate --crates`");
+            assert!(
+                inputs::text(file).unwrap() == page,
+                "{file} is not up to date; run `cargo xtask generate --crates`"
+            );
         }
     }
 

@@ -1,13 +1,11 @@
 //! `cargo xtask words`: finds phrases of `xtask/words.tsv` in documentation and messages, and prints the term to use.
 
-use std::fs;
-
 use regex_lite::Regex;
 
 use crate::inputs;
 use crate::lexer::Language;
 use crate::passages::{self, Passage};
-use crate::shell::{Result, root};
+use crate::shell::Result;
 
 /// The list of phrases, and the term to use for each.
 const LIST: &str = "xtask/words.tsv";
@@ -17,10 +15,10 @@ const LEFT_OUT: [&str; 1] = ["docs/glossary.md"];
 
 /// Checks all files; fails if one has a phrase of the list.
 pub fn run() -> Result<()> {
-    let phrases = Phrases::parse(&read(LIST)?)?;
+    let phrases = Phrases::parse(&inputs::text(LIST)?)?;
     let mut count = 0;
     for file in inputs::files()?.iter().filter(|file| is_checked(file)) {
-        for passage in passages_of(file, &read(file)?) {
+        for passage in passages_of(file, &inputs::text(file)?) {
             for (line, phrase, term) in phrases.find(&passage) {
                 println!("{file}:{line}: \"{phrase}\": use \"{term}\"");
                 count += 1;
@@ -67,10 +65,6 @@ fn unreleased(changelog: &str) -> &str {
     let mut sections = changelog.match_indices("\n## ");
     sections.next();
     sections.next().map_or(changelog, |(end, _)| &changelog[..end])
-}
-
-fn read(file: &str) -> Result<String> {
-    fs::read_to_string(root().join(file)).map_err(|error| format!("{file}: {error}"))
 }
 
 /// The phrases of a list.
