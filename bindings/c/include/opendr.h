@@ -1960,7 +1960,7 @@ static inline opendr_status opendr_infer_posenet(const opendr_learner *learner,
  *   threshold (a float 0..=1, live, default 0.1): Score below which persons are dropped. The score is the mean over the 18 joints; missing ones count as 0.
  *   keypoint_threshold (a float 0.01..=1, live, default 0.1): Score below which joints are missing.
  *   base_height (an int 64..=2048 px, live, default 256): Height of the network's input; its width follows from the image. Larger values detect smaller persons.
- *   upsample_ratio (an int 1..=8, live, default 4): Upsampling factor of the heat maps for the search of joints.
+ *   upsample_ratio (an int 1..=8, live, default 4): Upsampling factor of the heatmaps for the search of joints.
  *   track (a bool, live, default true): Whether persons keep their identity from frame to frame.
  *   smooth (a bool, live, default true): Whether joints are smoothed over frames; needs `track`.
  *
@@ -1999,13 +1999,13 @@ static inline opendr_status opendr_infer_lightweight_open_pose(const opendr_lear
  *   second_pass_height (an int 64..=2048 px, live, default 540): Maximum height of the network's input for a region; small regions are magnified three times.
  *   method (a str, one of adaptive, primary, live, default adaptive): Selection of regions.
  *   percentage_around_crop (a float 0..=2, live, default 0.3): Margin around a region on each side, as a share of its longer side.
- *   heatmap_threshold (a float 0.01..=1, live, default 0.1): Value of the coarse heat maps above which a cell is selected.
+ *   heatmap_threshold (a float 0.01..=1, live, default 0.1): Value of the coarse heatmaps above which a cell is selected.
  *   detail_threshold (a float 1..=256, live, default 32): Range of brightness within 4 pixels of the coarse image above which a cell is selected, 0..=255; 256 switches it off.
  *   max_regions (an int 1..=64, live, default 4): Maximum number of regions per image; the others follow in the next frames.
  *   max_pixels (an int 1..=100000000 px, live, default 300000): Maximum number of pixels of the network's inputs for the regions of an image; the first region is always processed.
  *   threshold (a float 0..=1, live, default 0.1): Score below which persons are dropped.
  *   keypoint_threshold (a float 0.01..=1, live, default 0.1): Score below which joints are missing.
- *   upsample_ratio (an int 1..=8, live, default 4): Upsampling factor of the heat maps for the search of joints.
+ *   upsample_ratio (an int 1..=8, live, default 4): Upsampling factor of the heatmaps for the search of joints.
  *   track (a bool, live, default true): Whether persons keep their identity from frame to frame.
  *   smooth (a bool, live, default true): Whether joints are smoothed over frames; needs `track`.
  *

@@ -100,7 +100,7 @@ class LightweightOpenPoseLearner(NativeLearner):
             running, and for one call of infer)
         base_height: Height of the network's input; its width follows from the image. Larger values detect smaller
             persons. (default 256; 64 to 2048 px; live: may change while running, and for one call of infer)
-        upsample_ratio: Upsampling factor of the heat maps for the search of joints. (default 4; 1 to 8; live: may
+        upsample_ratio: Upsampling factor of the heatmaps for the search of joints. (default 4; 1 to 8; live: may
             change while running, and for one call of infer)
         track: Whether persons keep their identity from frame to frame. (default True; live: may change while
             running, and for one call of infer)
@@ -207,7 +207,7 @@ class HighResolutionPoseEstimationLearner(HighResolutionPoses):
             running, and for one call of infer)
         percentage_around_crop: Margin around a region on each side, as a share of its longer side. (default 0.3;
             0 to 2; live: may change while running, and for one call of infer)
-        heatmap_threshold: Value of the coarse heat maps above which a cell is selected. (default 0.1; 0.01 to 1;
+        heatmap_threshold: Value of the coarse heatmaps above which a cell is selected. (default 0.1; 0.01 to 1;
             live: may change while running, and for one call of infer)
         detail_threshold: Range of brightness within 4 pixels of the coarse image above which a cell is selected,
             0..=255; 256 switches it off. (default 32.0; 1 to 256; live: may change while running, and for one
@@ -221,7 +221,7 @@ class HighResolutionPoseEstimationLearner(HighResolutionPoses):
             and for one call of infer)
         keypoint_threshold: Score below which joints are missing. (default 0.1; 0.01 to 1; live: may change while
             running, and for one call of infer)
-        upsample_ratio: Upsampling factor of the heat maps for the search of joints. (default 4; 1 to 8; live: may
+        upsample_ratio: Upsampling factor of the heatmaps for the search of joints. (default 4; 1 to 8; live: may
             change while running, and for one call of infer)
         track: Whether persons keep their identity from frame to frame. (default True; live: may change while
             running, and for one call of infer)
