@@ -26,7 +26,7 @@ pub trait RegisteredEnvironment: Environment + Sized + 'static {
 
 type Make = dyn Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync;
 
-/// An entry of a [`Registry`].
+/// An entry of a [`Registry`](crate::Registry).
 #[derive(Clone)]
 pub struct Registration {
     pub(crate) id: String,

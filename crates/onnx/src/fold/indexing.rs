@@ -5,7 +5,7 @@ use super::super::array::element_count;
 /// Maximum number of elements of a result; a small node of a hostile file could otherwise request gigabytes.
 pub(super) const MAX_ELEMENTS: usize = 1 << 24;
 
-/// Returns row-major strides; dimensions of an [`Array`] never overflow.
+/// Returns row-major strides; dimensions of an [`Array`](super::super::array::Array) never overflow.
 pub(super) fn strides(dims: &[usize]) -> Vec<usize> {
     let mut strides = vec![1; dims.len()];
     for axis in (1..dims.len()).rev() {
