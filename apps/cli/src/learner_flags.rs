@@ -52,6 +52,7 @@ pub fn param_flag(heading: &str, field: &'static Field) -> Arg {
     }
     let flag = Arg::new(field.name)
         .long(dashed(field.name))
+        .aliases(field.former.iter().map(|name| dashed(name)))
         .help(help)
         .help_heading(heading.to_owned())
         .allow_negative_numbers(true)

@@ -15,6 +15,7 @@
 mod class_flags;
 mod command;
 mod dataset_flags;
+mod dump;
 mod environment_flags;
 mod exit;
 mod inputs;

@@ -11,9 +11,9 @@ pub fn parse(flag: &str, text: &str, owner: &str, fields: &[Field]) -> Result<(S
     let (name, value) = text
         .split_once('=')
         .ok_or_else(|| Error::invalid_param(format!("--{flag} {text:?} should be NAME=VALUE")))?;
-    let field = fields.iter().find(|field| field.name == name).ok_or_else(|| {
+    let field = fields.iter().find(|field| field.is_called(name)).ok_or_else(|| {
         let names: Vec<_> = fields.iter().map(|field| field.name).collect();
         Error::invalid_param(format!("{owner} has no parameter {name:?}; it has {}", names.join(", ")))
     })?;
-    Ok((name.to_owned(), field.parse(value)?))
+    Ok((field.name.to_owned(), field.parse(value)?))
 }

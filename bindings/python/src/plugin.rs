@@ -128,6 +128,7 @@ fn field(row: &Tables<'_, '_>) -> PyResult<Field> {
         log_scale: false,
         live: row.get("live")?.extract()?,
         aliases: &[],
+        former: &[],
         default: FieldDefault::Value(Box::leak(Box::new(param_from_python(&row.get("default")?)?))),
     })
 }
@@ -256,11 +257,11 @@ impl AnyLearner for PythonLearner {
     }
 
     fn default_of(&self, name: &str) -> Option<ParamValue> {
-        self.params.iter().find(|field| field.name == name).map(|field| field.default.value())
+        self.params.iter().find(|field| field.is_called(name)).map(|field| field.default.value())
     }
 
     fn set(&mut self, name: &str, value: ParamValue) -> Result<()> {
-        let field = self.params.iter().find(|field| field.name == name);
+        let field = self.params.iter().find(|field| field.is_called(name));
         let field = field
             .ok_or_else(|| Error::invalid_param(format!("{} has no parameter {name:?}", self.spec.class)))?;
         field.check(&value)?;

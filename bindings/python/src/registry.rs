@@ -71,6 +71,7 @@ pub fn field(row: &Bound<'_, PyDict>, field: &Field) -> PyResult<()> {
     row.set_item("unit", field.unit)?;
     row.set_item("live", field.live)?;
     row.set_item("aliases", field.aliases.to_vec())?;
+    row.set_item("former", field.former.to_vec())?;
     row.set_item("default", python_from_param(row.py(), &field.default.value())?)
 }
 

@@ -19,7 +19,7 @@ use syn::{DeriveInput, parse_macro_input};
 
 /// Implements `Params` for a struct of parameters: table of fields, defaults, access by name.
 ///
-/// Attribute of a field: `#[param(default = EXPR, range = LOW..=HIGH, unit = "px", log, live, alias = "old_name")]`.
+/// Attribute of a field: `#[param(default = EXPR, range = LOW..=HIGH, unit = "px", log, live, alias = "name_of_opendr", former = "old_name")]`.
 /// Without a default, that of the field's type is used. `#[param(flatten, name = EXPR)]` includes the fields of another
 /// struct of parameters, with other defaults. The doc comment of a field is required; it is the documentation on every
 /// surface.

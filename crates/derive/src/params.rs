@@ -14,6 +14,7 @@ struct Attributes {
     log: bool,
     live: bool,
     aliases: Vec<LitStr>,
+    former: Vec<LitStr>,
     flatten: bool,
     defaults: Vec<(Ident, Expr)>,
 }
@@ -34,12 +35,14 @@ fn attributes_of(field: &Field) -> Result<Attributes> {
                 attributes.live = true;
             } else if meta.path.is_ident("alias") {
                 attributes.aliases.push(meta.value()?.parse()?);
+            } else if meta.path.is_ident("former") {
+                attributes.former.push(meta.value()?.parse()?);
             } else if meta.path.is_ident("flatten") {
                 attributes.flatten = true;
             } else if let (true, Some(name)) = (attributes.flatten, meta.path.get_ident()) {
                 attributes.defaults.push((name.clone(), meta.value()?.parse()?));
             } else {
-                return Err(meta.error("expected default, range, unit, log, live, alias or flatten"));
+                return Err(meta.error("expected default, range, unit, log, live, alias, former or flatten"));
             }
             Ok(())
         })?;
@@ -91,7 +94,7 @@ impl Parts {
 
     fn add_field(&mut self, field: &Field, attributes: Attributes) -> Result<()> {
         let (ident, kind, doc) = (&field.ident, &field.ty, doc_of(field)?);
-        let Attributes { default, range, unit, log, live, aliases, .. } = attributes;
+        let Attributes { default, range, unit, log, live, aliases, former, .. } = attributes;
         let default = match &default {
             Some(default) => converted(default),
             None => quote!(::core::default::Default::default()),
@@ -117,6 +120,7 @@ impl Parts {
                 log_scale: #log,
                 live: #live,
                 aliases: &[#(#aliases),*],
+                former: &[#(#former),*],
                 default: ::opendr_engine::params::FieldDefault::Function(|| {
                     let default: #kind = #default;
                     #param::to_value(&default)

@@ -127,7 +127,7 @@ impl Session {
             )));
         }
         self.inputs.iter().zip(inputs).try_for_each(|(info, input)| info.check(input))?;
-        recording::add(&self.inputs, &self.outputs, inputs);
+        let recorded = recording::add(&self.inputs, &self.outputs, inputs);
         // A panic in an earlier sink does not affect the engine.
         let mut engine = self.engine.lock().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
@@ -139,6 +139,9 @@ impl Session {
                     outputs.len(),
                     self.outputs.len()
                 )));
+            }
+            if let Some(run) = recorded {
+                recording::add_outputs(run, outputs);
             }
             sink(outputs)
         })

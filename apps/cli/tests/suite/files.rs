@@ -36,7 +36,7 @@ fn invalid_files_are_reported_and_the_rest_is_processed() {
     place.write("2.csv", "1\nabc\n");
     let done = place.run(["infer", LEARNER, "2.csv", "none.csv", "1.csv", "--json"]);
     assert!(
-        done.stderr.contains("none.csv") && done.stderr.contains("line 2 has no number"),
+        done.stderr.contains("none.csv") && done.stderr.contains("line 2 has a column without a number"),
         "{}",
         done.stderr
     );

@@ -260,7 +260,7 @@ class NativeBase(BaseLearner):
     def _known(self, arguments: dict[str, Any], stacklevel: int) -> dict[str, Any]:
         """Renames OpenDR's arguments to those of this package and drops, with a warning, those without effect."""
         fields = [*self._entry["params"], *self._entry["fit_params"]]
-        renamed = {alias: field["name"] for field in fields for alias in field["aliases"]}
+        renamed = {alias: field["name"] for field in fields for alias in (*field["aliases"], *field["former"])}
         choices = {field["name"]: field["choices"] for field in fields}
         owner, idle = type(self).__name__, dict(self._entry["without_effect"])
         known: dict[str, Any] = {}
@@ -279,7 +279,7 @@ class NativeBase(BaseLearner):
     def _live_name(self, name: str) -> Optional[str]:
         """Returns the live parameter of this name or alias, or None."""
         live = (field for field in self._entry["params"] if field["live"])
-        return next((field["name"] for field in live if name in (field["name"], *field["aliases"])), None)
+        return next((field["name"] for field in live if name in (field["name"], *field["aliases"], *field["former"])), None)
 
     @contextlib.contextmanager
     def _temporarily(self, params: Mapping[str, Any]) -> Iterator[None]:

@@ -12,7 +12,7 @@ pub struct LoaderOptions {
     #[param(default = 2, range = 0..=1024)]
     pub threads: usize,
     /// Largest number of batches that are prepared in advance.
-    #[param(default = 4, range = 1..=100_000, alias = "ahead")]
+    #[param(default = 4, range = 1..=100_000, former = "ahead")]
     pub prefetch: usize,
     /// Whether the order of samples is random, a different one in each epoch.
     #[param(default = true)]

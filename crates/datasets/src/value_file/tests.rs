@@ -30,8 +30,8 @@ fn what_is_no_table_is_an_error() {
         ("volt\n", "no numbers"),
         ("1,2\n3\n", "line 2 has 1 numbers"),
         ("1\n\n2,3\n", "line 3 has 2 numbers"),
-        ("1\nx\n", "line 2 has no number"),
-        ("1,x\n", "line 1 has no number"),
+        ("1\nx\n", "line 2 has a column without a number"),
+        ("1,x\n", "line 1 has a column without a number"),
         ("1\nNaN\n", "line 2 has NaN"),
         ("1\ninf\n", "line 2 has inf"),
     ];

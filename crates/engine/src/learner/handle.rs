@@ -132,8 +132,9 @@ impl<L: Learner> Handle<L> {
 
     /// Returns the default of a parameter: that of the loaded model, otherwise that of the learner.
     pub fn default_of(&self, name: &str) -> Option<ParamValue> {
-        let field = L::Params::FIELDS.iter().find(|field| field.name == name)?;
-        let stated = self.model().and_then(|model| model.params().get(name));
+        let field = L::Params::FIELDS.iter().find(|field| field.is_called(name))?;
+        let mut names = std::iter::once(&field.name).chain(field.former);
+        let stated = self.model().and_then(|model| names.find_map(|name| model.params().get(*name)));
         Some(stated.cloned().unwrap_or_else(|| field.default.value()))
     }
 
@@ -164,7 +165,7 @@ impl<L: Learner> Handle<L> {
         let mut params = self.params.clone();
         params.set(name, value)?;
         if let Some(ready) = &self.ready {
-            if L::Params::FIELDS.iter().any(|field| field.name == name && !field.live) {
+            if L::Params::FIELDS.iter().any(|field| field.is_called(name) && !field.live) {
                 return Err(Error::invalid_param(format!(
                     "{name} cannot change while a model is loaded; set it on a new {} and load again",
                     L::SPEC.class

@@ -62,11 +62,18 @@ pub struct Field {
     pub live: bool,
     /// Alternative names in Python: those of OpenDR.
     pub aliases: &'static [&'static str],
+    /// Former names, which are still accepted on every surface and in saved models.
+    pub former: &'static [&'static str],
     /// Default value.
     pub default: FieldDefault,
 }
 
 impl Field {
+    /// Returns whether `name` is the name or a former name of the parameter.
+    pub fn is_called(&self, name: &str) -> bool {
+        self.name == name || self.former.contains(&name)
+    }
+
     /// Checks type, range and choices.
     ///
     /// # Errors

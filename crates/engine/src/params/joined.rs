@@ -13,6 +13,7 @@ const NO_FIELD: Field = Field {
     log_scale: false,
     live: false,
     aliases: &[],
+    former: &[],
     default: FieldDefault::Value(&ParamValue::None),
 };
 

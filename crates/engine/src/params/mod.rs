@@ -140,7 +140,7 @@ pub trait Params: Clone + Debug + Default + Send + Sync + 'static {
 pub struct NoParams {}
 
 fn index_of(fields: &[Field], name: &str) -> Result<usize> {
-    fields.iter().position(|field| field.name == name).ok_or_else(|| {
+    fields.iter().position(|field| field.is_called(name)).ok_or_else(|| {
         let names: Vec<_> = fields.iter().map(|field| field.name).collect();
         Error::invalid_param(match names.is_empty() {
             true => format!("no parameter {name:?}; there are no parameters"),

@@ -242,7 +242,7 @@ pub fn check_fit(entry: &Entry, params: &ParamMap) -> Result<()> {
         return Err(cannot_fit(entry));
     }
     params.iter().try_for_each(|(name, value)| {
-        let field = entry.fit_params.iter().find(|field| field.name == name).ok_or_else(|| {
+        let field = entry.fit_params.iter().find(|field| field.is_called(name)).ok_or_else(|| {
             let names: Vec<_> = entry.fit_params.iter().map(|field| field.name).collect();
             let class = entry.spec.class;
             Error::invalid_param(format!(

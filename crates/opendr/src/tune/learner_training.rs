@@ -51,7 +51,7 @@ impl<'a> LearnerTraining<'a> {
             ));
         }
         let mut params = options.fit_params.clone();
-        let has = |name: &str| entry.fit_params.iter().any(|field| field.name == name);
+        let has = |name: &str| entry.fit_params.iter().any(|field| field.is_called(name));
         params.extend(
             LENGTH
                 .into_iter()

@@ -17,10 +17,11 @@ pub fn search_space(fields: &[Field], texts: &[String]) -> Result<SearchSpace> {
     }
     texts.iter().try_fold(SearchSpace::new(), |space, text| {
         let (name, values) = text.split_once('=').unwrap_or((text, ""));
-        let field = fields.iter().find(|field| field.name == name).ok_or_else(|| {
+        let field = fields.iter().find(|field| field.is_called(name)).ok_or_else(|| {
             let names: Vec<_> = fields.iter().map(|field| field.name).collect();
             Error::invalid_param(format!("no parameter {name:?} to search; there are {}", names.join(", ")))
         })?;
+        let name = field.name;
         if values.is_empty() {
             let own = SearchSpace::from_fields(fields, &[name])?;
             return own

@@ -220,7 +220,7 @@ fn frames_without_a_face_and_crops_have_answers() {
     let group = faces.infer(&photo(&models, "t1.jpg")).unwrap();
     assert_eq!(group.boxes.len(), 6);
     assert!(group.boxes.iter().all(|found| found.name == Name::from("unknown") && found.confidence > 0.99));
-    faces.set("picture", "face".into()).unwrap();
+    faces.set("input_kind", "face".into()).unwrap();
     let crop = faces.infer(&black()).unwrap();
     assert_eq!((crop.boxes.len(), crop.boxes[0].corners()), (1, [0.0, 0.0, 320.0, 240.0]));
 
@@ -232,7 +232,7 @@ fn frames_without_a_face_and_crops_have_answers() {
     assert_eq!(happy.description.as_deref(), Some("happy"));
     assert!(happy.confidence.unwrap() > 0.95 && happy.probabilities.len() == 7, "{happy:?}");
     emotion.infer(&photo(&models, "t1.jpg")).unwrap();
-    emotion.set("picture", "face".into()).unwrap();
+    emotion.set("input_kind", "face".into()).unwrap();
     assert!((0..7).contains(&emotion.infer(&black()).unwrap().class));
 
     let Some(mut mesh) = handle::<FaceMesh>(&models, FaceMeshParams::default()) else { return };

@@ -85,7 +85,7 @@ fn each_box_is_a_picture_of_its_own() {
     let Some(models) = Models::find() else { return };
     let Some((detector, faces)) = learner(&models, "yunet") else { return };
     let Some((entry, mut emotions)) = learner(&models, "facial_emotion") else { return };
-    emotions.set("picture", "face".into()).unwrap();
+    emotions.set("input_kind", "face".into()).unwrap();
     let pipeline = Pipeline::default().then(detector, faces.as_ref()).unwrap();
     let mut pipeline = pipeline.then_each(entry, emotions.as_ref()).unwrap();
     let astronaut = picture(&models, "astronaut.png");

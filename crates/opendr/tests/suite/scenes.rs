@@ -157,6 +157,6 @@ fn depth_is_of_the_picture() {
         learner.infer(&ports).unwrap_err().to_string()
     };
     let mut refused = refused;
-    assert!(refused(&small, &depth).contains("one size"));
+    assert!(refused(&small, &depth).contains("the same size"));
     assert!(refused(&image, &image).contains("millimetres"));
 }

@@ -37,7 +37,7 @@ pub struct NetworkConfig {
     /// Activation function of the hidden layers.
     pub activation_fn: ActivationFn,
     /// Network for image observations, before the hidden layers.
-    #[param(alias = "picture_network")]
+    #[param(former = "picture_network")]
     pub image_network: ImageNetwork,
     /// Units of a gated recurrent unit before the hidden layers, for policies with memory; none means no recurrent unit.
     #[param(range = 1..=4096)]

@@ -17,6 +17,11 @@ pub fn check(matches: &ArgMatches, recorded: bool) -> Result<()> {
             "predictions of a pipeline cannot be recorded; write them with --json=FILE",
         ));
     }
+    if matches.contains_id("dump") {
+        return Err(Error::invalid_param(
+            "--dump writes the tensors of a single learner and cannot be combined with --then; dump each learner on its own",
+        ));
+    }
     if matches.get_flag("show-timings") {
         return Err(Error::invalid_param(
             "--show-timings measures a single learner and cannot be combined with --then, whose learners run in parallel; omit one of them",

@@ -10,6 +10,7 @@ use opendr::learner::{AnyLearner, Outputs};
 use opendr::target::Classes;
 use opendr::{Error, ErrorKind, Pipeline, Progress, Result, Unit, ValueType, map_in_order};
 
+use crate::dump::Dump;
 use crate::exit::Outcome;
 use crate::inputs::Inputs;
 use crate::item::{Datum, Item, Next};
@@ -32,7 +33,8 @@ Examples:
   opendr infer matchboxnet yes.wav no.wav                audio, time series (.csv), point clouds
   opendr infer LEARNER drive.bag --topic /camera/image_raw --out boxes.mcap
   opendr infer nanodet walk.mp4 --then 'posenet threshold=0.3' --out poses.mp4  a pipeline, in parallel
-  opendr infer yunet crowd.mp4 --then 'each facial_emotion input=face'          ... one call per detected box
+  opendr infer yunet crowd.mp4 --then 'each facial_emotion input_kind=face'          ... one call per detected box
+  opendr infer LEARNER wrong.jpg --dump tensors/         debug a wrong prediction: all tensors as .npy
 
 \"opendr infer LEARNER --help\" lists the learner's parameters; \"opendr models\" lists the learners.";
 
@@ -59,6 +61,9 @@ pub fn grammar() -> Command {
                 "Print one line of JSON per frame instead of text, or write the lines to FILE besides the text (docs/command-line.md)",
             ),
             switch("show-timings").help("Print the duration of each stage"),
+            path("dump").value_name("DIR").help(
+                "Write the tensors before and after each stage as .npy into a new folder, with an index dump.json (about 10 MB per image)",
+            ),
             switch("sequence").help("Treat the images as frames of one video"),
             then_flag::flag(),
             Arg::new("limit")
@@ -112,7 +117,8 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         further: learner_flags::port_files(entry, matches)?,
         sequence: matches.get_flag("sequence"),
     };
-    let alone = chained || job.sequence || !items.are_independent();
+    let dump = matches.get_one::<PathBuf>("dump").map(|folder| Dump::create(folder)).transpose()?;
+    let alone = chained || job.sequence || dump.is_some() || !items.are_independent();
     let count = if alone { 1 } else { loading::copies(matches, frames)? };
     let mut learners = loading::load_copies(count, load)?;
     let mut processors = match learners.pop() {
@@ -122,7 +128,10 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
         first => {
             let learners = learners.into_iter().chain(first);
             Learners::Parallel(
-                learners.map(|learner| Worker { learner, stream: Stream::default() }).collect(),
+                learners
+                    .zip(std::iter::once(dump).chain(std::iter::repeat_with(|| None)))
+                    .map(|(learner, dump)| Worker { learner, stream: Stream::default(), dump })
+                    .collect(),
             )
         }
     };
@@ -146,6 +155,7 @@ pub fn run(matches: &ArgMatches) -> Result<Outcome> {
 struct Worker {
     learner: Box<dyn AnyLearner>,
     stream: Stream,
+    dump: Option<Dump>,
 }
 
 /// Learners that process the items.
@@ -247,10 +257,24 @@ impl Job {
         if begins {
             worker.learner.reset();
         }
-        match self.infer(worker, &item, begins) {
+        match self.infer_and_dump(worker, &item, begins) {
             Ok((outputs, timings)) => Ok((item, outputs, timings)),
             Err(error) => Err(of_item(&item, error)),
         }
+    }
+
+    /// Infers an item and writes its tensors if requested, after an error too.
+    fn infer_and_dump(
+        &self,
+        worker: &mut Worker,
+        item: &Item,
+        begins: bool,
+    ) -> Result<(Vec<Outputs>, Timings)> {
+        let Some(mut dump) = worker.dump.take() else { return self.infer(worker, item, begins) };
+        let (result, runs) = Dump::record(|| self.infer(worker, item, begins));
+        let written = dump.write(item, &runs, result.as_ref().ok().map(|(outputs, _)| &outputs[..]));
+        worker.dump = Some(dump);
+        result.and_then(|result| written.map(|()| result))
     }
 
     fn infer(&self, worker: &mut Worker, item: &Item, begins: bool) -> Result<(Vec<Outputs>, Timings)> {

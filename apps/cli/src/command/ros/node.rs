@@ -108,7 +108,7 @@ pub fn set_parameters(
     of_node: &mut ParamMap,
 ) -> Result<()> {
     for (name, text) in parameters {
-        let find = |fields: &'static [Field]| fields.iter().find(|field| field.name == name);
+        let find = |fields: &'static [Field]| fields.iter().find(|field| field.is_called(name));
         let (field, map) = match (find(entry.params), find(NodeParams::FIELDS)) {
             (Some(field), _) => (field, &mut *of_learner),
             (None, Some(field)) => (field, &mut *of_node),

@@ -14,7 +14,7 @@ pub struct JitterPoints {
     #[param(default = 0.01, range = 0.0..=10.0, unit = "m")]
     pub deviation: f32,
     /// Largest displacement along each axis.
-    #[param(default = 0.05, range = 0.0..=10.0, unit = "m", alias = "most")]
+    #[param(default = 0.05, range = 0.0..=10.0, unit = "m", former = "most")]
     pub max_offset: f32,
 }
 

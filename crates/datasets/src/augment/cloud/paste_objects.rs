@@ -19,7 +19,7 @@ pub struct PasteObjects {
     #[param(default = 2, range = 1..=100)]
     pub scenes: usize,
     /// Largest number of objects from each scene.
-    #[param(default = 10, range = 1..=1000, alias = "most")]
+    #[param(default = 10, range = 1..=1000, former = "most")]
     pub max_objects: usize,
     /// Smallest number of points of a pasted object.
     #[param(default = 5, range = 1..=100_000)]

@@ -23,8 +23,8 @@ pub struct FacialEmotionParams {
     #[param(default = 0.6, range = 0.0..=1.0)]
     pub face_threshold: f32,
     /// Content of the images.
-    #[param(live, alias = "picture")]
-    pub input: FaceInput,
+    #[param(live, former = "picture")]
+    pub input_kind: FaceInput,
 }
 
 /// A loaded network with its face detector.
@@ -98,7 +98,7 @@ impl Learner for FacialEmotion {
 
     fn infer_into(&self, _: &mut (), image: &Image, category: &mut Category) -> Result<()> {
         let faces = &mut *self.scratch.take();
-        let crop = match self.params.input {
+        let crop = match self.params.input_kind {
             FaceInput::Face => Some(whole_image(image, SIDE)),
             FaceInput::Frame => {
                 self.finder.detect(image, faces)?;

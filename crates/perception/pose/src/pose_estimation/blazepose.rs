@@ -25,7 +25,7 @@ pub struct BlazePoseParams {
     #[param(default = 0.1, range = 0.0..=1.0, live)]
     pub keypoint_threshold: f32,
     /// Number of passes for a person who is not tracked yet; each pass starts from the square of the previous one.
-    #[param(default = 2, range = 1..=4, live, alias = "looks")]
+    #[param(default = 2, range = 1..=4, live, former = "looks")]
     pub passes: usize,
     /// Whether the person is tracked from frame to frame; switch it off for single images.
     #[param(default = true, live)]

@@ -24,7 +24,7 @@ pub struct GemFitParams {
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
     /// How images are resized to that side.
-    #[param(alias = "fitting")]
+    #[param(former = "fitting")]
     pub resizing: Resizing,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,

@@ -47,7 +47,7 @@ pub struct Seq2SeqNmsFitParams {
     /// detector.
     pub detector: Option<String>,
     /// Number of versions of each image, with a detector; all but the first are flipped, cropped and recoloured at random.
-    #[param(default = 1, range = 1..=1000, alias = "versions")]
+    #[param(default = 1, range = 1..=1000, former = "versions")]
     pub augmented_versions: usize,
 }
 

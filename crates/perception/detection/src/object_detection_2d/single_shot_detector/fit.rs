@@ -54,7 +54,7 @@ pub struct SingleShotDetectorFitParams {
     #[param(default = 320, range = 96..=1024, unit = "px")]
     pub img_size: usize,
     /// How an image is resized to that side.
-    #[param(alias = "fitting")]
+    #[param(former = "fitting")]
     pub resizing: Resizing,
     /// Names of the classes to detect, of those of the data set; all when empty.
     pub classes: Vec<String>,
@@ -73,7 +73,7 @@ pub struct SingleShotDetectorFitParams {
     #[param(default = 0, range = 0..=14)]
     pub freeze: usize,
     /// Score below which boxes, such as those of a teacher, are neither object nor background.
-    #[param(default = 0.5, range = 0.0..=1.0, alias = "least_score")]
+    #[param(default = 0.5, range = 0.0..=1.0, former = "least_score")]
     pub min_score: f32,
     /// Whether images are augmented at random: mosaic, crop, expansion, flip, colour.
     #[param(default = true)]

@@ -99,7 +99,7 @@ fn train(
         classes,
         margin,
         scale,
-        finder: (params.input == FaceInput::Frame).then(|| Arc::new(finder)),
+        finder: (params.input_kind == FaceInput::Frame).then(|| Arc::new(finder)),
         manifest,
         parts: parts.collect::<Result<_>>()?,
     };

@@ -39,8 +39,8 @@ pub struct FaceRecognitionParams {
     #[param(default = 0.6, range = 0.0..=1.0)]
     pub face_threshold: f32,
     /// Content of the images.
-    #[param(live, alias = "picture")]
-    pub input: FaceInput,
+    #[param(live, former = "picture")]
+    pub input_kind: FaceInput,
 }
 
 /// A loaded face recogniser.
@@ -166,7 +166,7 @@ impl FaceRecognition {
     }
 
     fn faces(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
-        if self.params.input == FaceInput::Frame {
+        if self.params.input_kind == FaceInput::Frame {
             return self.finder.detect(image, faces);
         }
         faces.boxes.clear();
@@ -176,7 +176,7 @@ impl FaceRecognition {
 
     /// Returns the crop of the aligned face; `None` when it has no extent.
     fn crop(&self, image: &Image, face: &BoundingBox) -> Option<Similarity> {
-        match self.params.input {
+        match self.params.input_kind {
             FaceInput::Frame => Similarity::from_points(&face.landmarks, &TEMPLATE),
             FaceInput::Face => Some(whole_image(image, SIDE)),
         }

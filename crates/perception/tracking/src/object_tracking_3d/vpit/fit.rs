@@ -21,10 +21,10 @@ pub struct VpitFitParams {
     #[param(default = 0.2, range = 0.02..=5.0, unit = "m")]
     pub pillar: f32,
     /// Maximum number of steps between the two scans of a pair.
-    #[param(default = 5, range = 1..=1000, alias = "apart")]
+    #[param(default = 5, range = 1..=1000, former = "apart")]
     pub max_frame_gap: usize,
     /// Maximum number of objects per scan in a batch.
-    #[param(default = 4, range = 1..=1000, alias = "objects")]
+    #[param(default = 4, range = 1..=1000, former = "objects")]
     pub max_objects: usize,
     /// Whether views are shifted and rotated at random relative to their objects.
     #[param(default = true)]
