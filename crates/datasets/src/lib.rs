@@ -8,7 +8,7 @@
 //! `opendr-evaluation`.
 //!
 //! ```
-//! use opendr_datasets::augment::{Augment, Flip, Others};
+//! use opendr_datasets::augment::{Augment, Flip, OtherSamples};
 //! use opendr_engine::data::Image;
 //! use opendr_engine::dataset::Sample;
 //! use opendr_engine::target::{BoundingBox, BoundingBoxList};
@@ -17,7 +17,7 @@
 //! let image = Image::from_rgb8(vec![0; 100 * 80 * 3], 100, 80)?;
 //! let boxes = BoundingBoxList::from(vec![BoundingBox::new(0_i64, 10.0, 20.0, 30.0, 40.0, 1.0)]);
 //! let mut sample = Sample { data: vec![image.into()], target: Some(boxes.into()) };
-//! Flip::default().apply(&mut sample, &mut Random::new(0), &Others::none())?;
+//! Flip::default().apply(&mut sample, &mut Random::new(0), &OtherSamples::none())?;
 //! let Some(Value::BoundingBoxList(boxes)) = sample.target else { unreachable!() };
 //! assert_eq!(boxes.boxes[0].left, 60.0);
 //! # Ok::<_, opendr_engine::Error>(())

@@ -14,11 +14,11 @@
 //! ```
 //! use opendr_engine::Device;
 //! use opendr_inference::{Builtin, Session, TensorView};
-//! use opendr_onnx::{Builder, Kind, Operator, bytes_from_model, model_from_graph};
+//! use opendr_onnx::{Builder, ElementType, Operator, bytes_from_model, model_from_graph};
 //!
 //! let mut graph = Builder::default();
-//! let x = graph.input("x", Kind::Float, vec![Some(2)], &[]);
-//! let relu = graph.add("relu", Operator::new("Relu"), &[&x], Kind::Float, vec![Some(2)])?;
+//! let x = graph.input("x", ElementType::Float, vec![Some(2)], &[]);
+//! let relu = graph.add("relu", Operator::new("Relu"), &[&x], ElementType::Float, vec![Some(2)])?;
 //! graph.output("y", &relu, "", &[])?;
 //! let model = bytes_from_model(&model_from_graph(graph.finish("example")));
 //!

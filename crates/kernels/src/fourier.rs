@@ -30,12 +30,12 @@ pub enum Spectrum {
 /// A transform of one size, of [`FOURIER_FRAMES`] frames at once.
 ///
 /// ```
-/// use opendr_kernels::{FOURIER_FRAMES, FourierWork, Isa, RealFourier, Spectrum};
+/// use opendr_kernels::{FOURIER_FRAMES, FourierScratch, Isa, RealFourier, Spectrum};
 ///
 /// let fourier = RealFourier::new(8);
 /// let samples = [[1.0; FOURIER_FRAMES]; 8];
 /// let mut power = Vec::new();
-/// fourier.run(Isa::best(), Spectrum::Power, &samples, &mut FourierWork::default(), &mut power);
+/// fourier.run(Isa::best(), Spectrum::Power, &samples, &mut FourierScratch::default(), &mut power);
 /// assert_eq!(power.len(), 5);
 /// assert!(power[0][0] == 64.0 && power[1..].iter().all(|frames| frames[0] < 1e-6));
 /// ```

@@ -6,11 +6,11 @@
 //! [`Message`]:
 //!
 //! ```
-//! use opendr_messages::{Message, MessageType, Wire, std_msgs};
+//! use opendr_messages::{Message, MessageType, WireFormat, std_msgs};
 //!
 //! let message = Message::from(std_msgs::String { data: "hello".to_owned() });
-//! let bytes = message.to_bytes(Wire::Cdr)?;
-//! assert_eq!(Message::from_bytes(MessageType::StdMsgsString, Wire::Cdr, &bytes)?, message);
+//! let bytes = message.to_bytes(WireFormat::Cdr)?;
+//! assert_eq!(Message::from_bytes(MessageType::StdMsgsString, WireFormat::Cdr, &bytes)?, message);
 //! assert_eq!(MessageType::StdMsgsString.ros2_name(), "std_msgs/msg/String");
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```

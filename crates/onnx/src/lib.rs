@@ -11,12 +11,12 @@
 //! `opendr-optimize`.
 //!
 //! ```
-//! use opendr_onnx::{Builder, Kind, Operator, Wire, bytes_from_model, model_from_bytes, model_from_graph};
+//! use opendr_onnx::{Builder, ElementType, Operator, GraphTensor, bytes_from_model, model_from_bytes, model_from_graph};
 //!
 //! let mut graph = Builder::default();
-//! let x = graph.input("x", Kind::Float, vec![None, Some(3)], &["batch"]);
+//! let x = graph.input("x", ElementType::Float, vec![None, Some(3)], &["batch"]);
 //! let (double, dims) = (Operator::new("Mul"), x.dims().to_vec());
-//! let scaled = graph.add("scaled", double, &[&x, &Wire::scalar(2.0)], Kind::Float, dims)?;
+//! let scaled = graph.add("scaled", double, &[&x, &GraphTensor::scalar(2.0)], ElementType::Float, dims)?;
 //! graph.output("y", &scaled, "", &["batch"])?;
 //! let bytes = bytes_from_model(&model_from_graph(graph.finish("example")));
 //! let graph = model_from_bytes(&bytes)?.graph.unwrap_or_default();

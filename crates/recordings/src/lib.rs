@@ -8,11 +8,11 @@
 //! ```
 //! use opendr_engine::data::Timeseries;
 //! use opendr_engine::{ValueRef, ValueType};
-//! use opendr_recordings::{Answers, BagFormat, PortTopic, Recording, Sets};
+//! use opendr_recordings::{RecordingWriter, BagFormat, PortTopic, Recording, SyncedSets};
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("beats.bag");
-//! let mut writer = Answers::create(&path, BagFormat::Bag1)?;
+//! let mut writer = RecordingWriter::create(&path, BagFormat::Bag1)?;
 //! let series = Timeseries::new(vec![0.5; 140], [140, 1])?;
 //! writer.write("/beats", ValueRef::Timeseries(&series), 1_000)?;
 //! writer.finish()?;
@@ -20,7 +20,7 @@
 //! let recording = Recording::open(&path)?;
 //! let topic = recording.topic_for(ValueType::Timeseries, None)?;
 //! let port = PortTopic::new(topic.name, ValueType::Timeseries);
-//! let sets: Vec<_> = Sets::open(&recording, vec![port])?.collect::<Result<_, _>>()?;
+//! let sets: Vec<_> = SyncedSets::open(&recording, vec![port])?.collect::<Result<_, _>>()?;
 //! assert_eq!((sets.len(), sets[0].log_time_ns), (1, 1_000));
 //! # Ok::<_, opendr_engine::Error>(())
 //! ```

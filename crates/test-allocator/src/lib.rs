@@ -4,10 +4,10 @@
 //! [`allocations_of_thread`] before and after the code under test. The crate measures no bytes and no peak memory.
 //!
 //! ```standalone_crate
-//! use opendr_test_allocator::{Counting, allocations_of_thread};
+//! use opendr_test_allocator::{CountingAllocator, allocations_of_thread};
 //!
 //! #[global_allocator]
-//! static ALLOCATOR: Counting = Counting;
+//! static ALLOCATOR: CountingAllocator = CountingAllocator;
 //!
 //! fn main() {
 //!     let before = allocations_of_thread();

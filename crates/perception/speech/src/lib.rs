@@ -12,11 +12,11 @@
 //!
 //! ```
 //! use opendr_engine::data::Audio;
-//! use opendr_speech::speech_recognition::Sound;
+//! use opendr_speech::speech_recognition::AudioInput;
 //!
 //! // A second of silence as input of any learner of this crate.
 //! let audio = Audio::new(vec![0.0; 16_000], 1, 16_000)?;
-//! let samples = Sound::from(&audio).samples(16_000)?;
+//! let samples = AudioInput::from(&audio).samples(16_000)?;
 //! assert_eq!(samples.len(), 16_000);
 //! # Ok::<(), opendr_engine::Error>(())
 //! ```

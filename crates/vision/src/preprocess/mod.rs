@@ -68,10 +68,10 @@ impl ChannelOrder {
 ///
 /// ```
 /// use opendr_engine::data::{Image, Layout};
-/// use opendr_vision::{Anchor, ChannelOrder, Preprocess};
+/// use opendr_vision::{LetterboxAlign, ChannelOrder, Preprocess};
 ///
 /// let nanodet = Preprocess::new(416, 416)
-///     .letterbox(Anchor::Centre, 0.0)
+///     .letterbox(LetterboxAlign::Centre, 0.0)
 ///     .order(ChannelOrder::Bgr)
 ///     .normalise([103.53, 116.28, 123.675], [57.375, 57.12, 58.395]);
 /// let frame = Image::from_rgb8(vec![128; 640 * 480 * 3], 640, 480)?;

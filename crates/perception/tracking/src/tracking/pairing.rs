@@ -9,9 +9,9 @@ use opendr_engine::assignment::Assignment;
 /// the product of tracks and boxes.
 ///
 /// ```
-/// use opendr_tracking::tracking::Pairing;
+/// use opendr_tracking::tracking::SparseAssignment;
 ///
-/// let mut pairing = Pairing::default();
+/// let mut pairing = SparseAssignment::default();
 /// pairing.propose(0, 0, 0.9);
 /// pairing.propose(0, 1, 0.8);
 /// pairing.propose(1, 0, 0.7);
