@@ -1744,7 +1744,7 @@ static inline opendr_status opendr_infer_yunet(const opendr_learner *learner,
  * Parameters:
  *   threshold (a float -1..=1, live, default 0.38): Cosine to every image of a known person below which a face is unknown.
  *   face_threshold (a float 0..=1, default 0.6): Score of the detector below which faces are dropped.
- *   input (a str, one of frame, face, live, default frame): Content of the images.
+ *   input_kind (a str, one of frame, face, live, default frame): Content of the images.
  *
  * Inputs:
  *   image (Image)
@@ -1814,7 +1814,7 @@ static inline opendr_status opendr_infer_face_mesh(const opendr_learner *learner
  *
  * Parameters:
  *   face_threshold (a float 0..=1, default 0.6): Score of the detector below which faces are dropped.
- *   input (a str, one of frame, face, live, default frame): Content of the images.
+ *   input_kind (a str, one of frame, face, live, default frame): Content of the images.
  *
  * Inputs:
  *   image (Image)

@@ -27,8 +27,8 @@ class FacialEmotionLearner(FacialEmotion):
 
     Args:
         face_threshold: Score of the detector below which faces are dropped. (default 0.6; 0 to 1)
-        input: Content of the images. (default 'frame'; one of 'frame', 'face'; live: may change while running,
-            and for one call of infer; in OpenDR picture)
+        input_kind: Content of the images. (default 'frame'; one of 'frame', 'face'; live: may change while
+            running, and for one call of infer)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
 
     Arguments of OpenDR that are accepted and have no effect:
@@ -47,14 +47,14 @@ class FacialEmotionLearner(FacialEmotion):
     """
 
     face_threshold: float
-    input: Literal['frame', 'face']
-    def __init__(self, lr: float = ..., batch_size: int = ..., temp_path: str = ..., device: str = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ..., *, iters: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., face_threshold: float = ..., input: Literal['frame', 'face'] = ..., picture: Literal['frame', 'face'] = ...) -> None: ...
+    input_kind: Literal['frame', 'face']
+    def __init__(self, lr: float = ..., batch_size: int = ..., temp_path: str = ..., device: str = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ..., *, iters: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., threshold: float = ..., scale: float = ..., face_threshold: float = ..., input_kind: Literal['frame', 'face'] = ...) -> None: ...
     @overload
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, input: Literal['frame', 'face'] = ..., picture: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Category: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, input: Literal['frame', 'face'] = ..., picture: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> list[Category]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> list[Category]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, input: Literal['frame', 'face'] = ..., picture: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Iterator[Category]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, input_kind: Literal['frame', 'face'] = ..., device_ind: Any = ..., validation_interval: Any = ..., max_training_epoch: Any = ..., momentum: Any = ..., ensemble_size: Any = ..., base_path_experiment: Any = ..., name_experiment: Any = ..., dimensional_finetune: Any = ..., categorical_train: Any = ..., base_path_to_dataset: Any = ..., max_tuning_epoch: Any = ..., diversify: Any = ...) -> Iterator[Category]: ...
     def optimize(self, do_constant_folding: Any = ..., *, target_device: str = ..., out: Optional[PathLike] = ..., precision: str = ..., calibration: Union[None, Dataset] = ..., validation: Union[None, Dataset] = ..., verbose: bool = ..., **options: Any) -> dict[str, Any]: ...
 
 class ProgressiveSpatioTemporalBLNLearner(NativeLearner):

@@ -285,8 +285,7 @@ class BlazePoseLearner(NativeLearner):
         keypoint_threshold: Probability of visibility below which keypoints are missing. (default 0.1; 0 to 1;
             live: may change while running, and for one call of infer)
         passes: Number of passes for a person who is not tracked yet; each pass starts from the square of the
-            previous one. (default 2; 1 to 4; live: may change while running, and for one call of infer; in OpenDR
-            looks)
+            previous one. (default 2; 1 to 4; live: may change while running, and for one call of infer)
         track: Whether the person is tracked from frame to frame; switch it off for single images. (default True;
             live: may change while running, and for one call of infer)
         others: OpenDR's arguments, see ``opendr.engine.learners.BaseLearner``.
@@ -295,13 +294,13 @@ class BlazePoseLearner(NativeLearner):
     keypoint_threshold: float
     passes: int
     track: bool
-    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., passes: int = ..., looks: int = ..., track: bool = ...) -> None: ...
+    def __init__(self, lr: float = ..., iters: int = ..., batch_size: int = ..., optimizer: str = ..., lr_schedule: str = ..., backbone: str = ..., network_head: str = ..., checkpoint_after_iter: int = ..., checkpoint_load_iter: int = ..., temp_path: str = ..., device: str = ..., threshold: float = ..., scale: float = ..., *, keypoint_threshold: float = ..., passes: int = ..., track: bool = ...) -> None: ...
     @overload
-    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., looks: int = ..., track: bool = ...) -> PoseList: ...  # type: ignore[overload-overlap]
+    def infer(self, image: Union[Image, NDArray[Any], str, os.PathLike[str]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., track: bool = ...) -> PoseList: ...  # type: ignore[overload-overlap]
     @overload
-    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., looks: int = ..., track: bool = ...) -> list[PoseList]: ...
+    def infer(self, image: Sequence[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., track: bool = ...) -> list[PoseList]: ...
     @overload
-    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., looks: int = ..., track: bool = ...) -> Iterator[PoseList]: ...
+    def infer(self, image: Iterator[Union[Image, NDArray[Any], str, os.PathLike[str]]], *, threshold: float = ..., keypoint_threshold: float = ..., passes: int = ..., track: bool = ...) -> Iterator[PoseList]: ...
 
 class FilteredPose:
     """Not available yet: infer(img, track=True, smooth=True) of LightweightOpenPoseLearner smooths poses."""
