@@ -8,7 +8,6 @@ mod indexing;
 mod movement;
 mod reduction;
 
-pub use indexing::broadcast;
 pub use movement::slice_range;
 
 use super::array::Array;
