@@ -103,7 +103,7 @@ def test_life_cycle(entry, zoo, photo, tmp_path):
         learner.fit(None)
     with pytest.raises(NotImplementedError, match=entry["class_name"]):
         learner.optimize(target_device="cpu")
-    with pytest.raises(ValueError, match="give out"):
+    with pytest.raises(ValueError, match="give the folder"):
         learner.optimize()
 
 
