@@ -13,6 +13,7 @@
 
 mod drawing;
 mod film;
+mod multirotor;
 mod numpy_random;
 mod registered_source;
 mod registry;
@@ -20,6 +21,7 @@ mod sine_cosine;
 
 pub mod classic_control;
 pub mod lidar;
+pub mod quad_track;
 pub mod raycast;
 pub mod street;
 pub mod uav_corridor;

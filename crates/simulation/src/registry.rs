@@ -9,6 +9,7 @@ use opendr_engine::{Error, Result};
 use crate::classic_control::{
     Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
 };
+use crate::quad_track::QuadTrack;
 use crate::uav_corridor;
 use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
 use crate::wrappers::{Checked, TimeLimit};
@@ -107,6 +108,7 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<MountainCar>(),
         Registration::of::<MountainCarContinuous>(),
         Registration::of::<Pendulum>(),
+        Registration::of::<QuadTrack>(),
     ];
     Registry { entries: classic.into_iter().chain(uav_corridor::registrations()).collect() }
 });

@@ -1,0 +1,337 @@
+//! The adapter: a controller that learns at every step.
+
+use opendr_engine::environment::{Controller, Space};
+use opendr_engine::params::Params as _;
+use opendr_engine::{Error, Result};
+
+use super::step::{bounded_step, norm};
+use super::{AdaptablePolicy, AdaptationParams, Envelope, EventKind, EventLog, FreezeReason, Monitor, Verdict};
+use crate::TrackingLayout;
+
+/// A policy that is adapted while it controls.
+///
+/// It is deterministic: the same observations give the same commands and the same parameters, bit for bit. After the first step it
+/// allocates nothing.
+pub struct OnlineAdapter<P> {
+    layout: TrackingLayout,
+    params: AdaptationParams,
+    base: P,
+    adapted: P,
+    conventional: Box<dyn Controller + Send>,
+    envelope: Option<Envelope>,
+    bounds: [Vec<f32>; 2],
+    monitor: Monitor,
+    log: EventLog,
+    /// The last good parameters, where there were any.
+    snapshot: Vec<f32>,
+    buffers: Buffers,
+    phase: Phase,
+}
+
+/// Memory of a step, used again.
+struct Buffers {
+    /// The last observations, as a ring.
+    recent: Vec<f32>,
+    /// Filtered sums of error and rate.
+    sums: Vec<f32>,
+    signals: Vec<f32>,
+    gradients: Vec<f32>,
+    /// Commands: of now, of the base, of the conventional controller, of the delayed observation.
+    adapted: Vec<f32>,
+    base: Vec<f32>,
+    conventional: Vec<f32>,
+    delayed: Vec<f32>,
+    /// By how much the guard cut the last command.
+    cut: Vec<f32>,
+}
+
+/// Where an adaptation stands.
+#[derive(Debug, Clone, Copy, Default)]
+struct Phase {
+    step: u64,
+    /// Steps since the last reset.
+    of_episode: u64,
+    updates: u64,
+    frozen: Option<FreezeReason>,
+    guarded: bool,
+    /// Step until which learning pauses after a rollback.
+    paused_until: u64,
+    paused: bool,
+    strikes: u32,
+    disarmed: bool,
+    has_snapshot: bool,
+}
+
+/// Events that are kept.
+const EVENTS: usize = 4096;
+
+impl<P: AdaptablePolicy> OnlineAdapter<P> {
+    /// An adapter around `base`, whose commands are held near those of `conventional`. `action` is the environment's action space;
+    /// outside `envelope`, where one is given, nothing is learned.
+    ///
+    /// # Errors
+    /// `InvalidParam` for parameters out of range and a layout that does not fit the action space.
+    pub fn new(
+        base: P,
+        conventional: impl Controller + Send + 'static,
+        layout: TrackingLayout,
+        action: &Space,
+        envelope: Option<Envelope>,
+        params: AdaptationParams,
+    ) -> Result<Self> {
+        layout.check()?;
+        params.check()?;
+        let Space::Box { low, high, .. } = action else {
+            return Err(Error::invalid_param(format!("actions are {action}; online adaptation needs a box of numbers")));
+        };
+        if low.len() != layout.axes {
+            return Err(Error::invalid_param(format!(
+                "the layout has {} axes and an action {} numbers; make them equal",
+                layout.axes,
+                low.len()
+            )));
+        }
+        let delay = (params.delay / params.period).round() as usize;
+        let (axes, count) = (layout.axes, base.parameters().len());
+        let buffers = Buffers {
+            recent: vec![0.0; (delay + 1) * layout.len],
+            sums: vec![0.0; axes],
+            signals: vec![0.0; axes],
+            gradients: vec![0.0; count],
+            adapted: vec![0.0; axes],
+            base: vec![0.0; axes],
+            conventional: vec![0.0; axes],
+            delayed: vec![0.0; axes],
+            cut: vec![0.0; axes],
+        };
+        Ok(Self {
+            layout,
+            monitor: Monitor::new(params.monitor, axes, f64::from(params.period)),
+            adapted: base.clone(),
+            conventional: Box::new(conventional),
+            envelope,
+            bounds: [low.clone(), high.clone()],
+            log: EventLog::new(EVENTS),
+            snapshot: base.parameters().to_vec(),
+            buffers,
+            phase: Phase::default(),
+            base,
+            params,
+        })
+    }
+
+    /// The frozen policy.
+    pub fn base(&self) -> &P {
+        &self.base
+    }
+
+    /// The policy with the present parameters.
+    pub fn adapted(&self) -> &P {
+        &self.adapted
+    }
+
+    /// The parameters of the adaptation.
+    pub fn params(&self) -> &AdaptationParams {
+        &self.params
+    }
+
+    /// What happened so far.
+    pub fn log(&self) -> &EventLog {
+        &self.log
+    }
+
+    /// The monitor.
+    pub fn monitor(&self) -> &Monitor {
+        &self.monitor
+    }
+
+    /// Steps so far, and in how many of them the parameters learned.
+    pub fn steps(&self) -> [u64; 2] {
+        [self.phase.step, self.phase.updates]
+    }
+
+    /// Distance of the parameters from the base (Euclidean norm).
+    pub fn distance(&self) -> f32 {
+        let pairs = self.adapted.parameters().iter().zip(self.base.parameters());
+        norm(pairs.map(|(adapted, base)| adapted - base))
+    }
+
+    /// Whether learning was switched off after repeated rollbacks.
+    pub fn is_disarmed(&self) -> bool {
+        self.phase.disarmed
+    }
+
+    /// Switches learning on again.
+    pub fn rearm(&mut self) {
+        (self.phase.disarmed, self.phase.strikes) = (false, 0);
+        self.monitor.restart();
+    }
+
+    /// Restores the base and forgets snapshots.
+    pub fn restore_base(&mut self) {
+        self.adapted.parameters_mut().copy_from_slice(self.base.parameters());
+        self.phase.has_snapshot = false;
+        self.monitor.restart();
+    }
+
+    /// Why nothing may be learned from an observation, if so.
+    fn freeze_reason(&self, observation: &[f32]) -> Option<FreezeReason> {
+        if self.layout.age(observation) > self.params.max_age {
+            Some(FreezeReason::Stale)
+        } else if self.layout.saturated(observation) {
+            Some(FreezeReason::Saturated)
+        } else if self.envelope.as_ref().is_some_and(|envelope| !envelope.contains(observation)) {
+            Some(FreezeReason::OutsideEnvelope)
+        } else {
+            None
+        }
+    }
+
+    /// Whether this step may learn; freezes and resumptions go to the log.
+    fn may_learn(&mut self, observation: &[f32]) -> bool {
+        let reason = self.freeze_reason(observation);
+        let Phase { step, frozen, paused_until, paused, .. } = self.phase;
+        let pauses = step < paused_until;
+        match (frozen, reason) {
+            (None, Some(reason)) => self.log.push(step, EventKind::Frozen(reason)),
+            (Some(_), None) => self.log.push(step, EventKind::Resumed),
+            _ if paused && !pauses && !self.phase.disarmed => self.log.push(step, EventKind::Resumed),
+            _ => (),
+        }
+        (self.phase.frozen, self.phase.paused) = (reason, pauses);
+        let delay = (self.buffers.recent.len() / self.layout.len) as u64;
+        reason.is_none() && !pauses && !self.phase.disarmed && self.phase.of_episode >= delay
+    }
+
+    /// Keeps good parameters, restores them when the monitor finds the present ones worse.
+    fn supervise(&mut self, observation: &[f32]) -> Result<()> {
+        let errors = self.layout.errors(observation);
+        let verdict = self.monitor.observe(errors, &self.buffers.adapted, &self.buffers.base);
+        let (step, kind) = match verdict {
+            Verdict::Undecided => return Ok(()),
+            Verdict::Good => {
+                self.snapshot.copy_from_slice(self.adapted.parameters());
+                self.monitor.count_good_again();
+                (self.phase.strikes, self.phase.has_snapshot) = (0, true);
+                (self.phase.step, EventKind::Snapshot)
+            }
+            Verdict::Worse => {
+                // Restored once: where it is worse, too, the base follows.
+                let (parameters, kind) = match std::mem::take(&mut self.phase.has_snapshot) {
+                    true => (&self.snapshot[..], EventKind::RolledBackToSnapshot),
+                    false => (self.base.parameters(), EventKind::RolledBackToBase),
+                };
+                self.adapted.parameters_mut().copy_from_slice(parameters);
+                let pause = self.params.monitor.pause / f64::from(self.params.period);
+                let pause = pause * f64::from(1u32 << self.phase.strikes.min(16));
+                self.phase.paused_until = self.phase.step + pause as u64;
+                self.phase.strikes += 1;
+                self.monitor.restart();
+                (self.phase.step, kind)
+            }
+        };
+        self.log.push(step, kind);
+        if self.phase.strikes >= self.params.monitor.strikes && !self.phase.disarmed {
+            self.phase.disarmed = true;
+            self.adapted.parameters_mut().copy_from_slice(self.base.parameters());
+            self.log.push(step, EventKind::Disarmed);
+        }
+        Ok(())
+    }
+
+    /// Writes the learning signals; whether there is one.
+    fn signals(&mut self, observation: &[f32]) -> bool {
+        let AdaptationParams { signal, rate_weight, scale, dead_zone, filter, period, .. } = self.params;
+        let (errors, rates) = (self.layout.errors(observation), self.layout.rates(observation));
+        let Buffers { sums, signals, cut, .. } = &mut self.buffers;
+        let mut any = false;
+        for axis in 0..self.layout.axes {
+            let sum = errors[axis] + rate_weight * rates[axis];
+            sums[axis] += (sum - sums[axis]) * (period / (filter + period));
+            let value = signal.value(sums[axis], scale, dead_zone);
+            // What the guard cuts off must not be asked for more and more.
+            signals[axis] = if cut[axis] * value > 0.0 { 0.0 } else { value };
+            any |= signals[axis] != 0.0;
+        }
+        any
+    }
+
+    /// Moves the parameters so that the command of a delay ago would have been different by the signal.
+    fn learn(&mut self) -> Result<()> {
+        let Self { adapted, base, buffers, params, layout, phase, .. } = self;
+        let Buffers { recent, signals, gradients, delayed, .. } = buffers;
+        let slots = (recent.len() / layout.len) as u64;
+        // The slot that this step's observation will overwrite is the oldest.
+        let oldest = (phase.of_episode % slots) as usize * layout.len;
+        adapted.act(&recent[oldest..oldest + layout.len], delayed)?;
+        gradients.fill(0.0);
+        adapted.backward(signals, gradients)?;
+        if params.last_layer_only {
+            let range = adapted.last_layer();
+            gradients[..range.start].fill(0.0);
+            gradients[range.end..].fill(0.0);
+        }
+        let square: f32 = gradients.iter().map(|gradient| gradient * gradient).sum();
+        let wanted: f32 = signals.iter().map(|signal| signal * signal).sum();
+        if square <= 1e-12 * wanted || !square.is_finite() {
+            return Ok(());
+        }
+        // The command then changes by about rate x signal x period.
+        let factor = params.rate * params.period * wanted / square;
+        let limits = [params.step_limit, params.leak * params.period, params.radius];
+        bounded_step(adapted.parameters_mut(), base.parameters(), gradients, factor, limits);
+        phase.updates += 1;
+        Ok(())
+    }
+
+    /// Writes the command of the adapted policy, held near the conventional one and within the action space.
+    fn command(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        let Buffers { adapted, base, conventional, cut, .. } = &mut self.buffers;
+        self.conventional.act(observation, conventional)?;
+        self.base.act(observation, base)?;
+        self.adapted.act(observation, adapted)?;
+        let band = self.params.band;
+        let mut guarded = false;
+        for axis in 0..adapted.len() {
+            let held = adapted[axis].clamp(conventional[axis] - band, conventional[axis] + band);
+            let held = held.clamp(self.bounds[0][axis], self.bounds[1][axis]);
+            cut[axis] = adapted[axis] - held;
+            guarded |= cut[axis] != 0.0;
+            (adapted[axis], action[axis]) = (held, held);
+        }
+        if guarded && !self.phase.guarded {
+            self.log.push(self.phase.step, EventKind::Guarded);
+        }
+        self.phase.guarded = guarded;
+        Ok(())
+    }
+}
+
+impl<P: AdaptablePolicy> Controller for OnlineAdapter<P> {
+    /// Another episode: what was learned stays, the past of the last one is forgotten.
+    fn reset(&mut self) {
+        self.conventional.reset();
+        self.buffers.sums.fill(0.0);
+        self.buffers.cut.fill(0.0);
+        self.buffers.adapted.fill(0.0);
+        self.buffers.base.fill(0.0);
+        self.monitor = Monitor::new(self.params.monitor, self.layout.axes, f64::from(self.params.period));
+        self.phase.of_episode = 0;
+    }
+
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        self.layout.check_lengths(observation, action)?;
+        self.supervise(observation)?;
+        let signalled = self.signals(observation);
+        if self.may_learn(observation) && signalled {
+            self.learn()?;
+        }
+        self.command(observation, action)?;
+        let slots = (self.buffers.recent.len() / self.layout.len) as u64;
+        let slot = (self.phase.of_episode % slots) as usize * self.layout.len;
+        self.buffers.recent[slot..slot + self.layout.len].copy_from_slice(observation);
+        self.phase.step += 1;
+        self.phase.of_episode += 1;
+        Ok(())
+    }
+}
