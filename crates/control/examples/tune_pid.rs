@@ -6,9 +6,11 @@
 use opendr_control::{PidGains, TrackingLayout, TrackingPid};
 use opendr_engine::environment::{Controller as _, Environment as _, ResetOptions};
 use opendr_engine::{Error, Result};
-use opendr_simulation::quad_track::{CONTROL_PERIOD, QuadTrack, QuadTrackParams};
 use opendr_simulation::Registered as _;
-use opendr_tuning::{Budget, CmaEs, Direction, Distribution, Outcome, Progress, SearchSpace, Storage, Study, Trial};
+use opendr_simulation::quad_track::{CONTROL_PERIOD, QuadTrack, QuadTrackParams};
+use opendr_tuning::{
+    Budget, CmaEs, Direction, Distribution, Outcome, Progress, SearchSpace, Storage, Study, Trial,
+};
 
 fn main() -> Result<()> {
     let trials = std::env::args().nth(1).map_or(Ok(300), |text| text.parse());
@@ -34,7 +36,13 @@ fn main() -> Result<()> {
 
 fn gains(trial: &Trial<'_>, axis: &str) -> Result<PidGains> {
     let number = |name: &str| trial.float(&format!("{axis}.{name}"));
-    Ok(PidGains { kp: number("kp")?, ki: number("ki")?, kd: number("kd")?, filter: number("filter")?, limit: 8.0 })
+    Ok(PidGains {
+        kp: number("kp")?,
+        ki: number("ki")?,
+        kd: number("kd")?,
+        filter: number("filter")?,
+        limit: 8.0,
+    })
 }
 
 /// The RMS error of nominal flights, metres.

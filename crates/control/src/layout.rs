@@ -13,6 +13,8 @@ pub struct TrackingLayout {
     pub error: usize,
     /// Place of the first rate of the error.
     pub rate: usize,
+    /// Place of the first velocity of the reference.
+    pub velocity: Option<usize>,
     /// Place of the first feed-forward command; without one it is 0.
     pub feedforward: Option<usize>,
     /// Place of the age of the state estimate, seconds.
@@ -23,15 +25,23 @@ pub struct TrackingLayout {
 
 impl TrackingLayout {
     /// Layout of `QuadTrack-v1`: position error, velocity error, and the reference's acceleration as feed-forward.
-    pub const QUAD_TRACK: Self =
-        Self { len: 17, axes: 3, error: 0, rate: 3, feedforward: Some(9), age: Some(15), saturated: Some(16) };
+    pub const QUAD_TRACK: Self = Self {
+        len: 17,
+        axes: 3,
+        error: 0,
+        rate: 3,
+        velocity: Some(6),
+        feedforward: Some(9),
+        age: Some(15),
+        saturated: Some(16),
+    };
 
     /// Checks that all places lie in the observation.
     ///
     /// # Errors
     /// `InvalidParam` where one does not.
     pub fn check(&self) -> Result<()> {
-        let blocks = [Some(self.error), Some(self.rate), self.feedforward];
+        let blocks = [Some(self.error), Some(self.rate), self.velocity, self.feedforward];
         let inside = blocks.into_iter().flatten().all(|first| first + self.axes <= self.len)
             && [self.age, self.saturated].into_iter().flatten().all(|place| place < self.len);
         if inside && self.axes > 0 {
@@ -68,6 +78,17 @@ impl TrackingLayout {
     /// Rates of the errors.
     pub fn rates<'a>(&self, observation: &'a [f32]) -> &'a [f32] {
         &observation[self.rate..self.rate + self.axes]
+    }
+
+    /// Observed velocity of an axis: the reference's less the rate of the error.
+    pub(crate) fn velocity(&self, observation: &[f32], axis: usize) -> f32 {
+        self.velocity.map_or(0.0, |first| observation[first + axis]) - observation[self.rate + axis]
+    }
+
+    /// Sets errors and rates to 0.
+    pub(crate) fn clear_errors(&self, observation: &mut [f32]) {
+        observation[self.error..self.error + self.axes].fill(0.0);
+        observation[self.rate..self.rate + self.axes].fill(0.0);
     }
 
     /// Feed-forward command of an axis.

@@ -105,7 +105,16 @@ mod tests {
 
     #[test]
     fn axes_have_their_own_gains_and_feedforward() {
-        let layout = TrackingLayout { feedforward: Some(4), age: None, saturated: None, len: 6, axes: 2, error: 0, rate: 2 };
+        let layout = TrackingLayout {
+            velocity: None,
+            feedforward: Some(4),
+            age: None,
+            saturated: None,
+            len: 6,
+            axes: 2,
+            error: 0,
+            rate: 2,
+        };
         let gains = [2.0, 3.0].map(|kp| PidGains { kp, kd: 1.0, filter: 0.0, ..PidGains::default() });
         let mut pid = TrackingPid::new(layout, &gains, 0.01).unwrap();
         let mut action = [0.0; 2];
@@ -117,6 +126,8 @@ mod tests {
         let [stiffness, damping] = [lqr.gain()[0] as f32, lqr.gain()[1] as f32];
         let mut lqr = TrackingLqr::new(layout, lqr, 100.0).unwrap();
         lqr.act(&[1.0, 0.0, 0.0, 2.0, 10.0, 20.0], &mut action).unwrap();
-        assert!((action[0] - 10.0 - stiffness).abs() < 1e-4 && (action[1] - 20.0 - 2.0 * damping).abs() < 1e-4);
+        assert!(
+            (action[0] - 10.0 - stiffness).abs() < 1e-4 && (action[1] - 20.0 - 2.0 * damping).abs() < 1e-4
+        );
     }
 }

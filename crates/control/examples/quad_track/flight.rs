@@ -49,7 +49,8 @@ pub fn fly(
         (span.iter().map(|error| error * error).sum::<f64>() / span.len().max(1) as f64).sqrt()
     };
     let before = rms(10 * RATE, 20 * RATE);
-    let seconds = (40..120).rev().take_while(|half| rms(half * RATE / 2, half * RATE / 2 + 2 * RATE) <= 2.0 * before);
+    let seconds =
+        (40..120).rev().take_while(|half| rms(half * RATE / 2, half * RATE / 2 + 2 * RATE) <= 2.0 * before);
     Ok(Flight {
         last: if lost { f64::INFINITY } else { rms(40 * RATE, 60 * RATE) },
         before,

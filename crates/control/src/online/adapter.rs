@@ -5,7 +5,10 @@ use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Result};
 
 use super::step::{bounded_step, norm};
-use super::{AdaptablePolicy, AdaptationParams, Envelope, EventKind, EventLog, FreezeReason, Monitor, Verdict};
+use super::{
+    AdaptablePolicy, AdaptationParams, Envelope, EventKind, EventLog, FreezeReason, LearningSignal, Monitor,
+    Preconditioner, Verdict,
+};
 use crate::TrackingLayout;
 
 /// A policy that is adapted while it controls.
@@ -19,12 +22,16 @@ pub struct OnlineAdapter<P> {
     adapted: P,
     conventional: Box<dyn Controller + Send>,
     envelope: Option<Envelope>,
+    preconditioner: Option<Preconditioner>,
     bounds: [Vec<f32>; 2],
     monitor: Monitor,
     log: EventLog,
     /// The last good parameters, where there were any.
     snapshot: Vec<f32>,
     buffers: Buffers,
+    recording: Vec<f32>,
+    /// -1 for a flipped signal, else 1.
+    sign: f32,
     phase: Phase,
 }
 
@@ -35,7 +42,13 @@ struct Buffers {
     /// Filtered sums of error and rate.
     sums: Vec<f32>,
     signals: Vec<f32>,
+    /// Velocities of the reference model.
+    model: Vec<f32>,
+    /// Its feedback behind the lag.
+    feedback: Vec<f32>,
     gradients: Vec<f32>,
+    /// Preconditioned gradients of the last layer.
+    direction: Vec<f32>,
     /// Commands: of now, of the base, of the conventional controller, of the delayed observation.
     adapted: Vec<f32>,
     base: Vec<f32>,
@@ -82,7 +95,9 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         layout.check()?;
         params.check()?;
         let Space::Box { low, high, .. } = action else {
-            return Err(Error::invalid_param(format!("actions are {action}; online adaptation needs a box of numbers")));
+            return Err(Error::invalid_param(format!(
+                "actions are {action}; online adaptation needs a box of numbers"
+            )));
         };
         if low.len() != layout.axes {
             return Err(Error::invalid_param(format!(
@@ -97,7 +112,10 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
             recent: vec![0.0; (delay + 1) * layout.len],
             sums: vec![0.0; axes],
             signals: vec![0.0; axes],
+            model: vec![0.0; axes],
+            feedback: vec![0.0; axes],
             gradients: vec![0.0; count],
+            direction: Vec::new(),
             adapted: vec![0.0; axes],
             base: vec![0.0; axes],
             conventional: vec![0.0; axes],
@@ -110,14 +128,31 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
             adapted: base.clone(),
             conventional: Box::new(conventional),
             envelope,
+            preconditioner: None,
             bounds: [low.clone(), high.clone()],
             log: EventLog::new(EVENTS),
             snapshot: base.parameters().to_vec(),
             buffers,
+            recording: Vec::new(),
+            sign: 1.0,
             phase: Phase::default(),
             base,
             params,
         })
+    }
+
+    /// Adapts the last layer alone, along gradients times this matrix.
+    ///
+    /// # Errors
+    /// `InvalidParam` where it belongs to another network.
+    pub fn with_preconditioner(mut self, preconditioner: Preconditioner) -> Result<Self> {
+        let count = self.base.last_layer().len();
+        if !preconditioner.fits(count, self.layout.axes) {
+            return Err(Error::invalid_param("a preconditioner of another network; make one from this base"));
+        }
+        self.buffers.direction = vec![0.0; count];
+        self.preconditioner = Some(preconditioner);
+        Ok(self)
     }
 
     /// The frozen policy.
@@ -172,6 +207,55 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
         self.adapted.parameters_mut().copy_from_slice(self.base.parameters());
         self.phase.has_snapshot = false;
         self.monitor.restart();
+    }
+
+    /// Sets the parameters, drawn to within the radius around the base.
+    pub(super) fn restore_parameters(&mut self, parameters: &[f32]) -> Result<()> {
+        if parameters.len() != self.base.parameters().len() {
+            return Err(Error::invalid_input(format!(
+                "{} parameters for a network of {}; load a model of this network",
+                parameters.len(),
+                self.base.parameters().len()
+            )));
+        }
+        let own = self.adapted.parameters_mut();
+        own.copy_from_slice(parameters);
+        bounded_step(
+            own,
+            self.base.parameters(),
+            &self.buffers.gradients,
+            0.0,
+            [0.0, 0.0, self.params.radius],
+        );
+        self.monitor.restart();
+        Ok(())
+    }
+
+    /// Turns the learning signal around: a fault to test guard and monitor with.
+    #[must_use]
+    pub fn with_flipped_signal(mut self) -> Self {
+        self.sign = -self.sign;
+        self
+    }
+
+    /// Keeps the observations of the next `steps` steps for [`Self::recording`].
+    pub fn record(&mut self, steps: usize) {
+        self.recording = Vec::with_capacity(steps.saturating_mul(self.layout.len));
+    }
+
+    /// The observations of the recorded steps, row after row. A fresh adapter that acts on them learns the same, bit for bit, and
+    /// writes the same log.
+    pub fn recording(&self) -> &[f32] {
+        &self.recording
+    }
+
+    /// Learns from a recording, as in flight.
+    ///
+    /// # Errors
+    /// Those of [`Controller::act`].
+    pub fn replay(&mut self, recording: &[f32]) -> Result<()> {
+        let mut action = vec![0.0; self.layout.axes];
+        recording.chunks_exact(self.layout.len).try_for_each(|observation| self.act(observation, &mut action))
     }
 
     /// Why nothing may be learned from an observation, if so.
@@ -241,14 +325,31 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
 
     /// Writes the learning signals; whether there is one.
     fn signals(&mut self, observation: &[f32]) -> bool {
-        let AdaptationParams { signal, rate_weight, scale, dead_zone, filter, period, .. } = self.params;
+        let AdaptationParams { signal, rate_weight, observer, scale, dead_zone, filter, period, .. } =
+            self.params;
         let (errors, rates) = (self.layout.errors(observation), self.layout.rates(observation));
-        let Buffers { sums, signals, cut, .. } = &mut self.buffers;
+        let first = self.phase.of_episode == 0;
+        let lag = self.params.monitor.lag as f32;
+        let Buffers { sums, signals, model, feedback, base, cut, .. } = &mut self.buffers;
         let mut any = false;
         for axis in 0..self.layout.axes {
-            let sum = errors[axis] + rate_weight * rates[axis];
+            let sum = match signal {
+                LearningSignal::ReferenceModel => {
+                    let velocity = self.layout.velocity(observation, axis);
+                    // The feedback reaches the plant late, as it does without a disturbance.
+                    let feedforward = self.layout.feedforward(observation, axis);
+                    feedback[axis] += (base[axis] - feedforward - feedback[axis]) * (period / (lag + period));
+                    let moved = model[axis] + (feedforward + feedback[axis]) * period;
+                    let lacking = if first { 0.0 } else { moved - velocity };
+                    model[axis] = velocity + lacking * (1.0 - observer * period).max(0.0);
+                    lacking
+                }
+                LearningSignal::ExpertRule | LearningSignal::FeedbackError => {
+                    errors[axis] + rate_weight * rates[axis]
+                }
+            };
             sums[axis] += (sum - sums[axis]) * (period / (filter + period));
-            let value = signal.value(sums[axis], scale, dead_zone);
+            let value = self.sign * signal.value(sums[axis], scale, dead_zone);
             // What the guard cuts off must not be asked for more and more.
             signals[axis] = if cut[axis] * value > 0.0 { 0.0 } else { value };
             any |= signals[axis] != 0.0;
@@ -258,28 +359,38 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
 
     /// Moves the parameters so that the command of a delay ago would have been different by the signal.
     fn learn(&mut self) -> Result<()> {
-        let Self { adapted, base, buffers, params, layout, phase, .. } = self;
-        let Buffers { recent, signals, gradients, delayed, .. } = buffers;
+        let Self { adapted, base, buffers, params, layout, phase, preconditioner, .. } = self;
+        let Buffers { recent, signals, gradients, direction, delayed, .. } = buffers;
         let slots = (recent.len() / layout.len) as u64;
         // The slot that this step's observation will overwrite is the oldest.
         let oldest = (phase.of_episode % slots) as usize * layout.len;
-        adapted.act(&recent[oldest..oldest + layout.len], delayed)?;
+        let observation = &mut recent[oldest..oldest + layout.len];
+        if params.reference_only {
+            layout.clear_errors(observation);
+        }
+        adapted.act(observation, delayed)?;
         gradients.fill(0.0);
         adapted.backward(signals, gradients)?;
-        if params.last_layer_only {
-            let range = adapted.last_layer();
-            gradients[..range.start].fill(0.0);
-            gradients[range.end..].fill(0.0);
-        }
-        let square: f32 = gradients.iter().map(|gradient| gradient * gradient).sum();
+        let last_only = params.last_layer_only || preconditioner.is_some();
+        let range = if last_only { adapted.last_layer() } else { 0..gradients.len() };
+        let gradients = &gradients[range.clone()];
+        let along = match preconditioner {
+            None => gradients,
+            Some(preconditioner) => {
+                preconditioner.apply(gradients, direction);
+                direction
+            }
+        };
+        let change: f32 = gradients.iter().zip(along).map(|(gradient, along)| gradient * along).sum();
         let wanted: f32 = signals.iter().map(|signal| signal * signal).sum();
-        if square <= 1e-12 * wanted || !square.is_finite() {
+        if change <= 1e-12 * wanted || !change.is_finite() {
             return Ok(());
         }
         // The command then changes by about rate x signal x period.
-        let factor = params.rate * params.period * wanted / square;
+        let factor = params.rate * params.period * wanted / change;
         let limits = [params.step_limit, params.leak * params.period, params.radius];
-        bounded_step(adapted.parameters_mut(), base.parameters(), gradients, factor, limits);
+        let parameters = &mut adapted.parameters_mut()[range.clone()];
+        bounded_step(parameters, &base.parameters()[range], along, factor, limits);
         phase.updates += 1;
         Ok(())
     }
@@ -312,6 +423,7 @@ impl<P: AdaptablePolicy> Controller for OnlineAdapter<P> {
     fn reset(&mut self) {
         self.conventional.reset();
         self.buffers.sums.fill(0.0);
+        self.buffers.feedback.fill(0.0);
         self.buffers.cut.fill(0.0);
         self.buffers.adapted.fill(0.0);
         self.buffers.base.fill(0.0);
@@ -321,6 +433,9 @@ impl<P: AdaptablePolicy> Controller for OnlineAdapter<P> {
 
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
         self.layout.check_lengths(observation, action)?;
+        if self.recording.len() + observation.len() <= self.recording.capacity() {
+            self.recording.extend_from_slice(observation);
+        }
         self.supervise(observation)?;
         let signalled = self.signals(observation);
         if self.may_learn(observation) && signalled {

@@ -16,16 +16,20 @@
 mod adapter;
 mod envelope;
 mod events;
+mod lineage;
 mod monitor;
 mod params;
 mod policy;
+mod preconditioner;
 mod signal;
 mod step;
 
 pub use adapter::OnlineAdapter;
 pub use envelope::Envelope;
 pub use events::{Event, EventKind, EventLog, FreezeReason};
+pub use lineage::{ADAPTATION, Adaptation};
 pub use monitor::{Monitor, MonitorParams, Verdict};
 pub use params::AdaptationParams;
 pub use policy::{AdaptablePolicy, NeuralPolicy};
+pub use preconditioner::Preconditioner;
 pub use signal::LearningSignal;

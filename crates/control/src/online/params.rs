@@ -18,6 +18,9 @@ pub struct AdaptationParams {
     /// Weight of the error's rate in the signal.
     #[param(default = 0.6, range = 0.0..=100.0, unit = "s")]
     pub rate_weight: f32,
+    /// Rate at which the reference model follows the observed velocity.
+    #[param(default = 4.0, range = 0.01..=1000.0, unit = "1/s")]
+    pub observer: f32,
     /// Magnitude at which the expert rule saturates, in units of the error.
     #[param(default = 0.3, range = 1e-6..=1e6, log)]
     pub scale: f32,
@@ -45,6 +48,10 @@ pub struct AdaptationParams {
     /// Age of a state estimate from which it is stale.
     #[param(default = 0.06, range = 0.0..=100.0, unit = "s")]
     pub max_age: f32,
+    /// Steps are taken along the gradient at an error of 0: what is learned is a function of the reference. Along the gradient at
+    /// the observed error the signal, which contains that error, would raise the feedback gains without end.
+    #[param(default = true)]
+    pub reference_only: bool,
     /// Only the last layer is adapted.
     #[param(default = false)]
     pub last_layer_only: bool,

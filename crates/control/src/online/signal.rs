@@ -7,6 +7,10 @@ opendr_engine::choices! {
         ExpertRule = "expert_rule",
         /// The weighted sum of error and rate itself, as in feedback-error learning (Kawato, 1990).
         FeedbackError = "feedback_error",
+        /// The velocity that a unit plant under the base's commands would have, less the observed one: unlike the tracking error it
+        /// shows a disturbance at once, through a filter of first order, so that learning from it does not oscillate. Saturates
+        /// as the expert rule does. Needs the place of the reference's velocity.
+        ReferenceModel = "reference_model",
     }
 }
 
@@ -15,7 +19,7 @@ impl LearningSignal {
     pub fn value(self, sum: f32, scale: f32, dead_zone: f32) -> f32 {
         let beyond = (sum.abs() - dead_zone).max(0.0).copysign(sum);
         match self {
-            Self::ExpertRule => scale * (beyond / scale).tanh(),
+            Self::ExpertRule | Self::ReferenceModel => scale * (beyond / scale).tanh(),
             Self::FeedbackError => beyond,
         }
     }

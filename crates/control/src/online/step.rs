@@ -36,8 +36,7 @@ mod tests {
     fn steps_and_distances_are_bounded() {
         let base = [1.0, -1.0, 0.5];
         let mut parameters = base;
-        let distance =
-            |parameters: &[f32; 3]| norm(parameters.iter().zip(&base).map(|(a, b)| a - b));
+        let distance = |parameters: &[f32; 3]| norm(parameters.iter().zip(&base).map(|(a, b)| a - b));
         bounded_step(&mut parameters, &base, &[3.0, 4.0, 0.0], 100.0, [0.1, 0.0, 1.0]);
         assert!((distance(&parameters) - 0.1).abs() < 1e-6);
         (0..100).for_each(|_| bounded_step(&mut parameters, &base, &[3.0, 4.0, 0.0], 100.0, [0.1, 0.0, 1.0]));

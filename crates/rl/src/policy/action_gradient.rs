@@ -45,8 +45,9 @@ impl Policy {
         let rows_of = |values| <[f32]>::chunks_exact(values, self.head.outputs());
         let known = match &self.head {
             Head::Gaussian(bounds) => {
-                for ((output, gradient), down) in
-                    rows_of(memory.trunk.output()).zip(daction.chunks_exact(axes)).zip(doutputs.chunks_exact_mut(axes))
+                for ((output, gradient), down) in rows_of(memory.trunk.output())
+                    .zip(daction.chunks_exact(axes))
+                    .zip(doutputs.chunks_exact_mut(axes))
                 {
                     for axis in 0..axes {
                         let inside = (bounds.low[axis]..=bounds.high[axis]).contains(&output[axis]);
@@ -57,8 +58,9 @@ impl Policy {
             }
             Head::Squashed(bounds) | Head::SquashedGaussian(bounds) => {
                 let width = self.head.outputs();
-                for ((output, gradient), down) in
-                    rows_of(memory.trunk.output()).zip(daction.chunks_exact(axes)).zip(doutputs.chunks_exact_mut(width))
+                for ((output, gradient), down) in rows_of(memory.trunk.output())
+                    .zip(daction.chunks_exact(axes))
+                    .zip(doutputs.chunks_exact_mut(width))
                 {
                     for axis in 0..axes {
                         let squashed = output[axis].tanh();
@@ -76,7 +78,9 @@ impl Policy {
         memory.doutputs = doutputs;
         match known {
             true => Ok(()),
-            false => Err(Error::unsupported("choices have no gradient; adapt a policy whose actions are numbers")),
+            false => {
+                Err(Error::unsupported("choices have no gradient; adapt a policy whose actions are numbers"))
+            }
         }
     }
 }
@@ -92,13 +96,11 @@ mod tests {
     /// Against differences, for each head with numbers.
     #[test]
     fn gradients_are_those_of_differences() {
-        let spec = EnvironmentSpec::new("test", Space::symmetric(&[f32::INFINITY; 3]), Space::symmetric(&[2.0; 2]));
+        let spec =
+            EnvironmentSpec::new("test", Space::symmetric(&[f32::INFINITY; 3]), Space::symmetric(&[2.0; 2]));
         let bounds = Bounds { low: vec![-2.0; 2], high: vec![2.0; 2] };
-        let heads = [
-            Head::Gaussian(bounds.clone()),
-            Head::Squashed(bounds.clone()),
-            Head::SquashedGaussian(bounds),
-        ];
+        let heads =
+            [Head::Gaussian(bounds.clone()), Head::Squashed(bounds.clone()), Head::SquashedGaussian(bounds)];
         let compute = Compute::single();
         for head in heads {
             let config = NetworkConfig { net_arch: vec![7], ..NetworkConfig::default() };

@@ -5,7 +5,7 @@ use opendr_engine::environment::{
     Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
 };
 use opendr_engine::params::Params as _;
-use opendr_engine::{Random, Result};
+use opendr_engine::{Error, Random, Result};
 
 use super::estimator::Estimator;
 use super::plant::{Condition, Plant};
@@ -227,6 +227,11 @@ impl Environment for QuadTrack {
         check_length(&self.spec, observation)?;
         let mut chosen = self.params.clone();
         options.iter().try_for_each(|(name, value)| chosen.set(name, value.clone()))?;
+        if chosen.duration != self.params.duration {
+            return Err(Error::invalid_param(
+                "the duration is part of the spec; set it where the environment is made",
+            ));
+        }
         let place = match (seed, &self.episode) {
             (None, Some(Episode { place, .. })) => {
                 Place { episode: place.episode.wrapping_add(1), step: 0, ..*place }
@@ -239,6 +244,8 @@ impl Environment for QuadTrack {
         let episode = self.episode.insert(Episode::begin(chosen.checked()?, place));
         episode.observe(observation);
         self.path.clear();
+        // A step then allocates nothing.
+        self.path.reserve(usize::try_from(self.params.steps() + 1).unwrap_or(0));
         self.path.push(episode.plant.position);
         Ok(Info::default())
     }
