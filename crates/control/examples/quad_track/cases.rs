@@ -12,9 +12,6 @@ pub const CASES: [(&str, &[(&str, f64)]); 5] = [
     ("motor 20 % weaker", &[("motor_loss", 0.2)]),
 ];
 
-/// First seed of the evaluation; trainings and tunings have other ones.
-pub const FIRST_SEED: u64 = 1_000_000;
-
 pub fn options(pairs: &[(&str, f64)]) -> ResetOptions {
     pairs.iter().map(|(name, value)| ((*name).to_owned(), (*value).into())).collect()
 }

@@ -13,12 +13,8 @@ use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 pub struct Flight {
     /// RMS of the distance to the reference in the last 20 s, metres.
     pub last: f64,
-    /// The same in the 10 s before the change.
-    pub before: f64,
     /// Seconds from the change until the RMS of 2 s is below twice that before it, and stays there.
     pub recovery: f64,
-    /// Largest distance after the change, metres.
-    pub worst: f64,
     pub lost: bool,
 }
 
@@ -53,9 +49,7 @@ pub fn fly(
         (40..120).rev().take_while(|half| rms(half * RATE / 2, half * RATE / 2 + 2 * RATE) <= 2.0 * before);
     Ok(Flight {
         last: if lost { f64::INFINITY } else { rms(40 * RATE, 60 * RATE) },
-        before,
         recovery: 40.0 - 0.5 * seconds.count() as f64,
-        worst: errors.iter().skip(20 * RATE).copied().fold(0.0, f64::max),
         lost,
     })
 }

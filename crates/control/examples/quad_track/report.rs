@@ -8,7 +8,7 @@ use opendr_simulation::Registered as _;
 use opendr_simulation::quad_track::{QuadTrack, QuadTrackParams};
 
 use crate::base::{Base, Frozen, train, tuned_pid};
-use crate::cases::{CASES, FIRST_SEED, options, random_plant};
+use crate::cases::{CASES, options, random_plant};
 use crate::flight::{Flight, STEPS, fly, fly_all};
 use crate::settings::Settings;
 
@@ -57,7 +57,8 @@ fn measure<C: Controller>(
 ) -> Result<Results> {
     let mut results = Results { flights: Vec::new(), of_seeds: Vec::new() };
     for base in bases {
-        let flights = fly_all(settings.episodes, FIRST_SEED, |_| with_plant(pairs, settings), || make(base))?;
+        let flights =
+            fly_all(settings.episodes, settings.first_seed, |_| with_plant(pairs, settings), || make(base))?;
         results.of_seeds.push(rms(&flights));
         results.flights.extend(flights);
     }

@@ -8,6 +8,8 @@ pub struct Settings {
     pub episodes: u64,
     pub seeds: u64,
     pub plants: u64,
+    /// Of the first episode; the defaults of the adaptation were chosen on others.
+    pub first_seed: u64,
     /// One case of the protocol alone.
     pub case: Option<usize>,
     pub film: Option<String>,
@@ -27,6 +29,7 @@ impl Settings {
             episodes: 500,
             seeds: 5,
             plants: 1000,
+            first_seed: 1_000_000,
             case: None,
             film: None,
             ridge: 0.02,
@@ -43,6 +46,7 @@ impl Settings {
                 "episodes" => settings.episodes = real()? as u64,
                 "seeds" => settings.seeds = real()? as u64,
                 "plants" => settings.plants = real()? as u64,
+                "first_seed" => settings.first_seed = real()? as u64,
                 "case" => settings.case = Some(real()? as usize),
                 "ridge" => settings.ridge = real()?,
                 "constant" => settings.constant = real()?,

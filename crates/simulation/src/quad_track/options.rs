@@ -24,7 +24,7 @@ pub struct QuadTrackParams {
     #[param(default = ReferencePath::FigureEight)]
     pub reference: ReferencePath,
     /// Mean angular speed of the reference; each episode has 0.85 to 1.15 times as much.
-    #[param(default = 0.9, range = 0.1..=2.0, unit = "rad/s")]
+    #[param(default = 0.75, range = 0.1..=2.0, unit = "rad/s")]
     pub speed: f64,
     /// Length of an episode.
     #[param(default = 60.0, range = 0.1..=3600.0, unit = "s")]
