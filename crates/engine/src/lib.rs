@@ -27,6 +27,7 @@ pub mod learner;
 pub mod model;
 pub mod overlap;
 pub mod params;
+pub mod rig;
 pub mod target;
 
 pub use assembly_line::assembly_line;

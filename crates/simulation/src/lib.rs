@@ -21,6 +21,7 @@ mod sine_cosine;
 pub mod classic_control;
 pub mod lidar;
 pub mod raycast;
+pub mod sphere_view;
 pub mod street;
 pub mod uav_corridor;
 pub mod vector;

@@ -9,9 +9,9 @@ use opendr_engine::{Error, Result};
 use crate::classic_control::{
     Acrobot, CartPole, CartPoleParams, MountainCar, MountainCarContinuous, Pendulum,
 };
-use crate::uav_corridor;
 use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
 use crate::wrappers::{Checked, TimeLimit};
+use crate::{sphere_view, uav_corridor};
 
 /// An environment that the registry can make.
 pub trait Registered: Environment + Sized + 'static {
@@ -108,7 +108,8 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
         Registration::of::<MountainCarContinuous>(),
         Registration::of::<Pendulum>(),
     ];
-    Registry { entries: classic.into_iter().chain(uav_corridor::registrations()).collect() }
+    let further = uav_corridor::registrations().into_iter().chain(sphere_view::registrations());
+    Registry { entries: classic.into_iter().chain(further).collect() }
 });
 
 impl Registry {

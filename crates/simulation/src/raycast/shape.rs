@@ -45,7 +45,7 @@ impl Shape {
     }
 
     /// The radius of a ball around the centre with all of it inside.
-    pub(super) fn reach(&self) -> f32 {
+    pub(crate) fn reach(&self) -> f32 {
         match self {
             Self::Sphere { radius } => *radius,
             Self::Box { half } => length(*half),
