@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use opendr_active::sphere::{
-    EmbeddingConfig, EmbeddingFit, Gallery, SphereScene, SubjectPool, ViewSet, fit_embedding,
+    EmbeddingConfig, EmbeddingFit, SphereScene, SubjectPool, ViewSet, fit_embedding,
 };
 use opendr_active::{
     ActiveModel, ActiveReport, ActiveTraining, Greedy, Look, Mover, Oracle, Orbit, PolicyMover, RandomMover,
@@ -12,11 +12,13 @@ use opendr_active::{
 };
 use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
-use opendr_simulation::sphere_view::{SIDE, Subject};
+use opendr_simulation::sphere_view::Subject;
 
 /// First numbers of persons or instances: of the recogniser's training, of that of the swapped one, of the policy's, and of
 /// those that no training saw.
 const FIRST: [u32; 4] = [0, 10_000, 20_000, 30_000];
+/// Pixels of a picture in each direction.
+const PIXELS: usize = 32;
 const EVALUATION: u64 = 1_000_000;
 
 fn main() -> Result<()> {
@@ -24,19 +26,16 @@ fn main() -> Result<()> {
     let begun = Instant::now();
     let compute = Compute::with_threads(options.threads);
     let wide = EmbeddingConfig { epochs: options.epochs, ..EmbeddingConfig::default() };
-    let other = EmbeddingConfig { kernels: vec![24], hidden: 128, dimension: 24, seed: 9, ..wide.clone() };
-    let recogniser = recogniser(&options, &wide, FIRST[0], &compute)?;
-    let swapped = self::recogniser(&options, &other, FIRST[1], &compute)?;
-    let each = if options.subject == Subject::Face { 60 } else { 6 };
-    let pools = [FIRST[2], FIRST[3]].map(|first| SubjectPool::generate(options.subject, first, each));
-    let [seen, unseen] = pools;
-    let (seen, unseen) = (seen?, unseen?);
-    let scene = |pool: &SubjectPool, fit: &EmbeddingFit| -> Result<SphereScene> {
-        SphereScene::new(pool, &fit.embedding, &Gallery::enrol(pool, fit, &compute)?)
+    let other = EmbeddingConfig { kernels: vec![16], hidden: 64, dimension: 16, seed: 9, ..wide.clone() };
+    // Persons are recognised by who saw static pictures of them; objects and figures by who saw others of their classes.
+    let faces = options.subject == Subject::Face;
+    let scene = |persons: u32, instances: u32, config: &EmbeddingConfig| -> Result<SphereScene> {
+        let fit = recogniser(&options, config, if faces { persons } else { instances }, &compute)?;
+        SphereScene::new(&SubjectPool::generate(options.subject, persons, 6)?, &fit)
     };
-    let known = scene(&seen, &recogniser)?;
-    let strangers = scene(&unseen, &recogniser)?;
-    let exchanged = scene(&seen, &swapped)?;
+    let known = scene(FIRST[2], FIRST[0], &wide)?;
+    let strangers = scene(FIRST[3], FIRST[0], &wide)?;
+    let exchanged = scene(FIRST[2], FIRST[1], &other)?;
     sectors("recogniser, others", &strangers)?;
     sectors("recogniser that is swapped in", &exchanged)?;
     if options.seeds == 0 {
@@ -84,7 +83,7 @@ fn recogniser(
     compute: &Compute,
 ) -> Result<EmbeddingFit> {
     let begun = Instant::now();
-    let views = ViewSet::render(options.subject, SIDE, first, options.subjects, options.threads)?;
+    let views = ViewSet::render(options.subject, PIXELS, first, options.subjects, options.threads)?;
     let rendered = begun.elapsed().as_secs_f64();
     let fit = fit_embedding(&views, config, compute)?;
     eprintln!(
@@ -150,10 +149,10 @@ impl Options {
         let mut options = Self {
             subject: Subject::Face,
             seeds: 1,
-            timesteps: 100_000,
+            timesteps: 50_000,
             episodes: 500,
-            subjects: 1800,
-            epochs: 12,
+            subjects: 1200,
+            epochs: 8,
             threads: 2,
         };
         let mut arguments = std::env::args().skip(1);

@@ -17,9 +17,9 @@ pub struct Trajectory {
 }
 
 /// Values tried for the temperature are these factors apart.
-const FACTOR: f32 = 1.15;
-const LENGTHS: [f32; 5] = [0.1, 0.25, 0.45, 0.8, 1.4];
-const FLOORS: [f32; 6] = [0.0, 0.1, 0.2, 0.35, 0.55, 0.8];
+const FACTOR: f32 = 1.2;
+const LENGTHS: [f32; 4] = [0.1, 0.3, 0.6, 1.2];
+const FLOORS: [f32; 5] = [0.0, 0.1, 0.25, 0.45, 0.75];
 
 /// The fusion under which the true classes of the trajectories are most likely: mean negative log-likelihood over the beliefs
 /// after each view, that after the last counted as often as all others together.

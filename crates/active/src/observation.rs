@@ -8,11 +8,11 @@ use opendr_engine::{Error, Result};
 use crate::fusion::Belief;
 
 /// Pixels of the thumbnail in each direction.
-const SIDE: usize = 16;
+const SIDE: usize = 12;
 /// Numbers that are not of the thumbnail.
 const NUMBERS: usize = 18;
 
-/// Turns views and beliefs into observations: luminance of 16 x 16 pixels with mean 0, then confidence and uncertainty of the
+/// Turns views and beliefs into observations: luminance of 12 x 12 pixels with mean 0, then confidence and uncertainty of the
 /// belief, information of the last and of the best view, the pose, the way to the best view, the last movement and what
 /// stopped it, and the share of the budget that is used.
 #[derive(Debug, Clone)]

@@ -38,7 +38,7 @@ pub struct ActiveTraining {
 impl Default for ActiveTraining {
     fn default() -> Self {
         let stop = StopRule::default();
-        Self { timesteps: 100_000, environments: 16, threads: 2, calibration_episodes: 600, stop, seed: 0 }
+        Self { timesteps: 50_000, environments: 16, threads: 2, calibration_episodes: 400, stop, seed: 0 }
     }
 }
 
@@ -137,13 +137,13 @@ fn train_policy<S: ActiveScene + 'static>(
     let mut environments = EnvironmentVector::new(environments, Autoreset::SameStep, training.threads)?;
     let config = PpoConfig {
         n_steps: 64,
-        batch_size: 128,
-        n_epochs: 8,
-        learning_rate: 5e-4,
+        batch_size: 256,
+        n_epochs: 6,
+        learning_rate: 1e-3,
         learning_rate_schedule: Schedule::Linear,
         gamma: 0.95,
         log_std_init: -0.5,
-        network: NetworkConfig { net_arch: vec![128, 64], ..NetworkConfig::default() },
+        network: NetworkConfig { net_arch: vec![64, 64], ..NetworkConfig::default() },
         seed: training.seed,
         ..PpoConfig::default()
     };

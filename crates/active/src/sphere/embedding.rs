@@ -18,17 +18,13 @@ pub struct Embedding {
 }
 
 impl Embedding {
-    /// A network for pictures of `side` x `side` pixels, an even number, of which it takes the mean of each 2 x 2:
-    /// convolutions with so many kernels each, the first of 6 x 6 every 4 pixels and the others of 3 x 3 every 2, or none at
-    /// all; a hidden layer; the embedding. All parameters are 0.
+    /// A network for pictures of `side` x `side` pixels: convolutions with so many kernels each, the first of 6 x 6 every 4
+    /// pixels and the others of 3 x 3 every 2, or none at all; a hidden layer; the embedding. All parameters are 0.
     ///
     /// # Errors
-    /// `InvalidParam` for more convolutions than the picture has room for, and for an odd number of pixels.
+    /// `InvalidParam` for more convolutions than the picture has room for.
     pub fn new(side: usize, kernels: &[usize], hidden: usize, dimension: usize) -> Result<Self> {
-        if !side.is_multiple_of(2) {
-            return Err(Error::invalid_param(format!("pictures of {side} pixels; give an even number")));
-        }
-        let mut shape = [3, side / 2, side / 2];
+        let mut shape = [3, side, side];
         let mut layers = Vec::new();
         for (at, outputs) in kernels.iter().enumerate() {
             let [size, stride] = if at == 0 { [6, 4] } else { [3, 2] };
@@ -61,8 +57,8 @@ impl Embedding {
         let fits = [image.width(), image.height(), image.channels()] == [self.side, self.side, 3];
         match image.pixels() {
             Pixels::U8(pixels) if fits && image.layout() == Layout::Hwc => {
-                self.input.resize(pixels.len() / 4, 0.0);
-                halved(pixels, self.side, &mut self.input);
+                self.input.resize(pixels.len(), 0.0);
+                planes(pixels, &mut self.input);
             }
             _ => {
                 return Err(Error::invalid_input(format!(
@@ -78,21 +74,21 @@ impl Embedding {
     }
 }
 
-/// Writes `[side, side, 3]` bytes as `[3, side / 2, side / 2]` numbers of mean 0 and deviation 1 over the picture: how bright the
-/// light is does not matter.
-pub(super) fn halved(pixels: &[u8], side: usize, planes: &mut [f32]) {
-    let half = side / 2;
-    let (mut sum, mut squares) = (0.0, 0.0);
-    for (at, place) in (0..half * half).map(|at| (at, 2 * (at / half * side + at % half))) {
-        for channel in 0..3 {
-            let level = |offset: usize| u32::from(pixels[3 * (place + offset) + channel]);
-            let mean = (level(0) + level(1) + level(side) + level(side + 1)) as f32;
-            planes[channel * half * half + at] = mean;
-            (sum, squares) = (sum + mean, squares + mean * mean);
+/// Writes `[height, width, 3]` bytes as `[3, height, width]` numbers of mean 0 and deviation 1 over the picture: how bright
+/// the light is does not matter.
+pub(super) fn planes(pixels: &[u8], planes: &mut [f32]) {
+    let size = pixels.len() / 3;
+    let (mut sum, mut squares) = (0u64, 0u64);
+    for level in pixels {
+        sum += u64::from(*level);
+        squares += u64::from(*level) * u64::from(*level);
+    }
+    let count = pixels.len() as f32;
+    let mean = sum as f32 / count;
+    let scale = 1.0 / (squares as f32 / count - mean * mean).max(1.0).sqrt();
+    for (at, pixel) in pixels.as_chunks::<3>().0.iter().enumerate() {
+        for (channel, level) in pixel.iter().enumerate() {
+            planes[channel * size + at] = (f32::from(*level) - mean) * scale;
         }
     }
-    let count = planes.len() as f32;
-    let mean = sum / count;
-    let scale = 1.0 / (squares / count - mean * mean).max(1.0).sqrt();
-    planes.iter_mut().for_each(|level| *level = (*level - mean) * scale);
 }

@@ -7,7 +7,7 @@ use opendr_kernels::{
     Adam, AdamOptions, Compute, Initialisation, Matrix, MatrixMut, Product, Tape, WeightDecay, log_softmax,
 };
 
-use super::embedding::halved;
+use super::embedding::planes;
 use super::{Embedding, ViewSet};
 
 /// Network and training of an embedding.
@@ -27,7 +27,7 @@ pub struct EmbeddingConfig {
 
 impl Default for EmbeddingConfig {
     fn default() -> Self {
-        Self { kernels: Vec::new(), hidden: 256, dimension: 32, epochs: 12, seed: 0 }
+        Self { kernels: Vec::new(), hidden: 128, dimension: 24, epochs: 8, seed: 0 }
     }
 }
 
@@ -79,7 +79,7 @@ pub fn fit_embedding(views: &ViewSet, config: &EmbeddingConfig, compute: &Comput
         let mut sum = 0.0;
         for (batch, rows) in order.chunks_exact(BATCH).enumerate() {
             for (to, row) in input.chunks_exact_mut(size).zip(rows) {
-                halved(views.view(*row), views.side, to);
+                planes(views.view(*row), to);
             }
             gradients.fill(0.0);
             let (network, weights) = parameters.split_at(split);

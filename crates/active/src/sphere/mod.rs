@@ -8,6 +8,6 @@ mod views;
 
 pub use embedding::Embedding;
 pub use embedding_fit::{EmbeddingConfig, EmbeddingFit, fit_embedding};
-pub use pool::{Gallery, SubjectPool};
+pub use pool::SubjectPool;
 pub use scene::SphereScene;
 pub use views::ViewSet;

@@ -2,26 +2,21 @@
 
 use opendr_engine::data::Image;
 use opendr_engine::rig::{ViewPose, ViewRig};
-use opendr_engine::{Random, Result};
+use opendr_engine::{Error, Random, Result};
 use opendr_kernels::Compute;
-use opendr_simulation::sphere_view::{Conditions, SphereWorld, Subject};
+use opendr_simulation::sphere_view::{Conditions, SphereWorld};
 
-use super::pool::{blank, capture};
-use super::{Embedding, Gallery, SubjectPool};
+use super::{Embedding, EmbeddingFit, SubjectPool};
 use crate::recogniser::ViewRecogniser;
 use crate::scene::ActiveScene;
 
-/// A sphere camera around the subjects of a pool, with an embedding network in the loop.
-///
-/// Of persons, each episode chooses as many at random as there are classes, and one of them stands in the middle.
+/// A sphere camera around the subjects of a pool, with a network in the loop that was trained on static views.
 #[derive(Debug, Clone)]
 pub struct SphereScene {
     pool: SubjectPool,
-    gallery: Gallery,
     world: SphereWorld,
     image: Image,
     recogniser: EmbeddingRecogniser,
-    order: Vec<usize>,
 }
 
 /// An embedding against directions of classes.
@@ -51,24 +46,29 @@ impl ViewRecogniser for EmbeddingRecogniser {
 }
 
 impl SphereScene {
-    /// A scene over a pool, with a gallery that was enrolled by this embedding.
+    /// A scene over a pool, with a recogniser of its classes.
     ///
     /// # Errors
-    /// None for an embedding that takes pictures.
-    pub fn new(pool: &SubjectPool, embedding: &Embedding, gallery: &Gallery) -> Result<Self> {
+    /// `InvalidInput` for a recogniser of another number of classes.
+    pub fn new(pool: &SubjectPool, fit: &EmbeddingFit) -> Result<Self> {
         let classes = pool.subject.classes() as usize;
-        let embedding = embedding.clone();
+        let known = fit.directions.len() / fit.embedding.dimension();
+        if known != classes {
+            return Err(Error::invalid_input(format!(
+                "a recogniser of {known} classes for {classes} of {}; train it on views of these",
+                pool.subject.name()
+            )));
+        }
+        let side = fit.embedding.side();
         Ok(Self {
-            world: SphereWorld::new(embedding.side())?,
-            image: blank(embedding.side())?,
-            order: (0..pool.each).collect(),
+            world: SphereWorld::new(side)?,
+            image: Image::from_rgb8(vec![0; 3 * side * side], side, side)?,
             recogniser: EmbeddingRecogniser {
-                directions: gallery.directions[..classes * gallery.dimension].to_vec(),
-                embedding,
+                directions: fit.directions.clone(),
+                embedding: fit.embedding.clone(),
                 compute: Compute::single(),
                 classes,
             },
-            gallery: gallery.clone(),
             pool: pool.clone(),
         })
     }
@@ -91,22 +91,7 @@ impl ActiveScene for SphereScene {
 
     fn begin(&mut self, random: &mut Random) -> Result<usize> {
         let class = random.below(self.recogniser.classes);
-        let asset = match self.pool.subject {
-            Subject::Face => {
-                // The first of a shuffled order: Fisher and Yates, as far as it is needed.
-                self.order.clear();
-                self.order.extend(0..self.pool.each);
-                let dimension = self.gallery.dimension;
-                let places = self.recogniser.directions.chunks_exact_mut(dimension);
-                for (at, place) in places.enumerate() {
-                    let other = at + random.below(self.pool.each - at);
-                    self.order.swap(at, other);
-                    place.copy_from_slice(self.gallery.direction(self.order[at]));
-                }
-                self.order[class]
-            }
-            Subject::Object | Subject::Pose => class * self.pool.each + random.below(self.pool.each),
-        };
+        let asset = class * self.pool.each + random.below(self.pool.each);
         let conditions = Conditions::draw(random);
         self.world.begin(&self.pool.assets[asset], &conditions, random.bits())?;
         Ok(class)
@@ -117,7 +102,8 @@ impl ActiveScene for SphereScene {
     }
 
     fn view(&mut self, evidence: &mut [f32]) -> Result<&Image> {
-        capture(&mut self.world, &mut self.image)?;
+        let pixels = self.image.bytes_mut();
+        self.world.capture_into(pixels.ok_or_else(|| Error::internal("a picture that is not of bytes"))?);
         self.recogniser.recognise(&self.image, evidence)?;
         Ok(&self.image)
     }

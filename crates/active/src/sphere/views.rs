@@ -22,8 +22,8 @@ const VIEWS: usize = 15;
 const FRONTAL: f32 = 0.7;
 
 impl ViewSet {
-    /// Renders `subjects` subjects from 15 places each, on `threads` threads. Persons are those from number `first` on, each six
-    /// times; of objects and figures the subjects are instances from number `first` on, class after class.
+    /// Renders `subjects` subjects, class after class, from 15 places each, on `threads` threads. Persons are the ten from
+    /// number `first` on; of objects and figures the subjects are instances from number `first` on.
     ///
     /// # Errors
     /// None for numbers of subjects that fit into memory.
@@ -34,12 +34,14 @@ impl ViewSet {
         subjects: usize,
         threads: usize,
     ) -> Result<Self> {
-        const TIMES: usize = 6;
-        let classes = match subject {
-            Subject::Face => subjects.div_ceil(TIMES),
-            Subject::Object | Subject::Pose => subject.classes() as usize,
-        };
+        let classes = subject.classes() as usize;
         let mut set = Self { side, pixels: Vec::new(), labels: Vec::new(), classes };
+        let persons: Vec<Asset> = match subject {
+            Subject::Face => (first..first + classes as u32)
+                .map(|person| Asset::generate(subject, person, 0))
+                .collect::<Result<_>>()?,
+            Subject::Object | Subject::Pose => Vec::new(),
+        };
         let mut worlds = (0..threads.max(1)).map(|_| SphereWorld::new(side)).collect::<Result<Vec<_>>>()?;
         let work = |world: &mut SphereWorld, number: usize| -> Result<(usize, Vec<u8>)> {
             let label = number % classes;
@@ -49,7 +51,10 @@ impl ViewSet {
                     (label as u32, u64::from(first) + (number / classes) as u64)
                 }
             };
-            let asset = Asset::generate(subject, class, instance)?;
+            let asset = match persons.get(label) {
+                Some(person) => person.clone(),
+                None => Asset::generate(subject, class, instance)?,
+            };
             let mut random = Random::at([u64::from(first), number as u64, 0x71e3]);
             let mut pixels = vec![0; VIEWS * 3 * side * side];
             for view in pixels.chunks_exact_mut(3 * side * side) {

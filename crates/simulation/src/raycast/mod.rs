@@ -52,6 +52,7 @@ pub(crate) fn cross(a: Vector, b: Vector) -> Vector {
 }
 
 /// The vector of length 1 in this direction; up where there is none.
+#[inline]
 pub(crate) fn unit(vector: Vector) -> Vector {
     let size = length(vector);
     if size > 0.0 { vector.map(|part| part / size) } else { [0.0, 0.0, 1.0] }

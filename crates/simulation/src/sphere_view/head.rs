@@ -43,7 +43,7 @@ const WHITE: [f32; 3] = [0.93, 0.93, 0.9];
 pub(super) fn generate(person: u32) -> Result<Asset> {
     let face = Face::new(&mut Subject::Face.random(0, u64::from(person)));
     let mut asset = Asset::empty();
-    asset.add([24, 112], ([0.0; 3], [1.0, 0.0, 0.0, 0.0]), &face)?;
+    asset.add([20, 80], ([0.0; 3], [1.0, 0.0, 0.0, 0.0]), &face)?;
     Ok(asset)
 }
 

@@ -32,7 +32,7 @@ pub(super) fn generate(class: u32, instance: u64) -> Result<Asset> {
     }
     let product = Product::new(class, &mut Subject::Object.random(u64::from(class), instance));
     let mut asset = Asset::empty();
-    asset.add([24, 112], ([0.0; 3], [1.0, 0.0, 0.0, 0.0]), &product)?;
+    asset.add([16, 72], ([0.0; 3], [1.0, 0.0, 0.0, 0.0]), &product)?;
     Ok(asset)
 }
 
