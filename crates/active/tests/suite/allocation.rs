@@ -18,10 +18,10 @@ fn steps_allocate_nothing() {
     let mut look = Look::new(SphereScene::new(&pool, &fit).unwrap(), Fusion::default(), 6).unwrap();
     let action = Action::new(&[0.5, 0.1, -0.2]).unwrap();
     look.begin(&mut Random::new(1)).unwrap();
-    (0..6).for_each(|_| drop(look.step(&action).unwrap()));
+    (0..6).for_each(|_| assert!(look.step(&action).unwrap().effort() <= 1.0));
     look.begin(&mut Random::new(2)).unwrap();
     let before = allocations_of_thread();
-    (0..6).for_each(|_| drop(look.step(&action).unwrap()));
+    (0..6).for_each(|_| assert!(look.step(&action).unwrap().effort() <= 1.0));
     assert_eq!(allocations_of_thread() - before, 0);
     // A recogniser of other classes does not fit.
     let heads = SubjectPool::generate(Subject::Object, 0, 1).unwrap();

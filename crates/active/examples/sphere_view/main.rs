@@ -1,5 +1,7 @@
 //! Active perception on a generated world, from nothing to a table:
-//! `cargo run --release -p opendr-active --example sphere_view -- face [--seeds 5] [--timesteps 100000] [--episodes 500]`.
+//! `cargo run --release -p opendr-active --example sphere_view -- face [--seeds 5] [--timesteps 100000] [--episodes 500] [--strip OUT.png]`.
+
+mod strip;
 
 use std::time::Instant;
 
@@ -69,6 +71,9 @@ fn main() -> Result<()> {
             options.episodes,
         )?;
         table(&format!("seed {seed}, others"), &strangers, &model, options.episodes)?;
+        if let Some(path) = &options.strip {
+            strip::write(&strangers, &model, EVALUATION, 6, path)?;
+        }
         let model = calibrated(&model, &|| Ok(exchanged.clone()), 400)?;
         table(&format!("seed {seed}, another recogniser"), &exchanged, &model, options.episodes)?;
     }
@@ -142,6 +147,7 @@ struct Options {
     subjects: usize,
     epochs: usize,
     threads: usize,
+    strip: Option<String>,
 }
 
 impl Options {
@@ -154,11 +160,16 @@ impl Options {
             subjects: 1200,
             epochs: 8,
             threads: 2,
+            strip: None,
         };
         let mut arguments = std::env::args().skip(1);
         while let Some(argument) = arguments.next() {
             if let Some(subject) = Subject::ALL.into_iter().find(|subject| subject.name() == argument) {
                 options.subject = subject;
+                continue;
+            }
+            if argument == "--strip" {
+                options.strip = arguments.next();
                 continue;
             }
             let value = arguments.next().and_then(|value| value.parse().ok());
