@@ -38,7 +38,7 @@ pub struct ActiveTraining {
 impl Default for ActiveTraining {
     fn default() -> Self {
         let stop = StopRule::default();
-        Self { timesteps: 50_000, environments: 16, threads: 2, calibration_episodes: 400, stop, seed: 0 }
+        Self { timesteps: 50_000, environments: 16, threads: 2, calibration_episodes: 600, stop, seed: 0 }
     }
 }
 

@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     let begun = Instant::now();
     let compute = Compute::with_threads(options.threads);
     let wide = EmbeddingConfig { epochs: options.epochs, ..EmbeddingConfig::default() };
-    let other = EmbeddingConfig { kernels: vec![16], hidden: 64, dimension: 16, seed: 9, ..wide.clone() };
+    let other = EmbeddingConfig { hidden: 64, dimension: 12, seed: 9, ..wide.clone() };
     // Persons are recognised by who saw static pictures of them; objects and figures by who saw others of their classes.
     let faces = options.subject == Subject::Face;
     let scene = |persons: u32, instances: u32, config: &EmbeddingConfig| -> Result<SphereScene> {
@@ -157,7 +157,7 @@ impl Options {
             seeds: 1,
             timesteps: 50_000,
             episodes: 500,
-            subjects: 1200,
+            subjects: 1600,
             epochs: 8,
             threads: 2,
             strip: None,
