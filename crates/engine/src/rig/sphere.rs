@@ -75,7 +75,7 @@ impl ViewSphere {
         [lowest, highest]: [f64; 2],
         pose: ViewPose,
     ) -> Result<Self> {
-        if !(nearest > 0.0) {
+        if nearest.is_nan() || nearest <= 0.0 {
             return Err(Error::invalid_param(format!(
                 "a nearest distance of {nearest}; give a positive one"
             )));
