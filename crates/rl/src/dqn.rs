@@ -76,6 +76,7 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[2],
     replay_buffer::ROWS[3],
     replay_buffer::ROWS[4],
+    replay_buffer::ROWS[5],
 ];
 
 impl DqnConfig {
@@ -174,7 +175,7 @@ impl Dqn {
         let timesteps = experience.interaction.timesteps;
         let Memory { drawn, now, next, doutputs, gradients } = &mut self.memory;
         let (compute, width) = (&self.compute, self.policy.head.outputs());
-        experience.draw(&self.policy, config.batch_size, &mut self.random, drawn)?;
+        experience.draw(&self.policy, config.batch_size, None, &mut self.random, drawn)?;
         let next_values = self.target.forward(compute, &drawn.next_observations, next);
         let values = self.policy.forward(compute, &drawn.observations, now);
         doutputs.clear();

@@ -14,6 +14,8 @@ pub(crate) struct Interaction {
     pub episodes: Episodes,
     /// Steps of all environments together.
     pub timesteps: u64,
+    /// Steps in which a shield replaced the action.
+    pub shielded: u64,
     /// The observations to act on next, encoded.
     pub encoded: Vec<f32>,
     size: usize,
@@ -39,6 +41,7 @@ impl Interaction {
             batch: Batch::new(spec, count),
             episodes: Episodes::new(count),
             timesteps: 0,
+            shielded: 0,
             encoded: vec![0.0; count * encoder.encoded_len()],
             size: spec.observation.len(),
         }
@@ -84,6 +87,16 @@ impl Interaction {
             .context(|| format!("at time step {at}"))
     }
 
+    /// Counts the environments in which a shield replaced the action of the last step.
+    pub fn count_shielded(&mut self, replaced: &[bool]) {
+        self.shielded += replaced.iter().filter(|replaced| **replaced).count() as u64;
+    }
+
+    /// The share of steps so far in which a shield replaced the action.
+    pub fn shielded_share(&self) -> f64 {
+        self.shielded as f64 / self.timesteps.max(1) as f64
+    }
+
     /// Whether the last step ended an episode in environment `index`.
     pub fn ended(&self, index: usize) -> bool {
         self.batch.terminated[index] || self.batch.truncated[index]
@@ -97,6 +110,7 @@ impl Interaction {
     pub fn save(&self, words: &mut Snapshot) {
         words.push(self.count() as u64);
         words.push(self.timesteps);
+        words.push(self.shielded);
         self.episodes.save(words);
         words
             .extend_numbers(self.batch.observations.iter().chain(&self.encoded).map(|&number| number.into()));
@@ -117,6 +131,7 @@ impl Interaction {
         }
         let mut interaction = Self::unbegun(environments.spec(), own, encoder);
         interaction.timesteps = words.word()?;
+        interaction.shielded = words.word()?;
         interaction.episodes.load(words)?;
         for number in interaction.batch.observations.iter_mut().chain(&mut interaction.encoded) {
             *number = words.finite()? as f32;

@@ -7,6 +7,7 @@ use opendr_simulation::vector::VecEnvironment;
 
 use crate::interaction::Interaction;
 use crate::policy::Policy;
+use crate::prior::DemonstrationReplay;
 use crate::replay_buffer::{ReplayBuffer, Transition, Transitions};
 use crate::saved_state::{SavedState, push_random, read_random};
 
@@ -22,6 +23,13 @@ pub struct OffPolicyConfig {
     /// Steps of all environments, with actions by chance, before learning begins.
     #[param(default = 100, range = 0..=1_000_000_000)]
     pub learning_starts: u64,
+    /// Whether actions before learning begins are the policy's, else by chance from the whole space; for a policy that begins
+    /// with prior knowledge.
+    #[param(default = false)]
+    pub starts_with_policy: bool,
+    /// Steps of all environments before the actor moves; only the values learn until then.
+    #[param(default = 0, range = 0..=1_000_000_000)]
+    pub actor_starts: u64,
     /// Steps that one gradient step learns from.
     #[param(default = 256, range = 1..=1_000_000, log)]
     pub batch_size: usize,
@@ -64,6 +72,11 @@ impl OffPolicyConfig {
     pub(crate) fn clip(&self) -> Option<f32> {
         self.norm_obs.then_some(self.clip_obs)
     }
+
+    /// Whether actions are by chance at this step.
+    pub(crate) fn acts_by_chance(&self, timesteps: u64) -> bool {
+        !self.starts_with_policy && timesteps < self.learning_starts
+    }
 }
 
 impl Experience {
@@ -94,6 +107,11 @@ impl Experience {
         before.copy_from_slice(&interaction.batch.observations);
         interaction.step(environments, &mut policy.encoder, actions)?;
         let (size, width) = (policy.encoder.raw_len(), kept.len() / interaction.count());
+        let interventions = environments.interventions();
+        if let Some(interventions) = interventions {
+            policy.head.distribution_actions(interventions.actions, kept);
+            interaction.count_shielded(interventions.replaced);
+        }
         for index in 0..interaction.count() {
             let (batch, row) = (&interaction.batch, index * size..(index + 1) * size);
             // Where an episode ended, the next one is seen already.
@@ -107,20 +125,26 @@ impl Experience {
                 reward: batch.rewards[index] as f32,
                 next_observation,
                 terminated: batch.terminated[index],
+                shielded: interventions.is_some_and(|interventions| interventions.replaced[index]),
             });
         }
         Ok(())
     }
 
-    /// Draws `count` steps, and encodes what was seen.
+    /// Draws `count` steps, a share of them from `demonstrations` where there are some, and encodes what was seen.
     pub fn draw(
         &self,
         policy: &Policy,
         count: usize,
+        demonstrations: Option<&DemonstrationReplay>,
         random: &mut Random,
         drawn: &mut Transitions,
     ) -> Result<()> {
-        self.buffer.sample(count, random, drawn);
+        let from_prior = demonstrations.map_or(0, |demonstrations| demonstrations.rows(count));
+        self.buffer.sample(count - from_prior, random, drawn);
+        if let Some(demonstrations) = demonstrations {
+            demonstrations.append(from_prior, random, drawn);
+        }
         drawn.encode(&policy.encoder)
     }
 

@@ -10,6 +10,7 @@ use crate::algorithm::{Algorithm, Report, diverged, not_begun, snapshot_of};
 use crate::off_policy::{Experience, OffPolicyConfig};
 use crate::policy::{Beginning, Bounds, Head, NetworkConfig, Policy, PolicyMemory};
 use crate::preset::Preset;
+use crate::prior::{DemonstratedSteps, DemonstrationReplay};
 use crate::replay_buffer::{self, Transitions};
 use crate::saved_state::SavedState;
 use crate::twin_critics::{self, TwinCritics};
@@ -59,6 +60,7 @@ pub struct Td3 {
     actor_adam: Adam,
     critics: TwinCritics,
     experience: Option<Experience>,
+    demonstrations: Option<DemonstrationReplay>,
     memory: Memory,
     /// The noise on the actions of each environment.
     noise: Vec<f32>,
@@ -106,6 +108,7 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[2],
     replay_buffer::ROWS[3],
     replay_buffer::ROWS[4],
+    replay_buffer::ROWS[5],
 ];
 
 impl Td3Config {
@@ -145,6 +148,7 @@ impl Td3 {
             target: policy.clone(),
             policy,
             experience: None,
+            demonstrations: None,
             memory: Memory::default(),
             noise: Vec::new(),
             updates: 0,
@@ -158,9 +162,19 @@ impl Td3 {
         Self { compute, ..self }
     }
 
+    /// Learns from steps of a prior, too: each minibatch has the share `share` of them, in (0, 1). They are no part of a
+    /// [`SavedState`]; set the same ones before a training is resumed.
+    ///
+    /// # Errors
+    /// `InvalidParam` for another share, `InvalidInput` for steps of another environment.
+    pub fn set_demonstrations(&mut self, steps: &DemonstratedSteps, share: f32) -> Result<()> {
+        self.demonstrations = Some(DemonstrationReplay::new(&self.policy, steps, share)?);
+        Ok(())
+    }
+
     /// Writes actions for what is seen: by chance before learning begins, then the policy's with noise.
     fn act(&mut self, experience: &mut Experience) {
-        if experience.interaction.timesteps < self.config.off_policy.learning_starts {
+        if self.config.off_policy.acts_by_chance(experience.interaction.timesteps) {
             return experience.act_by_chance(&self.policy, self.policy.action(), &mut self.random);
         }
         let memory = &mut self.memory.now;
@@ -196,7 +210,8 @@ impl Td3 {
         let (rate, timesteps) = (config.learning_rate, experience.interaction.timesteps);
         let Memory { drawn, next, actions, wanted, .. } = &mut self.memory;
         let (compute, rows) = (&self.compute, config.batch_size);
-        experience.draw(&self.policy, rows, &mut self.random, drawn)?;
+        let demonstrations = self.demonstrations.as_ref();
+        experience.draw(&self.policy, rows, demonstrations, &mut self.random, drawn)?;
         let outputs = self.target.forward(compute, &drawn.next_observations, next);
         actions.clear();
         actions.extend_from_slice(outputs);
@@ -219,7 +234,10 @@ impl Td3 {
         self.report.metrics.set("critic_loss", loss.into());
         self.report.metrics.set("n_updates", self.updates as f64);
         if self.updates.is_multiple_of(self.config.policy_delay) {
-            self.learn_policy(rate, timesteps)?;
+            match timesteps > self.config.off_policy.actor_starts {
+                true => self.learn_policy(rate, timesteps)?,
+                false => self.critics.follow(self.config.off_policy.tau),
+            }
         }
         Ok(())
     }

@@ -52,7 +52,11 @@ impl Method for PpoInCorridors {
         params.clone()
     }
 
-    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
+    fn seen(
+        _: &EndToEndPlanningFitParams,
+        environment: Box<dyn Environment>,
+        in_training: bool,
+    ) -> Result<Box<dyn Environment>> {
         Ok(match in_training {
             true => Box::new(SternRewards(Remembered::new(DenseEpisodes::new(environment))?)),
             false => Box::new(Remembered::new(environment)?),

@@ -27,9 +27,22 @@ pub trait Method: Send + Sync + 'static {
     ///
     /// # Errors
     /// `InvalidInput` for an environment that the learner is not for.
-    fn seen(environment: Box<dyn Environment>, in_training: bool) -> Result<Box<dyn Environment>> {
-        let _ = in_training;
+    fn seen(
+        params: &Self::FitParams,
+        environment: Box<dyn Environment>,
+        in_training: bool,
+    ) -> Result<Box<dyn Environment>> {
+        let _ = (params, in_training);
         Ok(environment)
+    }
+
+    /// What the container says beside the environment that the policy is for, e.g. the prior that the policy corrects.
+    ///
+    /// # Errors
+    /// Those of finding it.
+    fn inputs(params: &Self::FitParams) -> Result<Vec<(&'static str, serde_json::Value)>> {
+        let _ = params;
+        Ok(Vec::new())
     }
 
     /// What does not depend on the method.

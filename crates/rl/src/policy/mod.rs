@@ -88,6 +88,25 @@ impl Policy {
         deviations.fill(log_std);
     }
 
+    /// Makes the output layer zero, whatever is observed: the most likely action is the middle of the action space, and
+    /// logarithms of deviations are `log_std`.
+    pub fn silence(&mut self, log_std: f32) {
+        let from = self.extractor.parameters() + self.trunk.recurrent_parameters();
+        let network = self.trunk.network();
+        let last = network.layers().len() - 1;
+        let (range, outputs) = (network.parameters_of(last), network.outputs());
+        let layer = &mut self.parameters[from..][range];
+        layer.fill(0.0);
+        if let Head::SquashedGaussian(bounds) = &self.head {
+            // Biases come behind the weights.
+            let count = layer.len();
+            layer[count - outputs + bounds.low.len()..].fill(log_std);
+        }
+        let deviations = self.head.parameters();
+        let count = self.parameters.len();
+        self.parameters[count - deviations..].fill(log_std);
+    }
+
     /// What it sees.
     pub fn observation(&self) -> &Space {
         self.encoder.space()
@@ -236,6 +255,12 @@ impl Policy {
         if wants_input {
             self.extractor.backward(compute, of_pictures, dfeatures, &mut memory.extractor, dpictures);
         }
+    }
+}
+
+impl AsRef<Self> for Policy {
+    fn as_ref(&self) -> &Self {
+        self
     }
 }
 

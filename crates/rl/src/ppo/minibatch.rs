@@ -14,6 +14,7 @@ pub(super) struct Minibatch {
     advantages: Vec<f32>,
     values: Vec<f32>,
     returns: Vec<f32>,
+    shielded: Vec<bool>,
     /// What policy and values remember where the sequences begin.
     states: [Vec<f32>; 2],
     /// Where episodes start, of policies with memory.
@@ -38,6 +39,8 @@ impl Minibatch {
         rows(&rollout.advantages, &mut self.advantages);
         rows(&rollout.values, &mut self.values);
         rows(&rollout.returns, &mut self.returns);
+        self.shielded.clear();
+        self.shielded.extend(self.rows.iter().map(|&row| rollout.shielded[row]));
         if normalise && self.rows.len() > 1 {
             let count = self.rows.len() as f32;
             let mean = self.advantages.iter().sum::<f32>() / count;
@@ -149,7 +152,11 @@ impl Likelihood {
         let mut loss = ActorLoss::default();
         dlogs.clear();
         let rows = self.log_probabilities.iter().zip(&steps.log_probabilities).zip(&steps.advantages);
-        for ((now, before), advantage) in rows {
+        for (((now, before), advantage), shielded) in rows.zip(&steps.shielded) {
+            if *shielded {
+                dlogs.push(0.0);
+                continue;
+            }
             let difference = now - before;
             let ratio = difference.exp();
             let clipped = ratio.clamp(1.0 - clip_range, 1.0 + clip_range);

@@ -180,6 +180,7 @@ impl Ppo {
         for step in 0..self.config.n_steps {
             self.act(interaction, step);
             interaction.step(environments, &mut self.policy.encoder, &self.memory.actions)?;
+            self.note_interventions(environments, interaction, step);
             self.earn(interaction, step)?;
             self.forget(step);
         }
@@ -213,6 +214,26 @@ impl Ppo {
         let wide = |width: usize| rows.start * width..rows.end * width;
         rollout.actions[wide(policy.head.action_len())].copy_from_slice(&likelihood.actions);
         rollout.observations[wide(policy.encoder.encoded_len())].copy_from_slice(encoded);
+    }
+
+    /// Keeps the actions that were executed where a shield replaced those of the policy.
+    fn note_interventions(
+        &mut self,
+        environments: &dyn VecEnvironment,
+        interaction: &mut Interaction,
+        step: usize,
+    ) {
+        let Some(interventions) = environments.interventions() else { return };
+        let (count, width) = (interaction.count(), self.policy.head.action_len());
+        let rows = step * count..(step + 1) * count;
+        let kept = &mut self.rollout.actions[rows.start * width..rows.end * width];
+        for (index, _) in interventions.replaced.iter().enumerate().filter(|(_, replaced)| **replaced) {
+            let own = index * width..(index + 1) * width;
+            self.policy.head.distribution_actions(&interventions.actions[own.clone()], &mut kept[own]);
+        }
+        self.rollout.shielded[rows].copy_from_slice(interventions.replaced);
+        interaction.count_shielded(interventions.replaced);
+        self.report.metrics.set("shielded", interaction.shielded_share());
     }
 
     /// Keeps what a step earned. Where an episode was cut off by time alone, what its last observation is worth is earned

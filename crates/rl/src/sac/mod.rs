@@ -14,6 +14,7 @@ use crate::algorithm::{Algorithm, Report, diverged, not_begun, snapshot_of};
 use crate::off_policy::{Experience, OffPolicyConfig};
 use crate::policy::{Beginning, Bounds, Head, NetworkConfig, Policy, PolicyMemory};
 use crate::preset::Preset;
+use crate::prior::{DemonstratedSteps, DemonstrationReplay};
 use crate::replay_buffer::{self, Transitions};
 use crate::saved_state::SavedState;
 use crate::twin_critics::{self, TwinCritics};
@@ -53,6 +54,7 @@ pub struct Sac {
     ent_adam: Adam,
     target_entropy: f32,
     experience: Option<Experience>,
+    demonstrations: Option<DemonstrationReplay>,
     memory: Memory,
     updates: u64,
     report: Report,
@@ -97,6 +99,7 @@ const ROWS: &[&str] = &[
     replay_buffer::ROWS[2],
     replay_buffer::ROWS[3],
     replay_buffer::ROWS[4],
+    replay_buffer::ROWS[5],
 ];
 
 impl SacConfig {
@@ -138,6 +141,7 @@ impl Sac {
             target_entropy: config.target_entropy.unwrap_or(-(axes as f32)),
             policy,
             experience: None,
+            demonstrations: None,
             memory: Memory::default(),
             updates: 0,
             report: Report::default(),
@@ -150,9 +154,19 @@ impl Sac {
         Self { compute, ..self }
     }
 
+    /// Learns from steps of a prior, too: each minibatch has the share `share` of them, in (0, 1). They are no part of a
+    /// [`SavedState`]; set the same ones before a training is resumed.
+    ///
+    /// # Errors
+    /// `InvalidParam` for another share, `InvalidInput` for steps of another environment.
+    pub fn set_demonstrations(&mut self, steps: &DemonstratedSteps, share: f32) -> Result<()> {
+        self.demonstrations = Some(DemonstrationReplay::new(&self.policy, steps, share)?);
+        Ok(())
+    }
+
     /// Writes actions for what is seen: by chance before learning begins, then from the policy.
     fn act(&mut self, experience: &mut Experience) {
-        if experience.interaction.timesteps < self.config.off_policy.learning_starts {
+        if self.config.off_policy.acts_by_chance(experience.interaction.timesteps) {
             return experience.act_by_chance(&self.policy, self.policy.action(), &mut self.random);
         }
         let Memory { now, sampled, .. } = &mut self.memory;
@@ -170,11 +184,13 @@ impl Sac {
         let (rate, timesteps) = (config.learning_rate, experience.interaction.timesteps);
         let Memory { drawn, now, next, sampled, sampled_next, wanted, .. } = &mut self.memory;
         let (compute, policy, axes) = (&self.compute, &self.policy, self.policy.head.action_len());
-        experience.draw(policy, config.batch_size, &mut self.random, drawn)?;
+        let demonstrations = self.demonstrations.as_ref();
+        experience.draw(policy, config.batch_size, demonstrations, &mut self.random, drawn)?;
         let outputs = policy.forward(compute, &drawn.observations, now);
         sampled.sample(compute.isa(), outputs, axes, &mut self.random);
         let weight = self.log_ent_coef[0].exp();
-        if self.config.ent_coef.is_none() {
+        // A policy that does not move has the entropy that it has.
+        if self.config.ent_coef.is_none() && timesteps > config.actor_starts {
             let slope = -(sampled.mean_log_probability() + self.target_entropy);
             self.ent_adam.step(compute, rate, &mut self.log_ent_coef, &[slope]);
         }
@@ -193,7 +209,8 @@ impl Sac {
         if !critic_loss.is_finite() {
             return Err(diverged("the loss of values", critic_loss.into(), timesteps));
         }
-        let actor_loss = self.learn_policy(weight, rate);
+        let moves = timesteps > self.config.off_policy.actor_starts;
+        let actor_loss = if moves { self.learn_policy(weight, rate) } else { 0.0 };
         if !actor_loss.is_finite() {
             return Err(diverged("the loss of the policy", actor_loss.into(), timesteps));
         }

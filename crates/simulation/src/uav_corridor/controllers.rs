@@ -1,6 +1,6 @@
 //! Controllers without learning, to compare policies with and to build them on.
 
-use opendr_engine::environment::{Controller, Space};
+use opendr_engine::environment::{Controller, Snapshot, Space, StateReader};
 use opendr_engine::{Error, Result};
 
 use super::{CorridorSight, SIDE, TURN};
@@ -12,6 +12,22 @@ pub trait CorridorController {
 
     /// Heading and change of yaw, each within [-1, 1] as in `UavDepthCorridor-v1`.
     fn act(&mut self, sight: &CorridorSight) -> [f32; 2];
+
+    /// Notes the action that was executed instead of the last one of [`act`](Self::act).
+    fn executed(&mut self, action: [f32; 2]);
+
+    /// The yaw that it keeps account of, before and after its last action.
+    fn yaw_account(&self) -> YawAccount;
+
+    /// Takes a yaw account over, e.g. from a snapshot.
+    fn set_yaw_account(&mut self, account: YawAccount);
+}
+
+/// The yaw of a drone by its own actions, rad: before the last one and after it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct YawAccount {
+    before: f32,
+    now: f32,
 }
 
 /// A controller that reads observations: for evaluations, and where any [`Controller`] is taken.
@@ -43,6 +59,22 @@ impl<C: CorridorController> Controller for BySight<C> {
         *action = self.controller.act(&self.sight);
         Ok(())
     }
+
+    fn executed(&mut self, action: &[f32]) {
+        if let Some(action) = action.as_array() {
+            self.controller.executed(*action);
+        }
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.controller.yaw_account().save(snapshot);
+        Ok(())
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.controller.set_yaw_account(YawAccount::load(state)?);
+        Ok(())
+    }
 }
 
 /// Straight ahead, whatever comes.
@@ -52,19 +84,19 @@ pub struct Straight;
 /// By hand: towards the freest columns of the picture, near the bearing of the target.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Reactive {
-    yaw: f32,
+    yaw: YawAccount,
 }
 
 /// The sum of a pull towards the target and a push away from each column of the picture (Khatib, Real-time obstacle
 /// avoidance for manipulators and mobile robots, 1986).
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PotentialField {
-    yaw: f32,
+    yaw: YawAccount,
 }
 
 /// Columns that are looked at together.
 const BLOCK: usize = 4;
-const COLUMNS: usize = SIDE / BLOCK;
+pub(super) const COLUMNS: usize = SIDE / BLOCK;
 /// Rows in which an obstacle would be met.
 const ROWS: std::ops::Range<usize> = 20..44;
 const LARGEST: f32 = TURN as f32;
@@ -75,12 +107,39 @@ impl CorridorController for Straight {
     fn act(&mut self, _: &CorridorSight) -> [f32; 2] {
         [0.0; 2]
     }
+
+    fn executed(&mut self, _: [f32; 2]) {}
+
+    fn yaw_account(&self) -> YawAccount {
+        YawAccount::default()
+    }
+
+    fn set_yaw_account(&mut self, _: YawAccount) {}
+}
+
+/// The part of a controller that keeps account of its yaw.
+macro_rules! with_yaw_account {
+    () => {
+        fn begin(&mut self) {
+            self.yaw = YawAccount::default();
+        }
+
+        fn executed(&mut self, action: [f32; 2]) {
+            self.yaw.replace(action);
+        }
+
+        fn yaw_account(&self) -> YawAccount {
+            self.yaw
+        }
+
+        fn set_yaw_account(&mut self, account: YawAccount) {
+            self.yaw = account;
+        }
+    };
 }
 
 impl CorridorController for Reactive {
-    fn begin(&mut self) {
-        self.yaw = 0.0;
-    }
+    with_yaw_account!();
 
     fn act(&mut self, sight: &CorridorSight) -> [f32; 2] {
         let (columns, wanted) = (columns(sight), bearing_of_target(sight));
@@ -94,18 +153,16 @@ impl CorridorController for Reactive {
         }
         let turn = if best < 2.5 {
             // Nothing is free ahead: look towards the middle of the corridor.
-            if offset(sight, self.yaw) > 0.0 { -LARGEST } else { LARGEST }
+            if offset(sight, self.yaw.now) > 0.0 { -LARGEST } else { LARGEST }
         } else {
-            (wanted + self.yaw).clamp(-0.4, 0.4) - self.yaw + 0.5 * heading
+            (wanted + self.yaw.now).clamp(-0.4, 0.4) - self.yaw.now + 0.5 * heading
         };
         action(&mut self.yaw, heading, turn)
     }
 }
 
 impl CorridorController for PotentialField {
-    fn begin(&mut self) {
-        self.yaw = 0.0;
-    }
+    with_yaw_account!();
 
     fn act(&mut self, sight: &CorridorSight) -> [f32; 2] {
         const REACH: f32 = 5.0;
@@ -119,22 +176,38 @@ impl CorridorController for PotentialField {
             force = [force[0] - push * cosine, force[1] - push * sine];
         }
         let heading = force[1].atan2(force[0]).clamp(-LARGEST, LARGEST);
-        let ahead = (bearing_of_target(sight) + self.yaw).clamp(-0.4, 0.4);
-        let turn = ahead - self.yaw + 0.5 * heading;
+        let ahead = (bearing_of_target(sight) + self.yaw.now).clamp(-0.4, 0.4);
+        let turn = ahead - self.yaw.now + 0.5 * heading;
         action(&mut self.yaw, heading, turn)
     }
 }
 
 /// Scales angles to an action, and keeps account of the yaw as the environment does.
-fn action(yaw: &mut f32, heading: f32, turn: f32) -> [f32; 2] {
+fn action(yaw: &mut YawAccount, heading: f32, turn: f32) -> [f32; 2] {
     let action = [heading, turn].map(|angle| (angle / LARGEST).clamp(-1.0, 1.0));
-    let right_angle = std::f32::consts::FRAC_PI_2;
-    *yaw = (*yaw + action[1] * LARGEST).clamp(-right_angle, right_angle);
+    yaw.before = yaw.now;
+    yaw.replace(action);
     action
 }
 
+impl YawAccount {
+    /// The last action was this one.
+    fn replace(&mut self, [_, turn]: [f32; 2]) {
+        let right_angle = std::f32::consts::FRAC_PI_2;
+        self.now = (self.before + turn.clamp(-1.0, 1.0) * LARGEST).clamp(-right_angle, right_angle);
+    }
+
+    pub(super) fn save(self, snapshot: &mut Snapshot) {
+        snapshot.extend_numbers([self.before, self.now].map(f64::from));
+    }
+
+    pub(super) fn load(state: &mut StateReader<'_>) -> Result<Self> {
+        Ok(Self { before: state.finite()? as f32, now: state.finite()? as f32 })
+    }
+}
+
 /// The smallest depth in each block of columns.
-fn columns(sight: &CorridorSight) -> [f32; COLUMNS] {
+pub(super) fn columns(sight: &CorridorSight) -> [f32; COLUMNS] {
     let mut columns = [f32::INFINITY; COLUMNS];
     for row in ROWS {
         for (at, depth) in sight.depths[row * SIDE..(row + 1) * SIDE].iter().enumerate() {
@@ -142,6 +215,15 @@ fn columns(sight: &CorridorSight) -> [f32; COLUMNS] {
         }
     }
     columns
+}
+
+/// Makes [`columns`] of `sight` those of `shares`, shares of the range of the camera.
+pub(super) fn spread_columns(shares: &[f32; COLUMNS], sight: &mut CorridorSight) {
+    for row in ROWS {
+        for (at, depth) in sight.depths[row * SIDE..(row + 1) * SIDE].iter_mut().enumerate() {
+            *depth = shares[at / BLOCK] * super::RANGE;
+        }
+    }
 }
 
 /// How far to the left the middle of a block of columns lies, radians.

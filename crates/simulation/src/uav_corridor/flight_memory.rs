@@ -92,6 +92,8 @@ impl FlightMemory {
     pub const WAYS: usize = 2 * (INNER + OUTER) + 1;
     /// How many numbers it writes.
     pub const LEN: usize = 3 * Self::WAYS + 10;
+    /// How many numbers [`survey`](Self::survey) writes.
+    pub const SURVEY: usize = Self::WAYS + 7;
 
     /// The space of what it writes.
     ///
@@ -102,6 +104,11 @@ impl FlightMemory {
         let low = [vec![0.0; ways], vec![-1.0; 2 * ways + 2], vec![-rest; 6], vec![-1.0; 2]].concat();
         let high = [vec![1.0; 3 * ways + 2], vec![rest; 6], vec![1.0; 2]].concat();
         Space::bounded(low, high, vec![Self::LEN])
+    }
+
+    #[cfg(test)]
+    pub(super) fn along(&self) -> &[[f32; 2]] {
+        &self.along
     }
 
     /// Forgets the flight.
@@ -132,18 +139,11 @@ impl FlightMemory {
     /// # Errors
     /// `InvalidInput` for what is no observation of the corridor.
     pub fn see(&mut self, space: &Space, observation: &[f32], known: &mut [f32; Self::LEN]) -> Result<()> {
-        self.sight.read(space, observation)?;
-        let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
-        let place = expected.corrected(self.sight.target);
-        self.place = Some(place);
-        self.remember(place);
-        self.gather(place);
+        let place = self.take_in(space, observation)?;
         let (sine, cosine) = sine_cosine(place.yaw);
         let (sine, cosine) = (sine as f32, cosine as f32);
         let (ways, rest) = known.split_at_mut(Self::WAYS);
-        for (way, direction) in ways.iter_mut().zip(&self.directions) {
-            *way = free_way(&self.near, *direction) / REACH;
-        }
+        self.measure_ways(ways);
         let (offset, left) = (place.y as f32, FINISH - place.x as f32);
         let turned =
             |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
@@ -176,6 +176,45 @@ impl FlightMemory {
             turn,
         ]);
         Ok(())
+    }
+
+    /// Takes in an observation, as [`see`](Self::see) does, and writes the part of it that no planner made: free ways, then offset, sine
+    /// and cosine of the yaw, how far the drone came, height to gain, and its last action.
+    ///
+    /// # Errors
+    /// As [`see`](Self::see).
+    pub fn survey(
+        &mut self,
+        space: &Space,
+        observation: &[f32],
+        numbers: &mut [f32; Self::SURVEY],
+    ) -> Result<()> {
+        let place = self.take_in(space, observation)?;
+        let (sine, cosine) = sine_cosine(place.yaw);
+        let (ways, rest) = numbers.split_at_mut(Self::WAYS);
+        self.measure_ways(ways);
+        let advance = (place.x as f32 - START) / (FINISH - START);
+        let ([heading, turn], up) = (self.action, self.sight.target[2]);
+        let offset = place.y as f32 / HALF_TRACK;
+        rest.copy_from_slice(&[offset, sine as f32, cosine as f32, advance, up, heading, turn]);
+        Ok(())
+    }
+
+    /// Reads an observation and puts it on the map; where the drone is.
+    fn take_in(&mut self, space: &Space, observation: &[f32]) -> Result<Place> {
+        self.sight.read(space, observation)?;
+        let expected = self.place.unwrap_or(Place { x: START.into(), y: 0.0, yaw: 0.0 });
+        let place = expected.corrected(self.sight.target);
+        self.place = Some(place);
+        self.remember(place);
+        self.gather(place);
+        Ok(place)
+    }
+
+    fn measure_ways(&self, ways: &mut [f32]) {
+        for (way, direction) in ways.iter_mut().zip(&self.directions) {
+            *way = free_way(&self.near, *direction) / REACH;
+        }
     }
 
     /// Puts the nearest point of each column of the picture, at the height of the flight, on the map.

@@ -8,25 +8,31 @@ mod controllers;
 mod environment;
 mod flight;
 mod flight_memory;
+#[cfg(test)]
+mod lattice;
 mod lookahead;
 mod options;
 mod picture;
 mod quadrotor;
 mod range_camera;
 mod remembered;
+#[cfg(test)]
+mod research;
 mod sight;
+mod surveyed;
 #[cfg(test)]
 mod tests;
 mod variants;
 mod way_costs;
 mod world;
 
-pub use controllers::{BySight, CorridorController, PotentialField, Reactive, Straight};
+pub use controllers::{BySight, CorridorController, PotentialField, Reactive, Straight, YawAccount};
 pub use environment::UavDepthCorridor;
 pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
 pub use remembered::Remembered;
 pub use sight::CorridorSight;
+pub use surveyed::{BySurvey, Surveyed, surveyed_space};
 pub(crate) use variants::registrations;
 pub use variants::{Dense, Discrete, Dynamic, Noisy};
 pub use world::CorridorWorld;

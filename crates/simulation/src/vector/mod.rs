@@ -59,6 +59,15 @@ impl Seeds<'_> {
     }
 }
 
+/// The actions that a step executed.
+#[derive(Debug, Clone, Copy)]
+pub struct Interventions<'a> {
+    /// Environment after environment, as the environments take them.
+    pub actions: &'a [f32],
+    /// The environments in which they are not the actions that were given.
+    pub replaced: &'a [bool],
+}
+
 /// Environments that are stepped together. What they answer does not depend on threads.
 pub trait VecEnvironment: Send {
     /// What each of them is.
@@ -90,6 +99,12 @@ pub trait VecEnvironment: Send {
     /// without autoreset where an episode is over. The message names the environment; the others may have
     /// taken their step.
     fn step(&mut self, actions: &[f32], batch: &mut Batch) -> Result<()>;
+
+    /// The actions that the last step executed, where something between learner and environments may replace them, such as
+    /// a shield. A learner keeps these instead of those that it gave. None where nothing can.
+    fn interventions(&self) -> Option<Interventions<'_>> {
+        None
+    }
 
     /// Writes everything that decides the future of all environments.
     ///

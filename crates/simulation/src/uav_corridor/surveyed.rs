@@ -1,0 +1,163 @@
+//! The corridor as numbers from a map and from the last picture, without a planner.
+
+use opendr_engine::data::Image;
+use opendr_engine::environment::{
+    Controller, Environment, EnvironmentSpec, Info, ResetOptions, Snapshot, Space, StateReader, Step,
+};
+use opendr_engine::{Error, Result};
+
+use super::controllers::{COLUMNS, columns, spread_columns};
+use super::{CorridorController, CorridorSight, FlightMemory, RANGE};
+
+/// A corridor that shows free ways of the map of a [`FlightMemory`], the drone's state, and the last picture in 16 columns, and
+/// whose actions are those of the corridor. It holds nothing of a planner: what priors are measured in.
+///
+/// Observations are [`FlightMemory::SURVEY`] numbers of the memory, then the smallest depth in each of 16 columns of the picture as a
+/// share of its range, then the way to the target in metres.
+#[derive(Debug, Clone)]
+pub struct Surveyed<E> {
+    inner: E,
+    spec: EnvironmentSpec,
+    memory: FlightMemory,
+    sight: CorridorSight,
+    observation: Vec<f32>,
+}
+
+/// Numbers of the columns and of the target.
+const VIEW: usize = COLUMNS + 3;
+const LEN: usize = FlightMemory::SURVEY + VIEW;
+
+/// The space of the observations of a [`Surveyed`] corridor.
+///
+/// # Errors
+/// None; a space is checked when it is made.
+pub fn surveyed_space() -> Result<Space> {
+    let (ways, rest) = (FlightMemory::WAYS, f32::INFINITY);
+    let state = FlightMemory::SURVEY - ways;
+    let low = [vec![0.0; ways], vec![-rest; state], vec![0.0; COLUMNS], vec![-rest; 3]].concat();
+    let high = [vec![1.0; ways], vec![rest; state], vec![1.0; COLUMNS], vec![rest; 3]].concat();
+    Space::bounded(low, high, vec![LEN])
+}
+
+impl<E: Environment> Surveyed<E> {
+    /// `inner`, one of the corridors with two numbers as action.
+    ///
+    /// # Errors
+    /// `Unsupported` for an environment of other actions.
+    pub fn new(inner: E) -> Result<Self> {
+        let mut spec = inner.spec().clone();
+        if spec.action != Space::symmetric(&[1.0; 2]) {
+            return Err(Error::unsupported(format!(
+                "a survey of flights in {}, whose actions are {}; take a corridor without choices",
+                spec.id, spec.action
+            )));
+        }
+        let observation = vec![0.0; spec.observation.len()];
+        spec.observation = surveyed_space()?;
+        let (memory, sight) = (FlightMemory::default(), CorridorSight::default());
+        Ok(Self { inner, spec, memory, sight, observation })
+    }
+
+    fn show(&mut self, numbers: &mut [f32]) -> Result<()> {
+        let length = numbers.len();
+        let (survey, view) = numbers
+            .split_first_chunk_mut::<{ FlightMemory::SURVEY }>()
+            .filter(|_| length == LEN)
+            .ok_or_else(|| Error::invalid_input(format!("room for {length} numbers; observations have {LEN}")))?;
+        let space = &self.inner.spec().observation;
+        self.memory.survey(space, &self.observation, survey)?;
+        self.sight.read(space, &self.observation)?;
+        for (share, depth) in view.iter_mut().zip(columns(&self.sight)) {
+            *share = (depth / RANGE).min(1.0);
+        }
+        view[COLUMNS..].copy_from_slice(&self.sight.target);
+        Ok(())
+    }
+}
+
+impl<E: Environment> Environment for Surveyed<E> {
+    fn spec(&self) -> &EnvironmentSpec {
+        &self.spec
+    }
+
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
+        let info = self.inner.reset(seed, options, &mut self.observation)?;
+        self.memory.reset();
+        self.show(observation)?;
+        Ok(info)
+    }
+
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
+        let step = self.inner.step(action, &mut self.observation)?;
+        if let Some(action) = action.as_array() {
+            self.memory.acted(*action);
+        }
+        self.show(observation)?;
+        Ok(step)
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.memory.save(snapshot);
+        self.inner.save_state(snapshot)
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.memory.load(state)?;
+        self.inner.load_state(state)
+    }
+
+    fn render(&mut self) -> Result<Option<Image>> {
+        self.inner.render()
+    }
+}
+
+/// A controller of the corridor that reads the observations of a [`Surveyed`] one.
+#[derive(Debug, Clone)]
+pub struct BySurvey<C> {
+    controller: C,
+    sight: CorridorSight,
+}
+
+impl<C: CorridorController> BySurvey<C> {
+    /// `controller`, which decides by columns of the picture.
+    pub fn new(controller: C) -> Self {
+        Self { controller, sight: CorridorSight::default() }
+    }
+}
+
+impl<C: CorridorController> Controller for BySurvey<C> {
+    fn reset(&mut self) {
+        self.controller.begin();
+    }
+
+    fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()> {
+        let view = observation.last_chunk::<VIEW>().filter(|_| observation.len() == LEN);
+        let (view, action) = view.zip(action.as_mut_array()).ok_or_else(|| {
+            Error::invalid_input(format!(
+                "{} numbers are no observation of a surveyed corridor, which has {LEN}, or the action has not 2",
+                observation.len()
+            ))
+        })?;
+        let [columns @ .., ahead, left, up] = view;
+        spread_columns(columns, &mut self.sight);
+        self.sight.target = [*ahead, *left, *up];
+        *action = self.controller.act(&self.sight);
+        Ok(())
+    }
+
+    fn executed(&mut self, action: &[f32]) {
+        if let Some(action) = action.as_array() {
+            self.controller.executed(*action);
+        }
+    }
+
+    fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
+        self.controller.yaw_account().save(snapshot);
+        Ok(())
+    }
+
+    fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
+        self.controller.set_yaw_account(super::YawAccount::load(state)?);
+        Ok(())
+    }
+}
