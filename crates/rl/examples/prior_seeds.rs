@@ -7,7 +7,7 @@
 
 use std::time::Instant;
 
-use opendr_engine::environment::{Controller, Environment};
+use opendr_engine::environment::{Controller, Environment, EnvironmentSpec, Info, ResetOptions, Step};
 use opendr_engine::{Error, Result};
 use opendr_rl::prior::{
     BoxedController, Prior, PriorReport, Residual, ResidualConfig, ResidualController, Shield,
@@ -38,6 +38,7 @@ fn main() -> Result<()> {
         println!("{name}: {}", percent(measured_alone(name, &protocol)?));
     }
     for prior in [Some(priors[0]), Some(priors[1]), None] {
+        if std::env::var("ONLY").is_ok_and(|only| only != prior.unwrap_or("none")) { continue; }
         let (mut early, mut late) = (Vec::new(), Vec::new());
         for seed in 0..seeds {
             let begun = Instant::now();
@@ -70,7 +71,26 @@ fn main() -> Result<()> {
 }
 
 fn corridor() -> Result<Surveyed<Box<dyn Environment>>> {
-    Surveyed::new(make(ID)?)
+    Surveyed::new(Box::new(Sparse(make(ID)?)))
+}
+
+/// A corridor in which only the end counts: 1 for the finish, else nothing.
+struct Sparse(Box<dyn Environment>);
+
+impl Environment for Sparse {
+    fn spec(&self) -> &EnvironmentSpec {
+        self.0.spec()
+    }
+
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
+        self.0.reset(seed, options, observation)
+    }
+
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
+        let step = self.0.step(action, observation)?;
+        let reward = if std::env::var("DENSE").is_ok() { step.reward } else { f64::from(u8::from(step.info.success() == Some(true))) };
+        Ok(Step { reward, ..step })
+    }
 }
 
 fn controller(name: &str) -> Result<BoxedController> {
@@ -94,7 +114,8 @@ fn trained(
     steps: u64,
     protocol: &EvaluationProtocol,
 ) -> Result<(SuccessRate, SuccessRate, Policy)> {
-    let residual = ResidualConfig { critic_warmup: steps / 20, ..ResidualConfig::default() };
+    let var = |n: &str, d: f32| std::env::var(n).map_or(d, |t| t.parse::<f32>().unwrap());
+    let residual = ResidualConfig { critic_warmup: (var("WARM", 0.05) * steps as f32) as u64, alpha: var("ALPHA", 1.0), alpha_start: var("ALPHA", 1.0), correction_log_std: var("STD", -1.5), ..ResidualConfig::default() };
     let preset = PpoConfig::preset(ID).ok_or_else(|| Error::internal("no settings for the corridor"))?;
     let plain = PpoConfig { seed, ..preset.config };
     let config = if prior.is_some() { residual.ppo(&plain) } else { plain };
@@ -120,7 +141,7 @@ fn trained(
 fn reported(name: &str, policy: &Policy, protocol: &EvaluationProtocol) -> Result<PriorReport> {
     let (mut report, mut corridor) = (PriorReport::default(), corridor()?);
     report.add("prior", &mut *controller(name)?, &mut corridor, protocol)?;
-    let both = || ResidualController::new(policy, controller(name)?, ResidualConfig::default().alpha);
+    let both = || ResidualController::new(policy, controller(name)?, std::env::var("ALPHA").map_or(1.0, |t| t.parse::<f32>().unwrap()));
     report.add("prior and policy", &mut both()?, &mut corridor, protocol)?;
     let mut shielded = ShieldedController::new(both()?, Shield::new(is_blocked, controller(name)?));
     report.add("prior and policy, shielded", &mut shielded, &mut corridor, protocol)?.shielded =

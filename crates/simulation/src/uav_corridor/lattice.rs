@@ -109,7 +109,7 @@ impl Lattice {
         self.fly_back(left);
     }
 
-    fn fly_back(&mut self, left: f32) {
+    pub fn fly_back(&mut self, left: f32) {
         self.values.fill(0.0);
         self.turned.fill(0.0);
         let last = ((left / CELL).max(0.0) as usize + BEHIND + 1).min(COLUMNS - 1);

@@ -11,6 +11,8 @@ mod flight_memory;
 #[cfg(test)]
 mod lattice;
 mod lookahead;
+#[cfg(test)]
+mod occlusion;
 mod options;
 mod picture;
 mod quadrotor;

@@ -7,7 +7,7 @@ use super::{HALF_TRACK, RADIUS};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WayCosts {
     /// What a metre costs in each cell, column after column.
-    weights: Vec<f32>,
+    pub weights: Vec<f32>,
     costs: Vec<f32>,
     /// Cells with something in them, and their numbers.
     is_marked: Vec<bool>,
@@ -91,7 +91,7 @@ impl WayCosts {
     }
 
     /// Costs of each column from those of the next one.
-    fn fly_back(&mut self, left: f32) {
+    pub fn fly_back(&mut self, left: f32) {
         const DIAGONAL: f32 = std::f32::consts::SQRT_2 * CELL;
         self.costs.fill(0.0);
         let last = ((left / CELL).max(0.0) as usize + BEHIND + 1).min(COLUMNS - 1);
