@@ -70,9 +70,35 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn corridor() -> Result<Surveyed<Box<dyn Environment>>> {
-    Surveyed::new(Box::new(Sparse(make(ID)?)))
+fn corridor() -> Result<Masked> {
+    let sparse: Box<dyn Environment> = Box::new(Sparse(make(ID)?));
+    Ok(Masked(Surveyed::new(sparse)?))
 }
+
+struct Masked(Surveyed<Box<dyn Environment>>);
+
+fn mask(observation: &mut [f32]) {
+    if std::env::var("MASK").is_ok() { observation[..FlightMemory::WAYS].fill(0.0); }
+}
+
+impl Environment for Masked {
+    fn spec(&self) -> &EnvironmentSpec {
+        self.0.spec()
+    }
+
+    fn reset(&mut self, seed: Option<u64>, options: &ResetOptions, observation: &mut [f32]) -> Result<Info> {
+        let info = self.0.reset(seed, options, observation)?;
+        mask(observation);
+        Ok(info)
+    }
+
+    fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
+        let step = self.0.step(action, observation)?;
+        mask(observation);
+        Ok(step)
+    }
+}
+
 
 /// A corridor in which only the end counts: 1 for the finish, else nothing.
 struct Sparse(Box<dyn Environment>);

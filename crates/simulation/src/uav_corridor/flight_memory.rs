@@ -1,12 +1,16 @@
 //! What a drone knows of its surroundings from all that it saw: a memory for policies without one.
 
+use std::sync::Arc;
+
 use opendr_engine::Result;
 use opendr_engine::environment::{Snapshot, Space, StateReader};
 
 use super::lookahead::Lookahead;
+use super::map_raster::{Glimpse, MapRaster};
 use super::way_costs::WayCosts;
 use super::{
-    CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, TARGET, TURN,
+    CAMERA_HEIGHT, CorridorSight, FINISH, HALF_TRACK, HALF_WIDTH, RADIUS, RANGE, SIDE, START, Surroundings,
+    TARGET, TURN,
 };
 use crate::sine_cosine::sine_cosine;
 
@@ -38,6 +42,11 @@ pub struct FlightMemory {
     along: Vec<[f32; 2]>,
     costs: WayCosts,
     lookahead: Lookahead,
+    /// Of the last frames, where something is made of what they do not show; the first so many are taken.
+    glimpses: Vec<Glimpse>,
+    taken: usize,
+    raster: MapRaster,
+    surroundings: Option<Arc<Surroundings>>,
 }
 
 /// Where the drone thinks that it is.
@@ -81,6 +90,10 @@ impl Default for FlightMemory {
             along: Vec::with_capacity(Self::FRAMES * SIDE),
             costs: WayCosts::default(),
             lookahead: Lookahead::default(),
+            glimpses: vec![Glimpse::default(); Self::FRAMES],
+            taken: 0,
+            raster: MapRaster::default(),
+            surroundings: None,
         }
     }
 }
@@ -106,18 +119,19 @@ impl FlightMemory {
         Space::bounded(low, high, vec![Self::LEN])
     }
 
-    #[cfg(test)]
-    pub(super) fn along(&self) -> &[[f32; 2]] {
-        &self.along
-    }
-
     /// Forgets the flight.
     pub fn reset(&mut self) {
         self.place = None;
         self.action = [0.0; 2];
         self.proposal = [0.0; 2];
         self.points.fill([f32::INFINITY; 2]);
-        self.next = 0;
+        (self.next, self.taken) = (0, 0);
+    }
+
+    /// A memory whose proposals reckon with what probably lies where the camera has not looked.
+    #[must_use]
+    pub fn with_surroundings(self, surroundings: Arc<Surroundings>) -> Self {
+        Self { surroundings: Some(surroundings), ..self }
     }
 
     /// The action that a policy means: what was proposed when the drone last saw something, and the policy's correction.
@@ -149,7 +163,13 @@ impl FlightMemory {
             |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
         self.along.clear();
         self.along.extend(self.near.iter().copied().map(turned));
-        self.costs.find(self.along.iter().copied(), offset, left);
+        match self.surroundings.clone() {
+            None => self.costs.find(self.along.iter().copied(), offset, left),
+            Some(surroundings) => {
+                self.draw_map();
+                self.costs.find_weighed(left, |weights| surroundings.weigh(&self.raster, weights));
+            }
+        }
         self.proposal = self.lookahead.action(&self.costs, &self.along, place.yaw);
         let here = self.costs.at([0.0; 2]);
         let (nearer, rest) = rest.split_at_mut(2 * Self::WAYS);
@@ -231,6 +251,9 @@ impl FlightMemory {
         let (sine, cosine) = sine_cosine(place.yaw);
         let ([x, y], [sine, cosine]) =
             ([place.x, place.y].map(|part| part as f32), [sine as f32, cosine as f32]);
+        self.glimpses[self.next] =
+            Glimpse { place: [x, y], sine, cosine, ahead: nearest.map(|ahead| ahead.min(RANGE)) };
+        self.taken = (self.taken + 1).min(Self::FRAMES);
         let frame = &mut self.points[self.next * SIDE..(self.next + 1) * SIDE];
         for (column, (point, ahead)) in frame.iter_mut().zip(nearest).enumerate() {
             let left = ahead * slope(column);
@@ -242,6 +265,13 @@ impl FlightMemory {
             };
         }
         self.next = (self.next + 1) % Self::FRAMES;
+    }
+
+    /// Draws the cells around the drone as they are known after an observation was taken in.
+    pub(super) fn draw_map(&mut self) -> &MapRaster {
+        let place = self.place.map_or([START, 0.0], |place| [place.x as f32, place.y as f32]);
+        self.raster.draw(&self.glimpses[..self.taken], &self.along, place);
+        &self.raster
     }
 
     /// The points within reach, as seen from the drone.
@@ -264,6 +294,14 @@ impl FlightMemory {
         let points = self.points.iter().flatten();
         let told = self.action.iter().chain(&self.proposal);
         snapshot.extend_numbers(told.chain(points).map(|number| f64::from(*number)));
+        if self.surroundings.is_some() {
+            snapshot.push(self.taken as u64);
+            for glimpse in &self.glimpses {
+                let Glimpse { place: [x, y], sine, cosine, ahead } = glimpse;
+                let numbers = [x, y, sine, cosine].into_iter().chain(ahead);
+                snapshot.extend_numbers(numbers.map(|number| f64::from(*number)));
+            }
+        }
     }
 
     pub(super) fn load(&mut self, state: &mut StateReader<'_>) -> Result<()> {
@@ -273,6 +311,15 @@ impl FlightMemory {
         let told = self.action.iter_mut().chain(&mut self.proposal);
         for number in told.chain(self.points.iter_mut().flatten()) {
             *number = state.number()? as f32;
+        }
+        if self.surroundings.is_some() {
+            self.taken = state.count(Self::FRAMES)?;
+            for glimpse in &mut self.glimpses {
+                let Glimpse { place: [x, y], sine, cosine, ahead } = glimpse;
+                for number in [x, y, sine, cosine].into_iter().chain(ahead) {
+                    *number = state.finite()? as f32;
+                }
+            }
         }
         Ok(())
     }

@@ -8,19 +8,16 @@ mod controllers;
 mod environment;
 mod flight;
 mod flight_memory;
-#[cfg(test)]
-mod lattice;
 mod lookahead;
-#[cfg(test)]
-mod occlusion;
+mod map_raster;
 mod options;
 mod picture;
 mod quadrotor;
 mod range_camera;
 mod remembered;
-#[cfg(test)]
-mod research;
 mod sight;
+mod surroundings;
+mod surroundings_samples;
 mod surveyed;
 #[cfg(test)]
 mod tests;
@@ -34,6 +31,8 @@ pub use flight_memory::FlightMemory;
 pub use options::{CorridorForm, CorridorOptions, UavDepthCorridorParams};
 pub use remembered::Remembered;
 pub use sight::CorridorSight;
+pub use surroundings::Surroundings;
+pub use surroundings_samples::SurroundingsSamples;
 pub use surveyed::{BySurvey, Surveyed, surveyed_space};
 pub(crate) use variants::registrations;
 pub use variants::{Dense, Discrete, Dynamic, Noisy};

@@ -24,6 +24,14 @@ impl<E: Environment> Remembered<E> {
     /// # Errors
     /// `Unsupported` for an environment of other actions.
     pub fn new(inner: E) -> Result<Self> {
+        Self::with_memory(inner, FlightMemory::default())
+    }
+
+    /// The same with a memory of its own.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_memory(inner: E, memory: FlightMemory) -> Result<Self> {
         let mut spec = inner.spec().clone();
         if spec.action != Space::symmetric(&[1.0; 2]) {
             return Err(Error::unsupported(format!(
@@ -33,7 +41,7 @@ impl<E: Environment> Remembered<E> {
         }
         let observation = vec![0.0; spec.observation.len()];
         spec.observation = FlightMemory::space()?;
-        Ok(Self { inner, spec, memory: FlightMemory::default(), observation })
+        Ok(Self { inner, spec, memory, observation })
     }
 
     fn show(&mut self, known: &mut [f32]) -> Result<()> {

@@ -1,5 +1,6 @@
 //! What it costs to fly on from the places around the drone.
 
+use super::map_raster::{ASIDE, BEHIND, CELL, COLUMNS, ROWS};
 use super::{HALF_TRACK, RADIUS};
 
 /// Costs of the ways from cells around the drone to the end of the map, in metres of free way: found backwards, column by
@@ -7,23 +8,15 @@ use super::{HALF_TRACK, RADIUS};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct WayCosts {
     /// What a metre costs in each cell, column after column.
-    pub weights: Vec<f32>,
+    weights: Vec<f32>,
     costs: Vec<f32>,
     /// Cells with something in them, and their numbers.
     is_marked: Vec<bool>,
     marked: Vec<usize>,
 }
 
-/// The side of a cell, metres.
-const CELL: f32 = 0.2;
-/// Cells before, behind, and to each side of the drone's.
-const AHEAD: usize = 50;
-const BEHIND: usize = 5;
-const ASIDE: usize = 25;
-const COLUMNS: usize = BEHIND + 1 + AHEAD;
-const ROWS: usize = 2 * ASIDE + 1;
 /// Centres of cells nearer to something than this cannot, or better should not, be flown over, and what that costs.
-const BLOCKED: (f32, f32) = (RADIUS + 0.05, 10.0);
+pub(super) const BLOCKED: (f32, f32) = (RADIUS + 0.05, 10.0);
 const NARROW: (f32, f32) = (RADIUS + 0.3, 2.0);
 /// Cells from whose middle a narrow one may lie.
 const SPREAD: usize = 3;
@@ -54,6 +47,12 @@ impl WayCosts {
         for marked in std::mem::take(&mut self.marked) {
             self.spread(marked / ROWS, marked % ROWS);
         }
+        self.fly_back(left);
+    }
+
+    /// Finds the costs where `weigh` writes what a metre costs in each cell, column after column, with `left` metres to go.
+    pub fn find_weighed(&mut self, left: f32, weigh: impl FnOnce(&mut [f32])) {
+        weigh(&mut self.weights);
         self.fly_back(left);
     }
 
@@ -91,7 +90,7 @@ impl WayCosts {
     }
 
     /// Costs of each column from those of the next one.
-    pub fn fly_back(&mut self, left: f32) {
+    fn fly_back(&mut self, left: f32) {
         const DIAGONAL: f32 = std::f32::consts::SQRT_2 * CELL;
         self.costs.fill(0.0);
         let last = ((left / CELL).max(0.0) as usize + BEHIND + 1).min(COLUMNS - 1);
