@@ -13,11 +13,11 @@ use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::learner::{FitJob, Handle};
 use opendr_engine::params::Params as _;
 use opendr_engine::{Device, Error, Result};
-use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl};
+use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl, surroundings_of};
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
 };
-use opendr_simulation::uav_corridor::Remembered;
+use opendr_simulation::uav_corridor::{FlightMemory, Remembered};
 use opendr_simulation::{RegisteredSource, make};
 
 const EVALUATED: [&str; 4] = [
@@ -33,7 +33,7 @@ fn main() -> Result<()> {
     let (Ok(seeds), Ok(episodes)) = (next(5), next(500)) else {
         return Err(Error::invalid_param("give two whole numbers: seeds and episodes"));
     };
-    println!("without learning");
+    println!("the proposal alone, without learning");
     for id in EVALUATED {
         shown(id, measured(&mut Unchanged, &mut Remembered::new(make(id)?)?, episodes)?);
     }
@@ -43,6 +43,14 @@ fn main() -> Result<()> {
         let begun = Instant::now();
         let mut learner = trained(seed, &folder)?;
         println!("seed {seed}: {:.1} s", begun.elapsed().as_secs_f64());
+        println!("  the proposal with learnt surroundings, without corrections");
+        if let Some(surroundings) = surroundings_of(learner.model().ok_or_else(|| Error::internal("a learner without a model"))?)? {
+            for id in EVALUATED {
+                let memory = FlightMemory::default().with_surroundings(surroundings.clone());
+                shown(id, measured(&mut Unchanged, &mut Remembered::with_memory(make(id)?, memory)?, episodes)?);
+            }
+        }
+        println!("  with corrections");
         for (id, rates) in EVALUATED.iter().zip(&mut rates) {
             let mut corridor = make(id)?;
             let space = corridor.spec().observation.clone();

@@ -17,6 +17,11 @@ pub struct DenseEpisodes<E> {
 /// The options of a reset, and what they are then.
 const DENSE: [(&str, i64); 2] = [("min_obstacles", 8), ("max_obstacles", 10)];
 
+/// The options of a reset to a dense episode.
+pub(super) fn dense_options() -> ResetOptions {
+    DENSE.map(|(name, value)| (name.to_owned(), value.into())).into_iter().collect()
+}
+
 impl<E: Environment> DenseEpisodes<E> {
     /// `inner`, a corridor.
     pub fn new(inner: E) -> Self {
@@ -33,7 +38,7 @@ impl<E: Environment> Environment for DenseEpisodes<E> {
         self.episodes += 1;
         if self.episodes.is_multiple_of(2) {
             let mut options = options.clone();
-            options.extend(DENSE.map(|(name, value)| (name.to_owned(), value.into())));
+            options.extend(dense_options());
             return self.inner.reset(seed, &options, observation);
         }
         self.inner.reset(seed, options, observation)

@@ -1,16 +1,19 @@
 //! The learner.
 
+use std::sync::Arc;
+
 use opendr_engine::data::Observation;
-use opendr_engine::environment::{EnvironmentSource, Space};
+use opendr_engine::environment::{Environment, EnvironmentSource, Space};
 use opendr_engine::learner::{FitJob, Learner, LearnerRl, Spec};
-use opendr_engine::model::Model;
+use opendr_engine::model::{Model, ModelWriter};
 use opendr_engine::params::Params as _;
 use opendr_engine::target::RlTarget;
 use opendr_engine::{Device, Error, Random, Result, Statistics, Task};
 use opendr_kernels::Compute;
 use opendr_rl::{Acting, POLICY, Policy, PolicyMemory, PolicyParams, fit_policy, numbers_from_observation};
-use opendr_simulation::uav_corridor::FlightMemory;
+use opendr_simulation::uav_corridor::{FlightMemory, Remembered, Surroundings};
 
+use super::learn_surroundings;
 use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
 
 /// Flies a drone between obstacles by its depth camera (OpenDR's `EndToEndPlanningRLLearner`): PPO on what the drone
@@ -22,6 +25,7 @@ use super::method::{EndToEndPlanningFitParams, PpoInCorridors};
 pub struct EndToEndPlanningRl {
     policy: Policy,
     params: PolicyParams,
+    surroundings: Option<Arc<Surroundings>>,
     /// Of the observations that come in.
     space: Space,
     compute: Compute,
@@ -30,7 +34,7 @@ pub struct EndToEndPlanningRl {
 /// What is remembered of a flight.
 #[derive(Default)]
 pub struct FlightState {
-    flight: FlightMemory,
+    flight: Option<FlightMemory>,
     memory: PolicyMemory,
     numbers: Vec<f32>,
     random: Option<Random>,
@@ -40,6 +44,58 @@ pub struct FlightState {
 const CORRIDOR: &str = "UavDepthCorridor-v1";
 /// Heading and change of yaw.
 const AXES: usize = 2;
+/// The file of the surroundings in a container: little-endian numbers of four bytes.
+const SURROUNDINGS: &str = "surroundings.f32";
+
+/// The surroundings in a container; containers without them are of policies trained without.
+///
+/// # Errors
+/// `Format` for a damaged file.
+pub fn surroundings_of(model: &Model) -> Result<Option<Arc<Surroundings>>> {
+    if !model.manifest().files.iter().any(|file| file.name == SURROUNDINGS) {
+        return Ok(None);
+    }
+    let bytes = model.file(SURROUNDINGS)?;
+    let (numbers, rest) = bytes.as_chunks::<4>();
+    if !rest.is_empty() {
+        return Err(Error::format(format!("{SURROUNDINGS} is cut off; train the policy again")));
+    }
+    let numbers = numbers.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+    Ok(Some(Arc::new(Surroundings::new(numbers)?)))
+}
+
+/// Adds surroundings to the container that a training wrote.
+fn add_surroundings(surroundings: &Surroundings, job: &FitJob<'_>) -> Result<()> {
+    let model = Model::open(job.model())?;
+    let files = &model.manifest().files;
+    let files = files.iter().map(|file| Ok((file.name.clone(), model.file(&file.name)?)));
+    let files = files.collect::<Result<Vec<_>>>()?;
+    let mut writer = ModelWriter::new(job.model(), model.manifest().clone())?;
+    files.iter().try_for_each(|(name, bytes)| writer.add(name, bytes))?;
+    let bytes = surroundings.parameters().iter().flat_map(|parameter| parameter.to_le_bytes());
+    writer.add(SURROUNDINGS, &bytes.collect::<Vec<_>>())?;
+    writer.finish().map(drop)
+}
+
+fn memory_with(surroundings: Option<&Arc<Surroundings>>) -> FlightMemory {
+    match surroundings {
+        None => FlightMemory::default(),
+        Some(surroundings) => FlightMemory::default().with_surroundings(Arc::clone(surroundings)),
+    }
+}
+
+/// Corridors as drones with a memory know them.
+struct RememberedSource<'a> {
+    source: &'a dyn EnvironmentSource,
+    surroundings: Option<Arc<Surroundings>>,
+}
+
+impl EnvironmentSource for RememberedSource<'_> {
+    fn make(&self) -> Result<Box<dyn Environment>> {
+        let memory = memory_with(self.surroundings.as_ref());
+        Ok(Box::new(Remembered::with_memory(self.source.make()?, memory)?))
+    }
+}
 
 impl Learner for EndToEndPlanningRl {
     const SPEC: Spec = Spec::new("end_to_end_planning", Task::EndToEndPlanning)
@@ -67,7 +123,8 @@ impl Learner for EndToEndPlanningRl {
             )));
         }
         let space = opendr_simulation::make(CORRIDOR)?.spec().observation.clone();
-        Ok(Self { policy, params, space, compute: Compute::single() })
+        let surroundings = surroundings_of(model)?;
+        Ok(Self { policy, params, surroundings, space, compute: Compute::single() })
     }
 
     fn params(&self) -> &PolicyParams {
@@ -82,6 +139,7 @@ impl Learner for EndToEndPlanningRl {
         let FlightState { flight, memory, numbers, random } = state;
         numbers_from_observation(&self.space, seen, numbers)?;
         let (mut known, mut correction) = ([0.0; FlightMemory::LEN], [0.0; AXES]);
+        let flight = flight.get_or_insert_with(|| memory_with(self.surroundings.as_ref()));
         flight.see(&self.space, numbers, &mut known)?;
         let acting = match self.params.deterministic {
             true => Acting::Deterministic,
@@ -107,6 +165,24 @@ impl LearnerRl for EndToEndPlanningRl {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, env, val_env, job)
+        fit_params.check()?;
+        let surroundings = match base {
+            Some(base) => surroundings_of(base)?,
+            None if fit_params.surroundings_flights == 0 => None,
+            None => {
+                let compute = Compute::with_threads(fit_params.training.num_workers);
+                let flights = fit_params.surroundings_flights;
+                Some(Arc::new(learn_surroundings(flights, fit_params.seed, &compute, job.progress)?))
+            }
+        };
+        let remembered = |source| RememberedSource { source, surroundings: surroundings.clone() };
+        let (env, val_env) = (remembered(env), val_env.map(remembered));
+        let val_env = val_env.as_ref().map(|source| source as &dyn EnvironmentSource);
+        let statistics =
+            fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, &env, val_env, job)?;
+        if let Some(surroundings) = surroundings {
+            add_surroundings(&surroundings, job)?;
+        }
+        Ok(statistics)
     }
 }

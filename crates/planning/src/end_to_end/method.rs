@@ -5,8 +5,8 @@ use opendr_engine::environment::{Environment, EnvironmentSpec};
 use opendr_engine::learner::{Learner as _, Spec};
 use opendr_engine::params::Params;
 use opendr_kernels::Compute;
+use opendr_rl::prior::begin_as_prior;
 use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
-use opendr_simulation::uav_corridor::Remembered;
 
 use super::{DenseEpisodes, EndToEndPlanningRl, SternRewards};
 
@@ -24,6 +24,13 @@ pub struct EndToEndPlanningFitParams {
     /// Steps in a minibatch.
     #[param(default = 1024, range = 1..=1_000_000, log)]
     pub batch_size: usize,
+    /// Flights in embedded corridors from which the drone learns what lies behind the fronts that it sees; 0 is none, so that what it
+    /// did not see is free to it.
+    #[param(default = 600, range = 0..=1_000_000)]
+    pub surroundings_flights: u64,
+    /// Steps of all environments before the corrections move; only the values learn until then.
+    #[param(default = 16_384, range = 0..=1_000_000_000)]
+    pub critic_warmup: u64,
     /// What fixes everything random.
     #[param(default = 0)]
     pub seed: u64,
@@ -38,6 +45,9 @@ pub struct EndToEndPlanningFitParams {
     )]
     pub training: RlTrainingParams,
 }
+
+/// The logarithm of the first deviation of corrections. The proposals are good: to try much else would spoil them.
+const CORRECTION_LOG_STD: f32 = -2.0;
 
 /// PPO on what a drone remembers of its flight and proposes, with rewards that make it worth while to arrive.
 #[derive(Debug, Clone, Copy)]
@@ -58,8 +68,8 @@ impl Method for PpoInCorridors {
         in_training: bool,
     ) -> Result<Box<dyn Environment>> {
         Ok(match in_training {
-            true => Box::new(SternRewards(Remembered::new(DenseEpisodes::new(environment))?)),
-            false => Box::new(Remembered::new(environment)?),
+            true => Box::new(SternRewards(DenseEpisodes::new(environment))),
+            false => environment,
         })
     }
 
@@ -78,14 +88,17 @@ impl Method for PpoInCorridors {
             learning_rate_schedule: Schedule::Linear,
             n_steps: (params.n_steps / params.training.n_envs).max(1),
             batch_size: params.batch_size,
-            // The proposals are good: to try much else would spoil them.
-            log_std_init: -2.0,
+            log_std_init: CORRECTION_LOG_STD,
+            actor_starts: params.critic_warmup,
             norm_reward: true,
             seed: params.seed,
             ..PpoConfig::default()
         };
         let mut ppo = Ppo::new(&config, spec)?.with_compute(compute);
-        base.map_or(Ok(()), |base| ppo.set_policy(base))?;
+        match base {
+            Some(base) => ppo.set_policy(base)?,
+            None => begin_as_prior(&mut ppo, CORRECTION_LOG_STD)?,
+        }
         Ok(ppo)
     }
 }

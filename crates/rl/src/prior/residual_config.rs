@@ -14,10 +14,10 @@ pub struct ResidualConfig {
     pub prior: String,
     /// Factor of the corrections. At 1 a correction reaches from the middle of the bounds of an action to a bound, at 2 from one bound
     /// to the other.
-    #[param(default = 1.0, range = 0.0..=2.0)]
+    #[param(default = 2.0, range = 0.0..=2.0)]
     pub alpha: f32,
     /// Factor at the beginning of the training.
-    #[param(default = 1.0, range = 0.0..=2.0)]
+    #[param(default = 2.0, range = 0.0..=2.0)]
     pub alpha_start: f32,
     /// Steps of all environments over which the factor changes evenly from the first to the last.
     #[param(default = 0, range = 0..=2_000_000_000)]
@@ -26,7 +26,7 @@ pub struct ResidualConfig {
     #[param(default = 8192, range = 0..=1_000_000_000)]
     pub critic_warmup: u64,
     /// Logarithm of the first deviation of corrections.
-    #[param(default = -1.5, range = -20.0..=2.0)]
+    #[param(default = -1.0, range = -20.0..=2.0)]
     pub correction_log_std: f32,
 }
 

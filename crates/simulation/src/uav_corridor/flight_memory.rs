@@ -106,7 +106,7 @@ impl FlightMemory {
     /// How many numbers it writes.
     pub const LEN: usize = 3 * Self::WAYS + 10;
     /// How many numbers [`survey`](Self::survey) writes.
-    pub const SURVEY: usize = Self::WAYS + 7;
+    pub const SURVEY: usize = 7;
 
     /// The space of what it writes.
     ///
@@ -157,7 +157,9 @@ impl FlightMemory {
         let (sine, cosine) = sine_cosine(place.yaw);
         let (sine, cosine) = (sine as f32, cosine as f32);
         let (ways, rest) = known.split_at_mut(Self::WAYS);
-        self.measure_ways(ways);
+        for (way, direction) in ways.iter_mut().zip(&self.directions) {
+            *way = free_way(&self.near, *direction) / REACH;
+        }
         let (offset, left) = (place.y as f32, FINISH - place.x as f32);
         let turned =
             |[ahead, aside]: [f32; 2]| [cosine * ahead - sine * aside, sine * ahead + cosine * aside];
@@ -198,8 +200,8 @@ impl FlightMemory {
         Ok(())
     }
 
-    /// Takes in an observation, as [`see`](Self::see) does, and writes the part of it that no planner made: free ways, then offset, sine
-    /// and cosine of the yaw, how far the drone came, height to gain, and its last action.
+    /// Takes in an observation, as [`see`](Self::see) does, and writes the drone's state: offset, sine and cosine of the yaw,
+    /// how far it came, height to gain, and its last action.
     ///
     /// # Errors
     /// As [`see`](Self::see).
@@ -211,12 +213,10 @@ impl FlightMemory {
     ) -> Result<()> {
         let place = self.take_in(space, observation)?;
         let (sine, cosine) = sine_cosine(place.yaw);
-        let (ways, rest) = numbers.split_at_mut(Self::WAYS);
-        self.measure_ways(ways);
         let advance = (place.x as f32 - START) / (FINISH - START);
         let ([heading, turn], up) = (self.action, self.sight.target[2]);
         let offset = place.y as f32 / HALF_TRACK;
-        rest.copy_from_slice(&[offset, sine as f32, cosine as f32, advance, up, heading, turn]);
+        *numbers = [offset, sine as f32, cosine as f32, advance, up, heading, turn];
         Ok(())
     }
 
@@ -229,12 +229,6 @@ impl FlightMemory {
         self.remember(place);
         self.gather(place);
         Ok(place)
-    }
-
-    fn measure_ways(&self, ways: &mut [f32]) {
-        for (way, direction) in ways.iter_mut().zip(&self.directions) {
-            *way = free_way(&self.near, *direction) / REACH;
-        }
     }
 
     /// Puts the nearest point of each column of the picture, at the height of the flight, on the map.

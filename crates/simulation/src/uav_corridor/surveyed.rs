@@ -1,4 +1,4 @@
-//! The corridor as numbers from a map and from the last picture, without a planner.
+//! The corridor as few numbers: the drone's state and the last picture, without a map and a planner.
 
 use opendr_engine::data::Image;
 use opendr_engine::environment::{
@@ -9,10 +9,10 @@ use opendr_engine::{Error, Result};
 use super::controllers::{COLUMNS, columns, spread_columns};
 use super::{CorridorController, CorridorSight, FlightMemory, RANGE};
 
-/// A corridor that shows free ways of the map of a [`FlightMemory`], the drone's state, and the last picture in 16 columns, and
-/// whose actions are those of the corridor. It holds nothing of a planner: what priors are measured in.
+/// A corridor that shows the drone's state and the last picture in 16 columns, and whose actions are those of the corridor. It holds
+/// nothing of a map or a planner: what priors are measured in.
 ///
-/// Observations are [`FlightMemory::SURVEY`] numbers of the memory, then the smallest depth in each of 16 columns of the picture as a
+/// Observations are the [`FlightMemory::SURVEY`] numbers of the state, then the smallest depth in each of 16 columns of the picture as a
 /// share of its range, then the way to the target in metres.
 #[derive(Debug, Clone)]
 pub struct Surveyed<E> {
@@ -32,10 +32,9 @@ const LEN: usize = FlightMemory::SURVEY + VIEW;
 /// # Errors
 /// None; a space is checked when it is made.
 pub fn surveyed_space() -> Result<Space> {
-    let (ways, rest) = (FlightMemory::WAYS, f32::INFINITY);
-    let state = FlightMemory::SURVEY - ways;
-    let low = [vec![0.0; ways], vec![-rest; state], vec![0.0; COLUMNS], vec![-rest; 3]].concat();
-    let high = [vec![1.0; ways], vec![rest; state], vec![1.0; COLUMNS], vec![rest; 3]].concat();
+    let (state, any) = (FlightMemory::SURVEY, f32::INFINITY);
+    let low = [vec![-any; state], vec![0.0; COLUMNS], vec![-any; 3]].concat();
+    let high = [vec![any; state], vec![1.0; COLUMNS], vec![any; 3]].concat();
     Space::bounded(low, high, vec![LEN])
 }
 
