@@ -145,8 +145,7 @@ fn reported(name: &str, policy: &Policy, protocol: &EvaluationProtocol) -> Resul
     let both = || ResidualController::new(policy, controller(name)?, ResidualConfig::default().alpha);
     report.add("prior and policy", &mut both()?, &mut corridor, protocol)?;
     let mut shielded = ShieldedController::new(both()?, Shield::new(is_blocked, controller(name)?));
-    report.add("prior and policy, shielded", &mut shielded, &mut corridor, protocol)?.shielded =
-        Some(shielded.shielded_share());
+    report.add_shielded("prior and policy, shielded", &mut shielded, &mut corridor, protocol)?;
     Ok(report)
 }
 

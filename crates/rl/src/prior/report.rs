@@ -5,6 +5,7 @@ use std::fmt;
 use opendr_engine::environment::{Controller, Environment, Step};
 use opendr_engine::{Result, ResultExt as _};
 
+use super::ShieldedController;
 use crate::evaluation::{EvaluationProtocol, EvaluationReport, evaluate_controller};
 
 /// Prior, policy and both on the same fixed episodes.
@@ -36,14 +37,31 @@ impl PriorReport {
         controller: &mut dyn Controller,
         environment: &mut dyn Environment,
         protocol: &EvaluationProtocol,
-    ) -> Result<&mut ReportedController> {
+    ) -> Result<()> {
         let success = |step: &Step| step.info.success();
         let evaluation = evaluate_controller(controller, environment, protocol, &success)
             .context(|| format!("measuring {name}"))?;
-        let row = ReportedController { name: name.to_owned(), evaluation, shielded: None };
-        self.rows.push(row);
-        let last = self.rows.len() - 1;
-        Ok(&mut self.rows[last])
+        self.rows.push(ReportedController { name: name.to_owned(), evaluation, shielded: None });
+        Ok(())
+    }
+
+    /// The same for a controller under a shield, with the share of steps in which the fallback acted.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_shielded<C: Controller>(
+        &mut self,
+        name: &str,
+        controller: &mut ShieldedController<C>,
+        environment: &mut dyn Environment,
+        protocol: &EvaluationProtocol,
+    ) -> Result<()> {
+        controller.count_anew();
+        self.add(name, controller, environment, protocol)?;
+        if let Some(row) = self.rows.last_mut() {
+            row.shielded = Some(controller.shielded_share());
+        }
+        Ok(())
     }
 }
 
@@ -74,19 +92,34 @@ impl fmt::Display for PriorReport {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::prior::Shield;
 
     #[test]
     fn rows_stand_beside_each_other() {
         let mut environment = opendr_simulation::make("CartPole-v1").unwrap();
         let protocol = EvaluationProtocol { episodes: 3, ..EvaluationProtocol::default() };
         let mut report = PriorReport::default();
-        let mut right = |_: &[f32], action: &mut [f32]| {
+        let right = |_: &[f32], action: &mut [f32]| {
             action[0] = 1.0;
             Ok(())
         };
-        report.add("prior", &mut right, &mut *environment, &protocol).unwrap().shielded = Some(0.125);
-        let text = report.to_string();
-        assert!(text.contains("| prior | ") && text.contains("| 12.5 |"), "{text}");
-        assert_eq!(report.rows[0].evaluation.episodes.len(), 3);
+        report.add("policy", &mut { right }, &mut *environment, &protocol).unwrap();
+        // To the left in every second step: the pole falls later.
+        let mut step = 0;
+        let every_second = move |_: &[f32], _: &[f32]| {
+            step += 1;
+            step % 2 == 0
+        };
+        let left = |_: &[f32], action: &mut [f32]| {
+            action[0] = 0.0;
+            Ok(())
+        };
+        let mut shielded = ShieldedController::new(right, Shield::new(every_second, Box::new(left)));
+        report.add_shielded("both", &mut shielded, &mut *environment, &protocol).unwrap();
+        let [policy, both] = &report.rows[..] else { panic!("{report}") };
+        assert_eq!((policy.evaluation.episodes.len(), policy.shielded), (3, None));
+        assert!((0.4..=0.5).contains(&both.shielded.unwrap()), "{report}");
+        assert!(both.evaluation.mean_return > 2.0 * policy.evaluation.mean_return, "{report}");
+        assert_eq!(report.to_string().lines().count(), 4);
     }
 }

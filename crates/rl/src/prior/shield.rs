@@ -193,6 +193,11 @@ impl<C: Controller> ShieldedController<C> {
     pub fn shielded_share(&self) -> f64 {
         self.shield.shielded_share()
     }
+
+    /// Counts steps from now on.
+    pub fn count_anew(&mut self) {
+        (self.shield.steps, self.shield.shielded) = (0, 0);
+    }
 }
 
 impl<C: Controller> Controller for ShieldedController<C> {
