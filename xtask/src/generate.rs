@@ -1,11 +1,11 @@
-//! `cargo xtask generate`: writes what is made of the registry and checked in.
+//! `cargo xtask generate`: writes the generated files that are checked in.
 
 use crate::shell::{Result, command, root, step, target};
 use crate::test::TEST_LEARNER;
 use crate::wheel;
 
 /// Writes the ROS messages, the type stubs of Python, `docs/{learners,metrics,datasets}.md`, OpenDR's table in `docs/python.md` and the C
-/// headers; tests fail when these are stale.
+/// headers. Tests fail if they are not up to date.
 pub fn run() -> Result<()> {
     let mut messages = command("cargo");
     messages.args(["test", "-p", "opendr-message-generator", "--test", "messages"]).env("OPENDR_UPDATE", "1");

@@ -1,8 +1,8 @@
-//! What sessions are given, whatever learner runs them: how a network is calibrated or watched without a line in the
-//! learner.
+//! Recording of the inputs of all sessions of a thread, so that a network can be calibrated or inspected without
+//! changes to the learner.
 //!
-//! Call [`start`], run the learner on the same thread, and [`take`] what its sessions were given. Nothing is recorded
-//! outside that.
+//! Call [`start`], run the learner on the same thread, and [`take`] the recorded inputs. Nothing is recorded
+//! otherwise.
 
 use std::cell::RefCell;
 
@@ -10,15 +10,15 @@ use opendr_engine::Result;
 
 use crate::tensor::{ElementType, TensorData, TensorInfo, TensorView};
 
-/// One run of a session.
+/// A recorded run of a session.
 #[derive(Debug, Clone)]
 pub struct Recording {
-    /// What the session takes.
+    /// Declared inputs of the session.
     pub inputs: Vec<TensorInfo>,
-    /// What the session gives.
+    /// Declared outputs of the session.
     pub outputs: Vec<TensorInfo>,
-    /// What it was given, in the order of the inputs.
-    pub given: Vec<RecordedTensor>,
+    /// Input tensors of the run, in the order of the inputs.
+    pub tensors: Vec<RecordedTensor>,
 }
 
 /// A copy of a tensor.
@@ -42,12 +42,12 @@ thread_local! {
     static RECORD: RefCell<Option<Vec<Recording>>> = const { RefCell::new(None) };
 }
 
-/// Begins to record on this thread, dropping what was recorded before.
+/// Starts recording on this thread; earlier recordings are dropped.
 pub fn start() {
     RECORD.set(Some(Vec::new()));
 }
 
-/// Ends recording on this thread; the runs since [`start`], in order.
+/// Stops recording on this thread and returns the runs since [`start`], in order.
 pub fn take() -> Vec<Recording> {
     RECORD.take().unwrap_or_default()
 }
@@ -57,13 +57,13 @@ pub(crate) fn add(inputs: &[TensorInfo], outputs: &[TensorInfo], given: &[Tensor
     RECORD.with_borrow_mut(|record| {
         if let Some(runs) = record {
             let given = given.iter().map(RecordedTensor::from).collect();
-            runs.push(Recording { inputs: inputs.to_vec(), outputs: outputs.to_vec(), given });
+            runs.push(Recording { inputs: inputs.to_vec(), outputs: outputs.to_vec(), tensors: given });
         }
     });
 }
 
 impl Recording {
-    /// How much memory it takes, about.
+    /// Returns the approximate memory use in bytes.
     pub fn bytes(&self) -> usize {
         let width = |info: &TensorInfo| match info.element_type {
             ElementType::I64 => 8,
@@ -71,7 +71,7 @@ impl Recording {
             _ => 1,
         };
         let elements = |tensor: &RecordedTensor| tensor.shape.iter().product::<usize>();
-        self.inputs.iter().zip(&self.given).map(|(info, tensor)| width(info) * elements(tensor)).sum()
+        self.inputs.iter().zip(&self.tensors).map(|(info, tensor)| width(info) * elements(tensor)).sum()
     }
 }
 
@@ -90,10 +90,10 @@ impl From<&TensorView<'_>> for RecordedTensor {
 }
 
 impl RecordedTensor {
-    /// The tensor, to be given to a session.
+    /// Returns a view of the tensor, as input of a session.
     ///
     /// # Errors
-    /// None for a tensor that was recorded.
+    /// None for a recorded tensor.
     pub fn view(&self) -> Result<TensorView<'_>> {
         match &self.elements {
             Elements::F32(data) => TensorView::new(&self.shape, data),
@@ -120,10 +120,10 @@ mod tests {
         add(&[], &[], &given);
         add(&[], &[], &given[..1]);
         let runs = take();
-        assert_eq!(runs.iter().map(|run| run.given.len()).collect::<Vec<_>>(), [2, 1]);
-        let view = runs[0].given[0].view().unwrap();
+        assert_eq!(runs.iter().map(|run| run.tensors.len()).collect::<Vec<_>>(), [2, 1]);
+        let view = runs[0].tensors[0].view().unwrap();
         assert_eq!((view.shape(), view.values::<f32>().unwrap()), (&[1, 2][..], &data[..]));
-        assert_eq!(runs[0].given[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
+        assert_eq!(runs[0].tensors[1].view().unwrap().values::<i64>().unwrap(), [3, 4]);
         add(&[], &[], &given);
         assert!(take().is_empty());
     }

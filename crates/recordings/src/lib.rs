@@ -1,8 +1,9 @@
-//! Recordings of robots as what learners take and answer.
+//! Recordings as inputs of learners, and predictions written as recordings.
 //!
-//! `opendr-bags` reads and writes bytes, and knows no message; here they become values. [`Recording`] tells the topics of a
-//! recording and which of them stand for a type, [`Sets`] reads what belongs together in order of time, [`Answers`] writes
-//! values as messages, [`Conversion`] copies recordings between formats, ROS 1 and ROS 2.
+//! `opendr-bags` reads and writes messages as bytes; this crate converts them to values and back. [`Recording`]
+//! lists the topics of a recording and the types of their messages. [`SyncedSets`] reads messages of several topics,
+//! synchronised by stamp. [`RecordingWriter`] writes values as messages. [`Conversion`] copies recordings between formats,
+//! and between ROS 1 and ROS 2. The conversion of a single message is in `opendr-ros-bridge`.
 //!
 //! ```
 //! use opendr_engine::data::Timeseries;
@@ -11,10 +12,10 @@
 //!
 //! # let folder = tempfile::tempdir()?;
 //! # let path = folder.path().join("beats.bag");
-//! let mut answers = Answers::create(&path, BagFormat::Bag1)?;
+//! let mut writer = Answers::create(&path, BagFormat::Bag1)?;
 //! let series = Timeseries::new(vec![0.5; 140], [140, 1])?;
-//! answers.write("/beats", ValueRef::Timeseries(&series), 1_000)?;
-//! answers.finish()?;
+//! writer.write("/beats", ValueRef::Timeseries(&series), 1_000)?;
+//! writer.finish()?;
 //!
 //! let recording = Recording::open(&path)?;
 //! let topic = recording.topic_for(ValueType::Timeseries, None)?;
@@ -32,10 +33,10 @@ mod sets;
 mod stamp;
 mod topic;
 
-pub use answers::Answers;
+pub use answers::RecordingWriter;
 pub use conversion::Conversion;
 pub use opendr_bags::*;
 pub use recording::{Recording, is_recording};
-pub use sets::{Need, PortTopic, Set, Sets};
+pub use sets::{Need, PortTopic, SyncedSet, SyncedSets};
 pub use stamp::{stamp_of, value_of};
 pub use topic::Topic;

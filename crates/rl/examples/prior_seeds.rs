@@ -18,7 +18,9 @@ use opendr_rl::{
     Algorithm as _, EvaluationProtocol, Policy, Ppo, PpoConfig, SuccessRate, evaluate, evaluate_controller,
 };
 use opendr_simulation::make;
-use opendr_simulation::uav_corridor::{BySurvey, FlightMemory, Reactive, Surveyed, surveyed_space};
+use opendr_simulation::uav_corridor::{
+    CompactController, CompactCorridor, FlightMemory, ReactiveController, compact_space,
+};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector};
 
 const ID: &str = "UavDepthCorridor-v1";
@@ -33,7 +35,10 @@ fn main() -> Result<()> {
         return Err(Error::invalid_param("give three whole numbers: seeds, episodes and steps"));
     };
     let protocol = EvaluationProtocol { episodes, ..EvaluationProtocol::default() };
-    Prior::new(WORSENED, 1, |_| Ok(Box::new(Worsened(BySurvey::new(Reactive::default()))))).register()?;
+    Prior::new(WORSENED, 1, |_| {
+        Ok(Box::new(Worsened(CompactController::new(ReactiveController::default()))))
+    })
+    .register()?;
     let priors = ["corridor-reactive", WORSENED];
     for name in priors {
         println!("{name}: {}", percent(measured_alone(name, &protocol)?));
@@ -71,10 +76,10 @@ fn main() -> Result<()> {
 }
 
 fn corridor() -> Result<Corridor> {
-    Surveyed::new(OnlyArrival(make(ID)?))
+    CompactCorridor::new(OnlyArrival(make(ID)?))
 }
 
-type Corridor = Surveyed<OnlyArrival>;
+type Corridor = CompactCorridor<OnlyArrival>;
 
 /// A corridor in which only the end counts: 1 for the finish, nothing for everything else.
 struct OnlyArrival(Box<dyn Environment>);
@@ -96,13 +101,15 @@ impl Environment for OnlyArrival {
 }
 
 fn controller(name: &str) -> Result<BoxedController> {
-    Prior::newest(name)?.controller(&surveyed_space()?)
+    Prior::newest(name)?.controller(&compact_space()?)
 }
 
 /// The corridor as a policy is trained in it: with a prior or without.
 fn environment(prior: Option<&str>, config: &ResidualConfig) -> Result<Box<dyn Environment>> {
     Ok(match prior {
-        Some(name) => Box::new(Residual::new(corridor()?, controller(name)?, config.schedule(ENVIRONMENTS)?)?),
+        Some(name) => {
+            Box::new(Residual::new(corridor()?, controller(name)?, config.schedule(ENVIRONMENTS)?)?)
+        }
         None => Box::new(corridor()?),
     })
 }
@@ -120,7 +127,8 @@ fn trained(
     let preset = PpoConfig::preset(ID).ok_or_else(|| Error::internal("no settings for the corridor"))?;
     let plain = PpoConfig { seed, ..preset.config };
     let config = if prior.is_some() { residual.ppo(&plain) } else { plain };
-    let environments = (0..ENVIRONMENTS).map(|_| environment(prior, &residual)).collect::<Result<Vec<_>>>()?;
+    let environments =
+        (0..ENVIRONMENTS).map(|_| environment(prior, &residual)).collect::<Result<Vec<_>>>()?;
     let mut vector = EnvironmentVector::new(environments, Autoreset::SameStep, 1)?;
     let mut measuring = environment(prior, &residual)?;
     let mut ppo = Ppo::new(&config, measuring.spec())?;
@@ -153,7 +161,7 @@ fn reported(name: &str, policy: &Policy, protocol: &EvaluationProtocol) -> Resul
 /// of 45 degrees, from the left to the right, as shares of 15 m.
 fn is_blocked(observation: &[f32], action: &[f32]) -> bool {
     let heading = action[0].clamp(-1.0, 1.0) * std::f32::consts::FRAC_PI_8;
-    let view = &observation[FlightMemory::SURVEY..][..16];
+    let view = &observation[FlightMemory::STATE..][..16];
     let half_width = std::f32::consts::FRAC_PI_8.tan();
     view.iter().enumerate().any(|(column, share)| {
         let bearing = (half_width * (1.0 - (column as f32 + 0.5) / 8.0)).atan();
@@ -180,7 +188,7 @@ fn percent(success: SuccessRate) -> String {
 }
 
 /// The hand-written controller with weak headings.
-struct Worsened(BySurvey<Reactive>);
+struct Worsened(CompactController<ReactiveController>);
 
 impl Controller for Worsened {
     fn reset(&mut self) {

@@ -1,58 +1,59 @@
-//! A learner and its environments.
+//! The environments of a training and their current state.
 
 use opendr_engine::environment::{EnvironmentSpec, ResetOptions, Snapshot, StateReader};
 use opendr_engine::{Error, Random, Result, ResultExt as _};
 use opendr_simulation::vector::{Autoreset, Batch, Seeds, VecEnvironment};
 
+use crate::algorithm::Report;
 use crate::episodes::Episodes;
 use crate::policy::{ObservationEncoder, check_finite};
 
-/// What a learner knows of the environments that it acts in: what they answered last, and what episodes earned.
+/// Current observations of the environments of a training, and statistics of their episodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Interaction {
     pub batch: Batch,
     pub episodes: Episodes,
     /// Steps of all environments together.
     pub timesteps: u64,
-    /// Steps in which a shield replaced the action.
-    pub shielded: u64,
-    /// The observations to act on next, encoded.
+    /// Steps in which a shield replaced the action; none if there is no shield.
+    shielded: Option<u64>,
+    /// Current observations, encoded for the policy.
     pub encoded: Vec<f32>,
     size: usize,
 }
 
 impl Interaction {
-    /// Begins an episode in each of `environments`.
+    /// Resets all environments.
     pub fn begin(
         environments: &mut dyn VecEnvironment,
         encoder: &mut ObservationEncoder,
         seed: u64,
     ) -> Result<Self> {
         check(environments, encoder)?;
-        let mut interaction = Self::unbegun(environments.spec(), environments.count(), encoder);
+        let mut interaction = Self::before_reset(environments.spec(), environments.count(), encoder);
         let batch = &mut interaction.batch;
         environments.reset(Seeds::From(seed), &ResetOptions::new(), None, batch)?;
-        interaction.see(encoder)?;
+        interaction.update_observations(encoder)?;
         Ok(interaction)
     }
 
-    fn unbegun(spec: &EnvironmentSpec, count: usize, encoder: &ObservationEncoder) -> Self {
+    fn before_reset(spec: &EnvironmentSpec, count: usize, encoder: &ObservationEncoder) -> Self {
         Self {
             batch: Batch::new(spec, count),
             episodes: Episodes::new(count),
             timesteps: 0,
-            shielded: 0,
+            shielded: None,
             encoded: vec![0.0; count * encoder.encoded_len()],
             size: spec.observation.len(),
         }
     }
 
-    /// How many environments there are.
+    /// Returns the number of environments.
     pub fn count(&self) -> usize {
         self.batch.count()
     }
 
-    /// Takes a step in all environments and encodes what they show.
+    /// Takes a step in all environments and encodes the new observations.
     pub fn step(
         &mut self,
         environments: &mut dyn VecEnvironment,
@@ -64,7 +65,7 @@ impl Interaction {
         self.timesteps += self.count() as u64;
         if let Some(index) = self.batch.rewards.iter().position(|reward| !reward.is_finite()) {
             return Err(Error::invalid_input(format!(
-                "the reward of environment {index} is {} at time step {at}; repair the environment",
+                "the reward of environment {index} is {} at time step {at}; fix the environment",
                 self.batch.rewards[index]
             )));
         }
@@ -73,12 +74,12 @@ impl Interaction {
             last.context(|| format!("at time step {at}, where environment {index} ended an episode"))?;
         }
         self.episodes.add(&self.batch);
-        self.see(encoder)
+        self.update_observations(encoder)
     }
 
-    fn see(&mut self, encoder: &mut ObservationEncoder) -> Result<()> {
+    fn update_observations(&mut self, encoder: &mut ObservationEncoder) -> Result<()> {
         let at = self.timesteps;
-        // What is not finite must not reach the normaliser, where it would stay.
+        // Numbers that are not finite would stay in the moments of the normaliser.
         check_finite(&self.batch.observations, self.size)
             .and_then(|()| {
                 encoder.learn(&self.batch.observations);
@@ -89,12 +90,15 @@ impl Interaction {
 
     /// Counts the environments in which a shield replaced the action of the last step.
     pub fn count_shielded(&mut self, replaced: &[bool]) {
-        self.shielded += replaced.iter().filter(|replaced| **replaced).count() as u64;
+        let count = replaced.iter().filter(|replaced| **replaced).count() as u64;
+        self.shielded = Some(self.shielded.unwrap_or(0) + count);
     }
 
-    /// The share of steps so far in which a shield replaced the action.
-    pub fn shielded_share(&self) -> f64 {
-        self.shielded as f64 / self.timesteps.max(1) as f64
+    /// Adds the share of steps in which a shield replaced the action to the metrics, if there is a shield.
+    pub fn report_shielded(&self, report: &mut Report) {
+        if let Some(shielded) = self.shielded {
+            report.metrics.set("shielded", shielded as f64 / self.timesteps.max(1) as f64);
+        }
     }
 
     /// Whether the last step ended an episode in environment `index`.
@@ -102,7 +106,7 @@ impl Interaction {
         self.batch.terminated[index] || self.batch.truncated[index]
     }
 
-    /// The last observation of an episode that ended in environment `index`.
+    /// Returns the last observation of the episode that ended in environment `index`.
     pub fn final_observation(&self, index: usize) -> &[f32] {
         &self.batch.final_observations[index * self.size..(index + 1) * self.size]
     }
@@ -110,13 +114,13 @@ impl Interaction {
     pub fn save(&self, words: &mut Snapshot) {
         words.push(self.count() as u64);
         words.push(self.timesteps);
-        words.push(self.shielded);
+        words.push(self.shielded.unwrap_or(u64::MAX));
         self.episodes.save(words);
         words
             .extend_numbers(self.batch.observations.iter().chain(&self.encoded).map(|&number| number.into()));
     }
 
-    /// What [`Self::save`] wrote of `environments`.
+    /// Reads what [`Self::save`] wrote, for `environments` of the same number.
     pub fn load(
         words: &mut StateReader<'_>,
         environments: &dyn VecEnvironment,
@@ -126,12 +130,12 @@ impl Interaction {
         let (count, own) = (words.word()?, environments.count());
         if count != own as u64 {
             return Err(Error::invalid_input(format!(
-                "the checkpoint is of a training in {count} environments, not {own}; make {count}"
+                "the checkpoint is from a training with {count} environments, not {own}; create {count}"
             )));
         }
-        let mut interaction = Self::unbegun(environments.spec(), own, encoder);
+        let mut interaction = Self::before_reset(environments.spec(), own, encoder);
         interaction.timesteps = words.word()?;
-        interaction.shielded = words.word()?;
+        interaction.shielded = Some(words.word()?).filter(|shielded| *shielded != u64::MAX);
         interaction.episodes.load(words)?;
         for number in interaction.batch.observations.iter_mut().chain(&mut interaction.encoded) {
             *number = words.finite()? as f32;
@@ -141,8 +145,8 @@ impl Interaction {
 }
 
 impl Interaction {
-    /// Brings environments back to their states; where they keep none, begins an episode in each, and answers false.
-    pub fn go_on(
+    /// Restores the states of the environments. Returns false, after a reset of all of them, if they have no snapshots.
+    pub fn resume(
         &mut self,
         states: &Snapshot,
         environments: &mut dyn VecEnvironment,
@@ -151,9 +155,9 @@ impl Interaction {
         if !states.id().is_empty() {
             return environments.restore(states).map(|()| true);
         }
-        let seeds = Seeds::From(Random::at([self.timesteps, self.count() as u64]).bits() >> 32);
+        let seeds = Seeds::From(Random::from_key([self.timesteps, self.count() as u64]).bits() >> 32);
         environments.reset(seeds, &ResetOptions::new(), None, &mut self.batch)?;
-        self.episodes.begin_anew();
+        self.episodes.discard_running();
         check_finite(&self.batch.observations, self.size)?;
         encoder.encode(&self.batch.observations, &mut self.encoded)?;
         Ok(false)
@@ -164,7 +168,7 @@ fn check(environments: &dyn VecEnvironment, encoder: &ObservationEncoder) -> Res
     let spec = environments.spec();
     if spec.observation != *encoder.space() {
         return Err(Error::invalid_input(format!(
-            "{} shows {}, but the policy was made for {}; make a policy for it",
+            "the observations of {} are {}, but those of the policy are {}; create a policy for this environment",
             spec.id,
             spec.observation,
             encoder.space()
@@ -173,7 +177,7 @@ fn check(environments: &dyn VecEnvironment, encoder: &ObservationEncoder) -> Res
     match environments.autoreset() {
         Autoreset::SameStep => Ok(()),
         other => Err(Error::invalid_input(format!(
-            "these environments begin anew by {other:?}; make them with Autoreset::SameStep, which tells how episodes ended"
+            "the environments use Autoreset::{other:?}; create them with Autoreset::SameStep, which reports how episodes end"
         ))),
     }
 }

@@ -1,4 +1,4 @@
-//! Environments by name.
+//! The registry of environments by name.
 
 use std::sync::{Arc, LazyLock};
 
@@ -13,23 +13,23 @@ use crate::uav_corridor;
 use crate::vector::{CartPoleVector, EnvironmentVector, VecEnvironment, VectorOptions};
 use crate::wrappers::{Checked, TimeLimit};
 
-/// An environment that the registry can make.
-pub trait Registered: Environment + Sized + 'static {
-    /// Name and version, as in `CartPole-v1`.
+/// An environment that can be registered.
+pub trait RegisteredEnvironment: Environment + Sized + 'static {
+    /// Name and version, such as `CartPole-v1`.
     const ID: &'static str;
-    /// What a user may set.
+    /// Parameters of the environment.
     type Params: Params;
 
-    /// The environment with these parameters.
+    /// Creates the environment.
     ///
     /// # Errors
-    /// `InvalidParam` when one is out of range.
+    /// `InvalidParam` for a parameter out of range.
     fn new(params: &Self::Params) -> Result<Self>;
 }
 
 type Make = dyn Fn(&ParamMap) -> Result<Box<dyn Environment>> + Send + Sync;
 
-/// One environment of a [`Registry`].
+/// An entry of a [`Registry`].
 #[derive(Clone)]
 pub struct Registration {
     id: String,
@@ -38,12 +38,12 @@ pub struct Registration {
 }
 
 impl Registration {
-    /// An environment of the program. It is made with its time limit and with [`Checked`] around it.
-    pub fn of<E: Registered>() -> Self {
+    /// Creates an entry for an environment type. It is created with its time limit and wrapped in [`Checked`].
+    pub fn of<E: RegisteredEnvironment>() -> Self {
         Self::new(E::ID, E::Params::FIELDS, |params| checked(E::new(&E::Params::from_map(params)?)?))
     }
 
-    /// An environment that `make` makes.
+    /// Creates an entry for the environments that `make` returns.
     pub fn new(
         id: &str,
         fields: &'static [Field],
@@ -52,33 +52,33 @@ impl Registration {
         Self { id: id.to_owned(), fields, make: Arc::new(make) }
     }
 
-    /// Name and version.
+    /// Returns name and version.
     pub fn id(&self) -> &str {
         &self.id
     }
 
-    /// What a user may set.
+    /// Returns the fields of its parameters.
     pub fn fields(&self) -> &'static [Field] {
         self.fields
     }
 
-    /// Makes the environment.
+    /// Creates the environment.
     ///
     /// # Errors
-    /// `InvalidParam` for parameters that it has not, or that are out of range.
+    /// `InvalidParam` for unknown parameters or values out of range.
     pub fn make(&self, params: &ParamMap) -> Result<Box<dyn Environment>> {
-        (self.make)(params).map_err(|error| error.context(format!("making {}", self.id)))
+        (self.make)(params).map_err(|error| error.context(format!("creating {}", self.id)))
     }
 
-    /// Makes `options.count` environments that are stepped together.
+    /// Creates `options.count` environments that are stepped together.
     ///
     /// # Errors
-    /// As [`Self::make`], and `InvalidParam` for no environment or too many.
+    /// As [`Self::make`], and `InvalidParam` for a count of 0 or too many.
     pub fn make_vec(&self, params: &ParamMap, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
-        if self.id == <CartPole as Registered>::ID {
+        if self.id == <CartPole as RegisteredEnvironment>::ID {
             let carts = CartPoleParams::from_map(params)
                 .and_then(|params| CartPoleVector::new(&params, options.count, options.autoreset));
-            return Ok(Box::new(carts.map_err(|error| error.context(format!("making {}", self.id)))?));
+            return Ok(Box::new(carts.map_err(|error| error.context(format!("creating {}", self.id)))?));
         }
         let environments = (0..options.checked_count()?).map(|_| self.make(params));
         let environments = environments.collect::<Result<Vec<_>>>()?;
@@ -86,7 +86,7 @@ impl Registration {
     }
 }
 
-/// An environment with the time limit of its spec and with checks.
+/// Wraps an environment in the time limit of its spec and in checks.
 pub(crate) fn checked(environment: impl Environment + 'static) -> Result<Box<dyn Environment>> {
     Ok(match environment.spec().max_episode_steps {
         Some(limit) => Box::new(Checked::new(TimeLimit::new(environment, limit)?)),
@@ -112,36 +112,36 @@ static BUILTIN: LazyLock<Registry> = LazyLock::new(|| {
 });
 
 impl Registry {
-    /// The environments of this crate. A clone can be added to.
+    /// Returns the environments of this crate. A clone can be extended.
     pub fn builtin() -> &'static Self {
         &BUILTIN
     }
 
-    /// Adds an environment.
+    /// Adds an entry.
     ///
     /// # Errors
-    /// `InvalidParam` when the name does not end in a version as `-v1`, or is taken.
+    /// `InvalidParam` when the name does not end in a version such as `-v1`, or is taken.
     pub fn add(&mut self, registration: Registration) -> Result<()> {
         let id = &registration.id;
         if version_of(id).is_none() {
-            return Err(Error::invalid_param(format!("{id:?} has no version; call it {id}-v0")));
+            return Err(Error::invalid_param(format!("the name {id:?} has no version; use {id}-v0")));
         }
         if self.entries.iter().any(|entry| entry.id == *id) {
-            return Err(Error::invalid_param(format!("{id} is registered already; raise its version")));
+            return Err(Error::invalid_param(format!("{id} is already registered; use a higher version")));
         }
         self.entries.push(registration);
         Ok(())
     }
 
-    /// The names of all.
+    /// Returns the names of all entries.
     pub fn ids(&self) -> impl Iterator<Item = &str> {
         self.entries.iter().map(Registration::id)
     }
 
-    /// The environment called `id`; without a version, the newest.
+    /// Returns the entry `id`; without a version, the newest.
     ///
     /// # Errors
-    /// `NotFound`, with near names, or the newest version where only the version is wrong.
+    /// `NotFound`, with similar names, or with the newest version if only the version is unknown.
     pub fn get(&self, id: &str) -> Result<&Registration> {
         if let Some(entry) = self.entries.iter().find(|entry| entry.id == id) {
             return Ok(entry);
@@ -172,17 +172,17 @@ impl Registry {
         near.sort_by_key(distance);
         let near = if near.is_empty() { self.entries.iter().collect() } else { near };
         let names: Vec<_> = near.into_iter().map(Registration::id).collect();
-        Error::not_found(format!("no environment {id:?}; there is {}", names.join(", ")))
+        Error::not_found(format!("no environment {id:?}; available: {}", names.join(", ")))
     }
 }
 
-/// Name and version of `name-v1`.
+/// Splits `name-v1` into name and version.
 fn version_of(id: &str) -> Option<(&str, u32)> {
     let (name, version) = id.rsplit_once("-v")?;
     Some((name, version.parse().ok()?)).filter(|(name, _)| !name.is_empty())
 }
 
-/// How many letters have to be changed, added or left out (Levenshtein). Names longer than 64 letters are near nothing.
+/// Returns the edit distance (Levenshtein); names longer than 64 letters are far from all others.
 fn edits(a: &str, b: &str) -> usize {
     if a.len().max(b.len()) > 64 {
         return usize::MAX;
@@ -201,7 +201,7 @@ fn edits(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// Makes an environment of this crate with its defaults: with a time limit, and with checks.
+/// Creates an environment of this crate with its defaults, its time limit and checks.
 ///
 /// # Errors
 /// `NotFound` for an unknown name.
@@ -209,10 +209,10 @@ pub fn make(id: &str) -> Result<Box<dyn Environment>> {
     Registry::builtin().get(id)?.make(&ParamMap::new())
 }
 
-/// Makes `options.count` environments that are stepped together, with their defaults.
+/// Creates `options.count` environments with their defaults, stepped together.
 ///
 /// # Errors
-/// `NotFound` for an unknown name, `InvalidParam` for no environment or too many.
+/// `NotFound` for an unknown name, `InvalidParam` for a count of 0 or too many.
 pub fn make_vec(id: &str, options: VectorOptions) -> Result<Box<dyn VecEnvironment>> {
     Registry::builtin().get(id)?.make_vec(&ParamMap::new(), options)
 }
@@ -225,7 +225,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_found_or_near_ones_told() {
+    fn unknown_names_give_similar_ones() {
         assert_eq!(make("CartPole-v1").unwrap().spec().max_episode_steps, Some(500));
         assert_eq!(make("CartPole").unwrap().spec().id, "CartPole-v1");
         let message = |id: &str| {
@@ -234,7 +234,7 @@ mod tests {
             error.to_string()
         };
         assert!(message("CartPole-v7").ends_with("the newest is \"CartPole-v1\""));
-        assert!(message("cartpol-v1").ends_with("there is CartPole-v1"));
+        assert!(message("cartpol-v1").ends_with("available: CartPole-v1"));
         assert!(message("Walker").contains("Pendulum-v1"));
         assert!(message(&"x".repeat(1000)).contains("Pendulum-v1"));
     }
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn others_can_be_added_once() {
+    fn entries_can_be_added_once() {
         let mut registry = Registry::builtin().clone();
         let mine = |id: &str| Registration::new(id, &[], |_| make("CartPole-v1"));
         registry.add(mine("mine/CartPole-v2")).unwrap();

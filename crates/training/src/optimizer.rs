@@ -7,7 +7,7 @@ use burn::optim::{AdamConfig, AdamWConfig, ModuleOptimizer, RmsPropConfig, SgdCo
 use crate::TrainingParams;
 
 opendr_engine::choices! {
-    /// What turns gradients into steps.
+    /// Optimiser.
     pub enum OptimizerKind {
         /// Adam with decoupled weight decay (Loshchilov and Hutter, ICLR 2019).
         Adamw = "adamw",
@@ -20,10 +20,10 @@ opendr_engine::choices! {
     }
 }
 
-/// Added to the denominators of the adaptive optimisers, as in PyTorch.
+/// Epsilon in the denominators of the adaptive optimisers, as in PyTorch.
 const EPSILON: f32 = 1e-8;
 
-/// The optimiser that `params` name.
+/// Returns the optimiser of `params`.
 pub fn optimizer(params: &TrainingParams) -> ModuleOptimizer {
     let decay = params.weight_decay as f32;
     let penalty = (params.weight_decay > 0.0).then(|| WeightDecayConfig::new(decay));

@@ -1,12 +1,12 @@
-//! What learners are given: pictures, clouds, sound, series. One file per type.
+//! Data types, the inputs of learners: images, point clouds, audio, series. One file per type.
 //!
-//! Printed with `{}`, a datum gives OpenDR's own text; with `{:#}`, a line that tells its size.
+//! `{}` writes a datum as OpenDR's text; `{:#}` writes a line with its size.
 
 use std::fmt;
 
 use crate::Datum;
 
-/// Whatever can be handed to a learner (OpenDR's `Data`).
+/// A data type, an input of learners (OpenDR's `Data`).
 pub trait Data: Datum + fmt::Debug + fmt::Display {}
 
 mod array;
@@ -37,7 +37,7 @@ pub use timeseries::Timeseries;
 pub use vector::Vector;
 pub use video::Video;
 
-/// The readable line of a datum that is one array.
+/// Writes the readable line of a datum that is one array.
 fn write_shape(name: &str, shape: &[usize], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     let shape: Vec<_> = shape.iter().map(usize::to_string).collect();
     writeln!(f, "{name} of shape {}", shape.join("x"))

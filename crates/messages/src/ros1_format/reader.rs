@@ -1,4 +1,4 @@
-//! Bytes to messages.
+//! Deserialiser of ROS 1's format.
 
 use serde::de::value::U8Deserializer;
 use serde::de::{DeserializeSeed, Deserializer, IntoDeserializer, SeqAccess, Visitor};
@@ -174,12 +174,12 @@ impl<'de> SeqAccess<'de> for Elements<'_, 'de> {
     }
 
     fn size_hint(&self) -> Option<usize> {
-        // No element is smaller than a byte, so that a false count reserves nothing beyond what was sent.
+        // An element has at least one byte, so a wrong count reserves no more than the received bytes.
         Some(self.left.min(self.reader.left.len()))
     }
 }
 
-/// The one field of a message without fields, given without reading.
+/// Yields the dummy field of a message without fields, without reading.
 struct Filling(bool);
 
 impl<'de> SeqAccess<'de> for Filling {

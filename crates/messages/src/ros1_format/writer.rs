@@ -1,4 +1,4 @@
-//! Messages to bytes.
+//! Serialiser of ROS 1's format.
 
 use serde::Serialize;
 use serde::ser::{

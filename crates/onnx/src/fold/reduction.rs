@@ -1,4 +1,4 @@
-//! Sums, products and extremes over axes.
+//! Reductions over axes: sum, product, mean, minimum, maximum.
 
 use super::super::array::{Array, Data, element_count};
 use super::super::operator::Operator;
@@ -10,7 +10,7 @@ pub(super) fn reduce(operator: &Operator, x: &Array, axes: &[i64]) -> Option<Arr
     let rank = x.dims().len();
     let axes: Option<Vec<usize>> = axes.iter().map(|&axis| axis_in(axis, rank)).collect();
     let axes = axes?;
-    // The reduced array's stride per axis of `x`: zero on reduced axes.
+    // Stride of the reduced array per axis of `x`: zero on reduced axes.
     let kept: Vec<usize> =
         (0..rank).map(|axis| if axes.contains(&axis) { 1 } else { x.dims()[axis] }).collect();
     let own = super::strides(&kept);

@@ -1,4 +1,4 @@
-//! A learner as it is, as something that a tuner measures.
+//! Evaluation of a learner without training as a trial of a tuner.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use opendr_tuning::Training;
 use super::MakeLearner;
 use super::until::Until;
 
-/// One configuration of a learner's own parameters: there is nothing to train, and so nothing to save.
+/// One configuration of a learner's own parameters, without training and therefore without a checkpoint.
 pub(super) struct MeasuredLearner<'a> {
     pub entry: &'static Entry,
     pub make: &'a MakeLearner<'a>,
@@ -25,7 +25,7 @@ pub(super) struct MeasuredLearner<'a> {
 impl Training for MeasuredLearner<'_> {
     fn advance(&mut self, _: u64) -> Result<Option<f64>> {
         let mut learner = (self.make)(&self.params)?;
-        // Its bar would stand in the place of the search's.
+        // The progress bar of an evaluation would replace that of the search.
         let quiet = Until::new(self.progress, u64::MAX);
         let outcome = self.options.run(&mut learner, self.entry, self.dataset, &quiet)?;
         if !outcome.complete {
@@ -41,6 +41,6 @@ impl Training for MeasuredLearner<'_> {
     }
 
     fn load(&mut self, _: &Path) -> Result<()> {
-        Err(Error::internal("a measurement has no middle to go on from"))
+        Err(Error::internal("an evaluation has no checkpoint to resume from"))
     }
 }

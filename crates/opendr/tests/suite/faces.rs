@@ -1,4 +1,4 @@
-//! Learners of faces with their real weights: floors of accuracy, and what they answer to frames without a face.
+//! Face learners with their real weights: minimum accuracies, and predictions on frames without a face.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -63,7 +63,7 @@ fn pairs(models: &Models) -> Vec<([PathBuf; 2], bool)> {
 }
 
 #[test]
-fn pairs_of_faces_are_told_apart() {
+fn pairs_of_faces_are_distinguished() {
     let Some(models) = Models::find() else { return };
     let Some(path) = models.get("face_recognition") else { return };
     let params = FaceRecognitionParams::default();
@@ -186,7 +186,7 @@ fn persons_are_known_after_references_and_others_are_not() {
     opendr::vision::save(&black(), folder.0.join("more/nobody/black.png")).unwrap();
     let dataset = ExternalDataset::new(folder.0.join("more"), "imagenet");
     let error = fit(&mut *learner, "faceless", &dataset, false).unwrap_err();
-    assert!(error.to_string().contains("no picture shows a face of nobody"), "{error}");
+    assert!(error.to_string().contains("no image has a face of nobody"), "{error}");
     fs::remove_dir_all(folder.0.join("more/nobody")).unwrap();
     fit(&mut *learner, "second", &dataset, false).unwrap();
     assert_eq!(learner.classes().len(), known.len() + 1);
@@ -316,7 +316,7 @@ fn shifted(image: &Image, by: usize) -> Image {
 /// A cloth over nose, mouth and chin makes a face another class. It is not drawn as those that were learned from; of nine faces in
 /// photos, bare and covered, the network is wrong about few.
 #[test]
-fn faces_with_masks_are_told() {
+fn faces_with_masks_are_recognised() {
     let Some(models) = Models::find() else { return };
     let Some(path) = models.get("yunet/masked") else { return };
     let mut finder = Handle::<Yunet>::new(YunetParams::default(), Device::Cpu).unwrap();
@@ -339,7 +339,7 @@ fn faces_with_masks_are_told() {
     assert!(masked[0] >= 7 && masked[1] + 2 >= masked[0], "covered: {masked:?}");
 }
 
-/// Draws a light cloth over the lower half of a face, that lets a little of what it hides through.
+/// Draws a light, slightly transparent cloth over the lower half of a face.
 fn cover(picture: &mut Image, face: &BoundingBox) {
     let (left, right) = (face.left + 0.08 * face.width, face.left + 0.92 * face.width);
     let (top, bottom) = (face.landmarks[2][1] - 0.12 * face.height, face.top + 0.97 * face.height);

@@ -1,4 +1,4 @@
-//! Persons' pixels with the real weights.
+//! Person segmentation with real weights.
 
 use opendr::data::Image;
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};
@@ -111,7 +111,7 @@ fn persons_of_coco_are_found() {
 /// MediaPipe 0.10.9's own runs of the two networks say 0.545 and 0.551 of the picture; both count the helmet before her,
 /// which DeepLab does not.
 #[test]
-fn the_astronaut_is_told_from_her_background() {
+fn the_astronaut_is_segmented_from_the_background() {
     let Some(models) = Models::find() else { return };
     let Some(deeplab) = labels(&models, "deeplab", "astronaut.png") else { return };
     for (spec, wanted) in [("selfie_segmentation", 0.545), ("selfie_segmentation/landscape", 0.551)] {

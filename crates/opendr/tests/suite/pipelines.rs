@@ -1,4 +1,4 @@
-//! Learners one behind the other, with the models of the zoo.
+//! Pipelines with the models of the zoo.
 
 use opendr::data::Image;
 use opendr::learner::{AnyLearner, Entry, Outputs, Ports};
@@ -118,7 +118,7 @@ fn each_box_is_a_picture_of_its_own() {
     else {
         panic!("{outputs}")
     };
-    let inside = poses.poses.iter().flat_map(|pose| &pose.keypoints).filter(|point| point.is_found());
+    let inside = poses.poses.iter().flat_map(|pose| &pose.keypoints).filter(|point| point.is_detected());
     let in_a_box =
         |x: f32, y: f32| {
             boxes.boxes.iter().map(opendr::target::BoundingBox::corners).any(|[x0, y0, x1, y1]| {

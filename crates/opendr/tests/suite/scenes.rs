@@ -1,4 +1,4 @@
-//! Learners of whole pictures with their real weights: classes, maps of classes, grasps.
+//! Learners of whole images with real weights: classification, segmentation, grasps.
 
 use std::path::PathBuf;
 
@@ -25,7 +25,7 @@ fn of_models(models: &Models, name: &str) -> PathBuf {
 }
 
 #[test]
-fn photographs_are_told() {
+fn photographs_are_classified() {
     let Some(models) = Models::find() else { return };
     let Some(mut learner) = learner(&models, "image_classifier/mobilenet_v2") else { return };
     let cases = [
@@ -104,7 +104,7 @@ fn the_bird_lies_where_it_is() {
 }
 
 #[test]
-fn the_street_is_told() {
+fn the_street_is_segmented() {
     let Some(models) = Models::find() else { return };
     let Some(overlaps) = overlaps(&models, "deeplab/cityscapes", "cityscapes") else { return };
     let mean = overlaps.iter().map(|(_, overlap)| overlap).sum::<f64>() / overlaps.len() as f64;

@@ -1,4 +1,4 @@
-//! One object is followed with the real network.
+//! Single-object tracking with the real network.
 
 use opendr::data::{Image, Layout, PixelFormat};
 use opendr::learner::Handle;

@@ -1,4 +1,4 @@
-//! Learners of space with their real weights: cars on simulated streets, and KITTI's own.
+//! 3D detectors with real weights: cars on simulated streets, and scans of KITTI.
 
 use opendr::data::PointCloud;
 use opendr::dataset::{DatasetIterator as _, ExternalDataset};

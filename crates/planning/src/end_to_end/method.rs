@@ -1,4 +1,4 @@
-//! How it is trained.
+//! The training of end-to-end planning.
 
 use opendr_engine::Result;
 use opendr_engine::environment::{Environment, EnvironmentSpec};
@@ -8,33 +8,33 @@ use opendr_kernels::Compute;
 use opendr_rl::prior::begin_as_prior;
 use opendr_rl::{Algorithm as _, Method, Policy, Ppo, PpoConfig, RlTrainingParams, Schedule};
 
-use super::{DenseEpisodes, EndToEndPlanningRl, SternRewards};
+use super::{DenseObstacles, EndToEndPlanningRl, TrainingRewards};
 
-/// What a user may set of the training, with OpenDR's names and defaults where OpenDR has them.
+/// Parameters of the training, with OpenDR's names, and its defaults unless stated otherwise.
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct EndToEndPlanningFitParams {
-    /// Learning rate of Adam at the beginning; it falls evenly to zero.
-    /// With OpenDR's values of this and of the next two (3e-4, 1024, 64) chance moves the policy away from the way that the
-    /// drone proposes by itself.
+    /// Initial learning rate of Adam; it decreases linearly to zero.
+    /// With OpenDR's values of this and the next two parameters (3e-4, 1024, 64) noise moves the policy away from the
+    /// proposals of the planner.
     #[param(default = 1e-4, range = 0.0..=1.0, log)]
     pub lr: f32,
     /// Steps of all environments together between two updates.
     #[param(default = 8192, range = 1..=1_000_000, log)]
     pub n_steps: usize,
-    /// Steps in a minibatch.
+    /// Minibatch size in steps.
     #[param(default = 1024, range = 1..=1_000_000, log)]
     pub batch_size: usize,
-    /// Flights in embedded corridors from which the drone learns what lies behind the fronts that it sees; 0 is none, so that what it
-    /// did not see is free to it.
+    /// Flights in embedded corridors from which the map learns what is likely in cells that the camera has not observed; 0 disables it, and
+    /// unobserved cells are free.
     #[param(default = 600, range = 0..=1_000_000)]
     pub surroundings_flights: u64,
-    /// Steps of all environments before the corrections move; only the values learn until then.
+    /// Steps of all environments before the actor is trained; only the critic is trained until then.
     #[param(default = 16_384, range = 0..=1_000_000_000)]
     pub critic_warmup: u64,
-    /// What fixes everything random.
+    /// Seed of all random numbers.
     #[param(default = 0)]
     pub seed: u64,
-    /// Of any training in environments.
+    /// Parameters of every training in environments.
     #[param(
         flatten,
         total_timesteps = 300_000,
@@ -46,10 +46,10 @@ pub struct EndToEndPlanningFitParams {
     pub training: RlTrainingParams,
 }
 
-/// The logarithm of the first deviation of corrections. The proposals are good: to try much else would spoil them.
+/// Initial log standard deviation of the corrections. The proposals are good, so exploration should stay near them.
 const CORRECTION_LOG_STD: f32 = -2.0;
 
-/// PPO on what a drone remembers of its flight and proposes, with rewards that make it worth while to arrive.
+/// PPO on the memory of a flight and the proposals of the planner, with rewards that favour arrival.
 #[derive(Debug, Clone, Copy)]
 pub struct PpoInCorridors;
 
@@ -58,17 +58,17 @@ impl Method for PpoInCorridors {
     type FitParams = EndToEndPlanningFitParams;
     type Algorithm = Ppo;
 
-    fn for_environment(params: &EndToEndPlanningFitParams, _: &str) -> EndToEndPlanningFitParams {
+    fn with_preset(params: &EndToEndPlanningFitParams, _: &str) -> EndToEndPlanningFitParams {
         params.clone()
     }
 
-    fn seen(
+    fn wrap(
         _: &EndToEndPlanningFitParams,
         environment: Box<dyn Environment>,
         in_training: bool,
     ) -> Result<Box<dyn Environment>> {
         Ok(match in_training {
-            true => Box::new(SternRewards(DenseEpisodes::new(environment))),
+            true => Box::new(TrainingRewards(DenseObstacles::new(environment))),
             false => environment,
         })
     }

@@ -3,7 +3,7 @@
 use opendr_engine::environment::ResetOptions;
 use opendr_engine::{Error, Progress, Random, Result, Unit};
 use opendr_kernels::{Activation, Adam, AdamOptions, Compute, Initialisation, Network, Tape};
-use opendr_simulation::Registered as _;
+use opendr_simulation::RegisteredEnvironment as _;
 use opendr_simulation::uav_corridor::{
     Surroundings, SurroundingsSamples, UavDepthCorridor, UavDepthCorridorParams,
 };
@@ -47,7 +47,7 @@ pub fn learn_surroundings(
 fn train(samples: &SurroundingsSamples, seed: u64, compute: &Compute) -> Result<Surroundings> {
     let (inputs, outputs) = (Surroundings::FEATURES, Surroundings::OUTPUTS);
     let network = Network::dense(&[inputs, Surroundings::HIDDEN, outputs], Activation::Relu)?;
-    let mut random = Random::at([seed, 2]);
+    let mut random = Random::from_key([seed, 2]);
     let mut parameters = vec![0.0; network.parameters()];
     network.initialise(Initialisation::Uniform, &mut random, &mut parameters);
     let mut adam = Adam::new(parameters.len(), AdamOptions::default());
@@ -60,7 +60,8 @@ fn train(samples: &SurroundingsSamples, seed: u64, compute: &Compute) -> Result<
         random.shuffle(&mut order);
         for rows in order.chunks(BATCH) {
             features.clear();
-            rows.iter().for_each(|row| features.extend_from_slice(&samples.features[row * inputs..][..inputs]));
+            rows.iter()
+                .for_each(|row| features.extend_from_slice(&samples.features[row * inputs..][..inputs]));
             let logits = network.forward(compute, &parameters, &features, &mut tape);
             errors.clear();
             for (logits, row) in logits.chunks_exact(outputs).zip(rows) {
@@ -75,7 +76,8 @@ fn train(samples: &SurroundingsSamples, seed: u64, compute: &Compute) -> Result<
             step += 1.0;
         }
     }
-    Surroundings::new(parameters).map_err(|error| Error::internal("learning surroundings diverged").with_source(error))
+    Surroundings::new(parameters)
+        .map_err(|error| Error::internal("learning surroundings diverged").with_source(error))
 }
 
 #[cfg(test)]

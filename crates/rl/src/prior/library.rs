@@ -4,7 +4,9 @@ use std::sync::{Arc, PoisonError, RwLock};
 
 use opendr_engine::environment::{Controller, Space};
 use opendr_engine::{Error, Result};
-use opendr_simulation::uav_corridor::{BySight, BySurvey, PotentialField, Reactive, surveyed_space};
+use opendr_simulation::uav_corridor::{
+    CompactController, ObservationController, PotentialField, ReactiveController, compact_space,
+};
 use serde::{Deserialize, Serialize};
 
 /// A controller that can move between threads.
@@ -100,15 +102,15 @@ fn known() -> Vec<Prior> {
 fn builtin() -> [Prior; 2] {
     [
         Prior::new("corridor-reactive", 1, |space| {
-            Ok(match *space == surveyed_space()? {
-                true => Box::new(BySurvey::new(Reactive::default())),
-                false => Box::new(BySight::new(Reactive::default(), space.clone())),
+            Ok(match *space == compact_space()? {
+                true => Box::new(CompactController::new(ReactiveController::default())),
+                false => Box::new(ObservationController::new(ReactiveController::default(), space.clone())),
             })
         }),
         Prior::new("corridor-potential-field", 1, |space| {
-            Ok(match *space == surveyed_space()? {
-                true => Box::new(BySurvey::new(PotentialField::default())),
-                false => Box::new(BySight::new(PotentialField::default(), space.clone())),
+            Ok(match *space == compact_space()? {
+                true => Box::new(CompactController::new(PotentialField::default())),
+                false => Box::new(ObservationController::new(PotentialField::default(), space.clone())),
             })
         }),
     ]

@@ -80,7 +80,10 @@ impl<E: Environment> Residual<E> {
         let (len, own) = (observation.len(), self.spec.observation.len());
         let at = own - self.proposal.len();
         observation.split_at_mut_checked(at).filter(|_| len == own).ok_or_else(|| {
-            Error::invalid_input(format!("room for {len} numbers; observations of {} have {own}", self.spec.id))
+            Error::invalid_input(format!(
+                "room for {len} numbers; observations of {} have {own}",
+                self.spec.id
+            ))
         })
     }
 
@@ -144,6 +147,6 @@ impl<E: Environment> Environment for Residual<E> {
 /// As [`Algorithm::set_policy`].
 pub fn begin_as_prior<A: Algorithm + ?Sized>(algorithm: &mut A, log_std: f32) -> Result<()> {
     let mut policy = algorithm.policy().clone();
-    policy.silence(log_std);
+    policy.zero_output(log_std);
     algorithm.set_policy(&policy)
 }

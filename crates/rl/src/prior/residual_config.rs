@@ -49,7 +49,11 @@ impl ResidualConfig {
 
     /// `config` as it trains corrections: the actor waits for the values.
     pub fn ppo(&self, config: &PpoConfig) -> PpoConfig {
-        PpoConfig { actor_starts: self.critic_warmup, log_std_init: self.correction_log_std, ..config.clone() }
+        PpoConfig {
+            actor_starts: self.critic_warmup,
+            log_std_init: self.correction_log_std,
+            ..config.clone()
+        }
     }
 
     /// The same for SAC: it explores from the prior, with a small weight of the entropy at first, which would make the corrections

@@ -6,7 +6,7 @@ use opendr_kernels::Compute;
 
 use super::BoxedController;
 use super::residual::Correction;
-use crate::policy::{Acting, Policy, PolicyMemory};
+use crate::policy::{ActionMode, Policy, PolicyMemory};
 
 /// A policy that was trained in a [`Residual`](super::Residual) environment, with its prior: acts in the environment itself.
 pub struct ResidualController<P> {
@@ -26,7 +26,9 @@ pub struct ResidualController<P> {
 /// [`Residual`](super::Residual) one.
 pub(super) fn inner_spaces(policy: &Policy) -> Result<(&Space, &Space)> {
     match policy.observation() {
-        Space::Tuple(parts) if parts.len() == 2 && *policy.action() == Correction::new(&parts[1])?.space() => {
+        Space::Tuple(parts)
+            if parts.len() == 2 && *policy.action() == Correction::new(&parts[1])?.space() =>
+        {
             Ok((&parts[0], &parts[1]))
         }
         other => Err(Error::format(format!(
@@ -78,7 +80,7 @@ impl<P: AsRef<Policy>> Controller for ResidualController<P> {
         }
         seen.copy_from_slice(observation);
         self.prior.act(observation, proposal)?;
-        let acting = self.random.as_mut().map_or(Acting::Deterministic, Acting::Sampled);
+        let acting = self.random.as_mut().map_or(ActionMode::Deterministic, ActionMode::Sampled);
         let policy = self.policy.as_ref();
         policy.act(&self.compute, &self.seen, acting, &mut self.memory, &mut self.corrected_by)?;
         let proposal = &self.seen[observation.len()..];

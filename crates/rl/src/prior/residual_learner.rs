@@ -18,7 +18,7 @@ use super::residual_controller::inner_spaces;
 use super::{Prior, PriorId, Residual, ResidualConfig, ResidualController, begin_as_prior};
 use crate::learner::{Method, PolicyParams, RlTrainingParams, numbers_from_observation};
 use crate::policy::Policy;
-use crate::training::{POLICY, fit_policy};
+use crate::training::{POLICY_FILE, fit_policy};
 use crate::{Ppo, PpoConfig, Sac, SacConfig, Td3, Td3Config};
 
 /// A method that trains corrections of a prior.
@@ -79,7 +79,7 @@ impl<M: ResidualMethod> Learner for ResidualLearner<M> {
                 M::SPEC.class
             )));
         }
-        let policy = Policy::from_bytes(&model.file(POLICY)?)?;
+        let policy = Policy::from_bytes(&model.file(POLICY_FILE)?)?;
         let record = model.manifest().inputs.get(PRIOR).ok_or_else(|| {
             Error::format(format!("the container names no prior; train the policy by {}", M::SPEC.class))
         })?;
@@ -168,11 +168,11 @@ macro_rules! residual_method {
             type FitParams = $fit_params;
             type Algorithm = $algorithm;
 
-            fn for_environment(params: &$fit_params, _: &str) -> $fit_params {
+            fn with_preset(params: &$fit_params, _: &str) -> $fit_params {
                 params.clone()
             }
 
-            fn seen(
+            fn wrap(
                 params: &$fit_params,
                 environment: Box<dyn Environment>,
                 in_training: bool,

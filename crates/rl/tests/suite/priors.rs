@@ -9,15 +9,15 @@ use opendr_engine::model::Model;
 use opendr_engine::{Device, ErrorKind, Result};
 use opendr_kernels::Compute;
 use opendr_rl::prior::{
-    AlphaSchedule, BoxedController, CommandLaw, Commanded, DemonstratedSteps, Prior, Residual, ResidualConfig,
-    ResidualController, ResidualPpoFitParams, ResidualPpoLearner, Shield, ShieldedVector, begin_as_clone,
-    begin_as_prior,
+    AlphaSchedule, BoxedController, CommandLaw, Commanded, DemonstratedSteps, Prior, Residual,
+    ResidualConfig, ResidualController, ResidualPpoFitParams, ResidualPpoLearner, Shield, ShieldedVector,
+    begin_as_clone, begin_as_prior,
 };
 use opendr_rl::{
-    Acting, Algorithm, BehaviourCloningConfig, PolicyMemory, PolicyParams, Ppo, PpoConfig, Sac, SacConfig, Td3,
-    Td3Config,
+    ActionMode, Algorithm, BehaviourCloningConfig, PolicyMemory, PolicyParams, Ppo, PpoConfig, Sac,
+    SacConfig, Td3, Td3Config,
 };
-use opendr_simulation::uav_corridor::{BySurvey, Reactive, Surveyed};
+use opendr_simulation::uav_corridor::{CompactController, CompactCorridor, ReactiveController};
 use opendr_simulation::vector::{Autoreset, EnvironmentVector, VecEnvironment};
 use opendr_simulation::{RegisteredSource, make};
 
@@ -104,7 +104,9 @@ fn a_residual_policy_begins_as_its_prior() {
     let mut moving = Sac::new(&config.sac(&small_sac()), &spec).unwrap();
     begin_as_prior(&mut moving, config.correction_log_std).unwrap();
     let before = moving.policy().clone();
-    moving.train(&mut vector(|| Box::new(residual()), 1), 40, &mut |_| Ok(ControlFlow::Continue(()))).unwrap();
+    moving
+        .train(&mut vector(|| Box::new(residual()), 1), 40, &mut |_| Ok(ControlFlow::Continue(())))
+        .unwrap();
     assert!(*moving.policy() != before);
 }
 
@@ -124,7 +126,9 @@ fn corrections_are_added_within_bounds() {
     let step = both.step(&[0.75], &mut seen).unwrap();
     assert_eq!((step.reward, &seen[..3]), (by_hand.reward, &after[..]));
     assert!(both.step(&[2.5], &mut seen).is_err());
-    assert!(Residual::new(make("CartPole-v1").unwrap(), prior(), AlphaSchedule::constant(1.0).unwrap()).is_err());
+    assert!(
+        Residual::new(make("CartPole-v1").unwrap(), prior(), AlphaSchedule::constant(1.0).unwrap()).is_err()
+    );
     // A closure keeps no state that could be written: the snapshot says so instead of being wrong.
     assert_eq!(both.snapshot().unwrap_err().kind(), ErrorKind::Unsupported);
 }
@@ -132,8 +136,8 @@ fn corrections_are_added_within_bounds() {
 #[test]
 fn a_residual_corridor_goes_on_from_a_snapshot() {
     let corridor = || {
-        let prior: BoxedController = Box::new(BySurvey::new(Reactive::default()));
-        let corridor = Surveyed::new(make("UavDepthCorridor-v1").unwrap()).unwrap();
+        let prior: BoxedController = Box::new(CompactController::new(ReactiveController::default()));
+        let corridor = CompactCorridor::new(make("UavDepthCorridor-v1").unwrap()).unwrap();
         Residual::new(corridor, prior, AlphaSchedule::linear(0.5, 1.0, 40).unwrap()).unwrap()
     };
     let mut first = corridor();
@@ -191,7 +195,10 @@ fn a_residual_learner_is_saved_with_its_prior() {
     let text = std::fs::read_to_string(&manifest).unwrap();
     std::fs::write(&manifest, text.replace(name, "someone-elses-law")).unwrap();
     let error = handle().load(job.model()).unwrap_err();
-    assert!(error.kind() == ErrorKind::NotFound && error.to_string().contains("someone-elses-law"), "{error}");
+    assert!(
+        error.kind() == ErrorKind::NotFound && error.to_string().contains("someone-elses-law"),
+        "{error}"
+    );
 }
 
 #[test]
@@ -246,7 +253,7 @@ fn demonstrations_have_their_share() {
     pendulum.reset(Some(1), &ResetOptions::new(), &mut seen).unwrap();
     for _ in 0..200 {
         let (mut own, mut wanted) = ([0.0], [0.0]);
-        let acting = Acting::Deterministic;
+        let acting = ActionMode::Deterministic;
         ppo.policy().act(&Compute::single(), &seen, acting, &mut PolicyMemory::default(), &mut own).unwrap();
         law(&seen, &mut wanted).unwrap();
         errors += (own[0] - wanted[0]).abs() / 200.0;
@@ -302,7 +309,8 @@ fn executed_actions_are_learnt_from() {
     for (row, wanted) in [("replay_actions", 0.25), ("replay_rewards", 0.25), ("replay_shielded", 1.0)] {
         let files = state.files().unwrap();
         let (_, bytes) = files.iter().find(|(name, _)| *name == format!("{row}.f32")).unwrap();
-        let numbers: Vec<_> = bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
+        let numbers: Vec<_> =
+            bytes.as_chunks::<4>().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect();
         assert!(numbers.len() >= 40 && numbers.iter().all(|number| *number == wanted), "{row}: {numbers:?}");
     }
     // PPO learns nothing about actions that it did not choose, but for the entropy, which has no weight here.
@@ -314,7 +322,11 @@ fn executed_actions_are_learnt_from() {
     ppo.iterate(&mut sometimes, 1000).unwrap_or_else(|error| panic!("{error}"));
     assert!(*ppo.policy() != before && (0.2..0.8).contains(&sometimes.shielded_share()));
     let interventions = sometimes.interventions().unwrap();
-    assert!(interventions.actions.iter().zip(interventions.replaced).all(|(action, replaced)| {
-        if *replaced { *action == 0.25 } else { *action <= 0.0 }
-    }));
+    assert!(
+        interventions
+            .actions
+            .iter()
+            .zip(interventions.replaced)
+            .all(|(action, replaced)| { if *replaced { *action == 0.25 } else { *action <= 0.0 } })
+    );
 }

@@ -1,4 +1,4 @@
-//! Bars below each other, as long as their numbers.
+//! Horizontal bar charts.
 
 use std::fmt::Write as _;
 

@@ -1,55 +1,55 @@
-//! A quadrotor that is sent to positions.
+//! A quadrotor under position control.
 //!
-//! Rigid body, rotors of first order, drag in moving air; position, velocity and attitude are held by the geometric
+//! Rigid body, first-order rotors, drag in moving air; position, velocity and attitude are controlled by the geometric
 //! controller of Lee, Leok and McClamroch (Geometric tracking control of a quadrotor UAV on SE(3), 2010).
 
 use opendr_engine::environment::{Snapshot, StateReader};
 use opendr_engine::{Random, Result};
 
 type Vector = [f64; 3];
-/// Columns are the body's axes in the world.
+/// Columns are the body's axes in world coordinates.
 type Matrix = [Vector; 3];
 
-/// State and air around it. Metres, seconds, newtons; x ahead, y left, z up.
+/// State of the quadrotor and wind. Metres, seconds, newtons; x ahead, y left, z up.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Quadrotor {
     pub position: Vector,
     velocity: Vector,
-    /// World from body: w, x, y, z.
+    /// World from body, as w, x, y, z.
     attitude: [f64; 4],
-    /// About the body's axes, rad/s.
+    /// Angular velocity about the body's axes, in rad/s.
     rates: Vector,
-    /// Front left, front right, rear left, rear right.
+    /// Thrusts front left, front right, rear left, rear right.
     thrusts: [f64; 4],
-    /// What the controller has learnt of the wind: an acceleration.
+    /// Integral term of the controller against wind, as an acceleration.
     trim: Vector,
     mean_wind: Vector,
     gust: Vector,
 }
 
-/// Seconds of one step.
+/// Duration of one step, in seconds.
 pub(super) const TIME_STEP: f64 = 0.004;
 const GRAVITY: f64 = 9.81;
-/// About a Holybro X500: kilograms, kg m^2, metres.
+/// Roughly a Holybro X500: kilograms, kg m^2, metres.
 const MASS: f64 = 1.5;
 const INERTIA: Vector = [0.02, 0.02, 0.035];
 const ARM: f64 = 0.17;
-/// Torque about z for each newton of thrust.
+/// Torque about z per newton of thrust.
 const YAW_PER_THRUST: f64 = 0.016;
 const ROTOR_LAG: f64 = 0.05;
 const MAX_THRUST: f64 = 2.0 * MASS * GRAVITY / 4.0;
-/// In proportion to speed and to its square.
+/// Linear and quadratic drag coefficients.
 const DRAG: [f64; 2] = [0.3, 0.03];
 const MAX_SPEED: f64 = 1.5;
 const MAX_TILT: f64 = 0.5;
-/// Gusts: their part of the mean wind, and how long they last.
+/// Gusts as a fraction of the mean wind, and their correlation time.
 const GUSTS: f64 = 1.0 / 3.0;
 const GUST_TIME: f64 = 1.0;
-/// Where the rotors are, in arms, and the direction in which they turn the body.
+/// Positions of the rotors, in arm lengths, and the sign of their torque on the body.
 const ROTORS: [[f64; 3]; 4] = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
 
 impl Quadrotor {
-    /// Hovering, in air that moves with `mean_wind`.
+    /// Creates a hovering drone in air that moves with `mean_wind`.
     pub fn hovering(position: Vector, mean_wind: Vector) -> Self {
         Self {
             position,
@@ -63,7 +63,7 @@ impl Quadrotor {
         }
     }
 
-    /// Ahead, left and up: the body's axes in the world.
+    /// Returns the body's axes ahead, left and up in world coordinates.
     pub fn axes(&self) -> Matrix {
         let [w, x, y, z] = self.attitude;
         [
@@ -73,11 +73,11 @@ impl Quadrotor {
         ]
     }
 
-    /// Flies for [`TIME_STEP`] towards a position, with a heading given by its cosine and sine.
+    /// Simulates [`TIME_STEP`] towards a position, with a heading given by its cosine and sine.
     pub fn advance(&mut self, goal: Vector, heading: [f64; 2]) {
-        let wanted = self.wanted_thrusts(goal, heading);
-        for (thrust, wanted) in self.thrusts.iter_mut().zip(wanted) {
-            *thrust += (wanted - *thrust) * (TIME_STEP / ROTOR_LAG);
+        let commanded = self.commanded_thrusts(goal, heading);
+        for (thrust, commanded) in self.thrusts.iter_mut().zip(commanded) {
+            *thrust += (commanded - *thrust) * (TIME_STEP / ROTOR_LAG);
         }
         let axes = self.axes();
         let total: f64 = self.thrusts.iter().sum();
@@ -91,7 +91,7 @@ impl Quadrotor {
         self.turn();
     }
 
-    /// Euler's equations, and the quaternion after them.
+    /// Integrates Euler's equations and the attitude quaternion.
     fn turn(&mut self) {
         let mut torque = [0.0; 3];
         for (thrust, [x, y, spin]) in self.thrusts.iter().zip(ROTORS) {
@@ -111,7 +111,7 @@ impl Quadrotor {
         self.attitude = turned.map(|part| part / size);
     }
 
-    fn wanted_thrusts(&mut self, goal: Vector, [cosine, sine]: [f64; 2]) -> [f64; 4] {
+    fn commanded_thrusts(&mut self, goal: Vector, [cosine, sine]: [f64; 2]) -> [f64; 4] {
         let way = minus(goal, self.position, 1.0).map(|part| 1.5 * part);
         let speed = dot(way, way).sqrt();
         let way = way.map(|part| part * (MAX_SPEED / speed.max(MAX_SPEED)));
@@ -125,9 +125,9 @@ impl Quadrotor {
         let axes = self.axes();
         let up = unit(force);
         let left = unit(cross(up, [cosine, sine, 0.0]));
-        let wanted = [cross(left, up), left, up];
-        // Half of the skew part of (wanted^T axes), as a vector.
-        let error = |a: usize, b: usize| (dot(wanted[a], axes[b]) - dot(axes[a], wanted[b])) / 2.0;
+        let desired = [cross(left, up), left, up];
+        // Half of the skew part of (desired^T axes), as a vector.
+        let error = |a: usize, b: usize| (dot(desired[a], axes[b]) - dot(axes[a], desired[b])) / 2.0;
         let errors = [error(2, 1), error(0, 2), error(1, 0)];
         let gains = [[60.0, 14.0], [60.0, 14.0], [12.0, 7.0]];
         let torque: Vector = std::array::from_fn(|axis| {
@@ -141,7 +141,7 @@ impl Quadrotor {
         })
     }
 
-    /// Changes the gusts, as after `seconds`: a Gauss-Markov process, the simplest form of Dryden's spectrum.
+    /// Updates the gusts after `seconds`: a Gauss-Markov process, the simplest form of Dryden's spectrum.
     pub fn blow(&mut self, random: &mut Random, seconds: f64) {
         let deviation = GUSTS * dot(self.mean_wind, self.mean_wind).sqrt();
         let part = seconds / GUST_TIME;
@@ -169,7 +169,7 @@ impl Quadrotor {
     }
 }
 
-/// The next numbers of a snapshot.
+/// Reads the next numbers of a snapshot.
 pub(super) fn numbers<const N: usize>(state: &mut StateReader<'_>) -> Result<[f64; N]> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
@@ -194,7 +194,7 @@ fn minus(a: Vector, b: Vector, times: f64) -> Vector {
     plus(a, b, -times)
 }
 
-/// `vector` is not zero.
+/// Normalises a vector that is not zero.
 fn unit(vector: Vector) -> Vector {
     let size = dot(vector, vector).sqrt();
     vector.map(|part| part / size)
@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hovers_and_goes_where_it_is_sent() {
+    fn hovers_and_reaches_its_goal() {
         let mut drone = Quadrotor::hovering([0.0, 0.0, 2.5], [0.0; 3]);
         (0..250).for_each(|_| drone.advance([0.0, 0.0, 2.5], [1.0, 0.0]));
         assert!(drone.position[0].abs() < 1e-9 && (drone.position[2] - 2.5).abs() < 1e-9, "{drone:?}");
@@ -215,9 +215,9 @@ mod tests {
         assert!((drone.axes()[0][0] - 0.8).abs() < 0.01 && (drone.axes()[0][1] - 0.6).abs() < 0.01);
     }
 
-    /// Without rotors it falls, and its momentum of rotation in the world stays.
+    /// Without rotors it falls, and its angular momentum in the world is constant.
     #[test]
-    fn physics_hold() {
+    fn free_fall_conserves_angular_momentum() {
         let mut drone = Quadrotor::hovering([0.0; 3], [0.0; 3]);
         drone.thrusts = [0.0; 4];
         drone.rates = [3.0, 0.1, 2.0];
@@ -234,7 +234,7 @@ mod tests {
     }
 
     #[test]
-    fn wind_moves_it_and_is_held_against() {
+    fn wind_is_compensated() {
         let mut drone = Quadrotor::hovering([0.0; 3], [2.0, 4.0, 0.0]);
         let mut random = Random::new(1);
         let (mut farthest, mut last) = (0.0_f64, 0.0_f64);

@@ -34,25 +34,20 @@ impl SurroundingsSamples {
     ///
     /// # Errors
     /// Those of the corridor.
-    pub fn fly(
-        &mut self,
-        corridor: &mut UavDepthCorridor,
-        options: &ResetOptions,
-        seed: u64,
-    ) -> Result<()> {
+    pub fn fly(&mut self, corridor: &mut UavDepthCorridor, options: &ResetOptions, seed: u64) -> Result<()> {
         let space = corridor.spec().observation.clone();
         let limit = corridor.spec().max_episode_steps.unwrap_or(u32::MAX);
-        let (mut memory, mut random) = (FlightMemory::default(), Random::at([seed, 1]));
+        let (mut memory, mut random) = (FlightMemory::default(), Random::from_key([seed, 1]));
         let (mut observation, mut known) = (vec![0.0; space.len()], [0.0; FlightMemory::LEN]);
         corridor.reset(Some(seed), options, &mut observation)?;
         for _ in 0..limit {
-            memory.see(&space, &observation, &mut known)?;
+            memory.update(&space, &observation, &mut known)?;
             self.add(&mut memory, corridor, &mut random);
-            let action = memory.corrected([0.0; 2]);
+            let action = memory.corrected_action([0.0; 2]);
             if corridor.step(&action, &mut observation)?.is_over() {
                 break;
             }
-            memory.acted(action);
+            memory.record_action(action);
         }
         Ok(())
     }
@@ -76,7 +71,7 @@ impl SurroundingsSamples {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Registered as _;
+    use crate::RegisteredEnvironment as _;
     use crate::uav_corridor::UavDepthCorridorParams;
 
     #[test]

@@ -1,4 +1,4 @@
-//! Weights of others, read into a Burn module: safetensors, PyTorch checkpoints, ONNX models.
+//! Import of pretrained weights into a Burn module: safetensors, PyTorch checkpoints, ONNX models.
 //!
 //! ```no_run
 //! use opendr_training::weights::{Rules, WeightTable};

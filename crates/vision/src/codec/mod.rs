@@ -1,7 +1,7 @@
-//! Picture files: JPEG, PNG, BMP and WebP, read and written.
+//! Image files: decoding and encoding of JPEG, PNG, BMP and WebP.
 //!
-//! Files are hostile input: the size a header claims is checked before memory is taken, and every error names
-//! the path and what was found there.
+//! Files are untrusted input: the size in the header is checked before memory is allocated, and every error states
+//! the path and the detected content.
 
 mod decode;
 mod depth;

@@ -1,11 +1,11 @@
-//! The fast kernels: `u8` pictures whose pixels are 3 or 4 bytes that lie together.
+//! The fast kernels: `u8` images with pixels of 3 or 4 contiguous bytes.
 //!
 //! # Dispatch
-//! At run time, by what the processor has:
+//! At run time, by CPU features:
 //! * x86-64 with AVX2 and FMA: `kernels_x86.rs`.
 //! * Anything else: the kernel of `strided.rs`, which the compiler vectorises as far as it can.
 //!
-//! Both blend exactly to about 0.01 of a level; sums are ordered differently, so the last bits differ.
+//! Both blend to within about 0.01 of a level; the order of summation differs, and so do the last bits.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ use crate::preprocess::plan::{PackedColumns, TAP_BYTES};
 use crate::preprocess::sample::Written;
 use crate::preprocess::strided::Finish;
 
-/// Pixels that a kernel writes at once; rows are at least as long.
+/// Pixels that a kernel writes at once; rows have at least as many.
 pub(super) const BLOCK: usize = 8;
 
 /// Two source rows, beginning with the view's first column, and the weight of the second.
@@ -27,18 +27,18 @@ pub(super) struct PackedRow<'a> {
     pub(super) weight: f32,
 }
 
-/// What the packed kernels need to know of a picture; it exists only where they can run.
+/// Parameters of the packed kernels for an image; it exists only where they can run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Packed {
-    /// For each byte of four 32-bit words, one a channel, the byte to take from the 8 at a column's offset: the low
-    /// half of a word gets the first tap, the high half the second. 0x80 gives 0.
+    /// For each byte of four 32-bit words, one per channel, the byte to take from the 8 at a column's offset: the low
+    /// half of a word is the first tap, the high half the second. 0x80 yields 0.
     pub(super) shuffle: [u8; 16],
     pub(super) scale: [f32; 3],
     pub(super) bias: [f32; 3],
 }
 
 impl Packed {
-    /// `None` where the kernels cannot read `view` or the processor cannot run them.
+    /// Returns `None` where the kernels cannot read `view` or the CPU does not support them.
     pub(super) fn for_view(view: &ImageView<'_>, finish: &Finish) -> Option<Self> {
         let [row, step, channel] = view.strides();
         let reads = matches!(view.samples(), Samples::U8(_))
@@ -59,7 +59,7 @@ impl Packed {
         Some(Self { shuffle, scale: finish.scale, bias: finish.bias })
     }
 
-    /// Writes `columns` into `row`; `false` when there are too few for a kernel.
+    /// Writes `columns` into `row`; returns `false` when there are too few for a kernel.
     pub(super) fn write<W: Written>(
         &self,
         source: &PackedRow<'_>,

@@ -1,4 +1,4 @@
-//! ROS 2 over Zenoh, in the way of `rmw_zenoh_cpp`: its keys, hashes, tokens and attachments, CDR inside.
+//! ROS 2 over Zenoh, compatible with `rmw_zenoh_cpp`: its keys, hashes, tokens and attachments, with CDR payloads.
 
 mod attachment;
 mod config;
@@ -19,17 +19,17 @@ use crate::ros2::network_error;
 use listeners::Listeners;
 use node::ZenohNode;
 
-/// A session, which several nodes of a process share.
+/// A Zenoh session, shared by the nodes of a process.
 pub(super) struct Session {
     session: zenoh::Session,
     domain_id: u16,
-    /// Nodes, publishers, subscriptions and services are counted together.
+    /// Counter for the ids of nodes, publishers, subscriptions and services.
     entities: Arc<AtomicU64>,
     listeners: Arc<Listeners>,
 }
 
 impl Session {
-    /// Opens a session; it goes on looking for a router where none is there yet.
+    /// Opens a session, which keeps looking for a router if there is none yet.
     pub fn new(domain_id: u16) -> Result<Self> {
         let session =
             zenoh::open(config::config()?).wait().map_err(|error| network_error("opening Zenoh", &error))?;
@@ -37,7 +37,7 @@ impl Session {
         Ok(Self { session, domain_id, entities: Arc::default(), listeners })
     }
 
-    /// A node in the session.
+    /// Creates a node in the session.
     pub fn node(&self, names: Names) -> Result<ZenohNode> {
         let number = self.entities.fetch_add(1, Ordering::Relaxed);
         ZenohNode::new(self, number, names)

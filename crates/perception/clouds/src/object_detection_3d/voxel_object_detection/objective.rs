@@ -1,4 +1,4 @@
-//! What a training of this detector is told.
+//! Training objective of the detector.
 
 use burn::tensor::{Device, Tensor, TensorData};
 use opendr_datasets::augment::{CloudFlip, Pipeline};
@@ -17,12 +17,12 @@ use super::targets::{PillarBatch, PillarBatches};
 use super::{CHUNK, OUTPUTS, PILLAR_FILE, POINT_FILE, VoxelObjectDetection3d};
 use crate::pillars::{PillarPoint, Voxeliser};
 
-/// The training of one detector.
+/// Training objective of PointPillars.
 #[derive(Debug)]
 pub struct PillarObjective {
     /// Grid and anchors.
     pub layout: PillarLayout,
-    /// What the network answers; boxes of other classes are background.
+    /// Classes of the network; boxes of other classes are background.
     pub classes: Classes,
     /// Whether scans are mirrored at random.
     pub augment: bool,

@@ -1,4 +1,4 @@
-//! How learners of words train.
+//! Training of the keyword spotting learners.
 
 use burn::module::Module;
 use burn::tensor::{Device, Tensor};
@@ -9,37 +9,36 @@ use opendr_engine::params::Params;
 use opendr_engine::{Result, Statistics};
 use opendr_perception_common::labelled::classes_to_train;
 use opendr_perception_common::trainable_weights::network_from_base;
-use opendr_training::{TrainingParams, begin, fit_learner, open_for_training};
+use opendr_training::{TrainingParams, fit_learner, open_for_training, seeded_device};
 
 use super::objective::WordObjective;
 use super::{WordKind, WordLearner};
 
-/// What a user may set of the training of every learner of words.
+/// Training parameters common to all keyword spotting learners.
 #[derive(Debug, Clone, Params)]
 pub struct WordFitParams {
-    /// Share of values between layers that are left out at random in each training step.
+    /// Dropout probability between layers.
     #[param(default = 0.2, range = 0.0..=0.99)]
     pub dropout: f64,
-    /// Whether training sound is shifted, made louder or softer and mixed with noise, and its cepstra covered in part, all
-    /// at random.
+    /// Whether audio is shifted, changed in volume and mixed with noise, and its cepstra masked in part, at random.
     #[param(default = true)]
     pub augment: bool,
 }
 
-/// A kind of network that is trained.
+/// A network kind that trains.
 pub trait TrainableWords: WordKind + Sized {
-    /// What a user may set of its training.
+    /// Training parameters of the learner.
     type FitParams: Params;
-    /// The network as it is trained.
+    /// Trained network.
     type Network: Module;
 
-    /// What all trainings have, and what those of words have.
+    /// Returns the parameters common to all trainings, and those common to the keyword spotting learners.
     fn training(fit_params: &Self::FitParams) -> (&TrainingParams, &WordFitParams);
 
-    /// A network for `classes`, with weights as training begins with and `dropout`.
+    /// Returns a network for `classes` with initial weights and the given dropout probability.
     fn network(params: &Self::Params, classes: usize, dropout: f64, device: &Device) -> Self::Network;
 
-    /// Logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
+    /// Returns logits `[batch, classes]` of cepstra `[batch, coefficients, frames]`.
     fn forward(network: &Self::Network, cepstra: Tensor<3>) -> Tensor<2>;
 }
 
@@ -56,9 +55,9 @@ impl<K: TrainableWords> Fit for WordLearner<K> {
     ) -> Result<Statistics> {
         let (training, WordFitParams { dropout, augment }) = K::training(fit_params);
         let dataset = open_for_training::<Self>(dataset, job)?;
-        let wanted = K::words(params).output_classes_n;
-        let classes = classes_to_train(&*dataset, wanted, "output_classes_n")?;
-        let network = K::network(params, classes.len(), *dropout, &begin(job, training)?);
+        let requested = K::words(params).output_classes_n;
+        let classes = classes_to_train(&*dataset, requested, "output_classes_n")?;
+        let network = K::network(params, classes.len(), *dropout, &seeded_device(job, training)?);
         let network = network_from_base(network, base)?;
         let objective = WordObjective::<K> { params, classes, augment: *augment };
         fit_learner::<Self, _>(&objective, network, params, training, &*dataset, val_dataset, job)

@@ -1,4 +1,4 @@
-//! Values with nothing to find and everything to compute, for learners of which the zoo has no sample.
+//! Synthetic inputs for learners without a sample in the zoo.
 
 use std::f32::consts::TAU;
 
@@ -10,25 +10,26 @@ use opendr::target::{BoundingBox, BoundingBox3D, BoundingBox3DList, BoundingBoxL
 use opendr::{Error, Result, Value, ValueType};
 use serde_json::{Map, Value as Json};
 
-/// Samples a second, and seconds, of a sound.
+/// Sample rate in hertz, and duration in seconds, of audio.
 const SAMPLE_RATE: u32 = 16000;
-const SOUND_S: usize = 10;
-/// Frames of a moving skeleton, of a clip, and of boxes that move.
+const AUDIO_S: usize = 10;
+/// Frames of a skeleton sequence and of moving boxes.
 const FRAMES: usize = 32;
+/// Frames of a video clip.
 const CLIP_FRAMES: usize = 16;
-/// Boxes in a frame.
+/// Boxes per frame.
 const BOXES: usize = 25;
-/// Side of a map of values.
+/// Side of a heat map in cells.
 const MAP_SIDE: usize = 224;
-/// Rings of a cloud of points, and points in each.
+/// Rings of a point cloud, and points per ring.
 const RINGS: usize = 64;
 const RING_POINTS: usize = 1800;
 
-/// Values of a port of a model with such `inputs` in its manifest, pictures of `width` and `height`: more than one value
-/// where they belong to a stream.
+/// Returns synthetic values for a port of a model with `inputs` in its manifest and images of size `[width, height]`: several
+/// values where they form a stream.
 ///
 /// # Errors
-/// `Unsupported` for a type that nothing can be drawn of.
+/// `Unsupported` for a type without synthetic values.
 pub fn values(port: &Port, size: [usize; 2], inputs: &Map<String, Json>) -> Result<Vec<Value>> {
     let input = inputs.get(port.name);
     let number = |key: &str, otherwise: usize| {
@@ -42,10 +43,10 @@ pub fn values(port: &Port, size: [usize; 2], inputs: &Map<String, Json>) -> Resu
     };
     Ok(match port.value_type {
         ValueType::Image if port.name == "depth" => vec![depth(width, height)?.into()],
-        ValueType::Image => vec![picture(width, height)?.into()],
+        ValueType::Image => vec![image(width, height)?.into()],
         ValueType::Audio => {
             let rate = number("rate", SAMPLE_RATE as usize);
-            vec![Audio::new(wave(rate * SOUND_S, rate as f32 / 220.0), 1, rate as u32)?.into()]
+            vec![Audio::new(wave(rate * AUDIO_S, rate as f32 / 220.0), 1, rate as u32)?.into()]
         }
         ValueType::PointCloud => vec![cloud(number("channels", 4))?.into()],
         ValueType::Timeseries => {
@@ -68,21 +69,21 @@ pub fn values(port: &Port, size: [usize; 2], inputs: &Map<String, Json>) -> Resu
         other => {
             let name = other.name();
             return Err(Error::unsupported(format!(
-                "nothing is drawn for an input {name}; name a file of it"
+                "no synthetic {name} input exists; name a file of that type"
             )));
         }
     })
 }
 
-/// A tone with its third, neither silent nor too loud.
+/// Returns a sine wave with its third harmonic.
 fn wave(count: usize, period: f32) -> Vec<f32> {
     (0..count)
         .map(|at| 0.3 * (TAU * at as f32 / period).sin() + 0.1 * (TAU * at as f32 * 3.0 / period).cos())
         .collect()
 }
 
-/// Gradients and squares.
-fn picture(width: usize, height: usize) -> Result<Image> {
+/// Returns an image of gradients and squares.
+fn image(width: usize, height: usize) -> Result<Image> {
     let pixel = |at: usize| {
         let (x, y) = (at % width, at / width);
         let square = if (x / 64 + y / 64) % 2 == 0 { 200 } else { 40 };
@@ -92,14 +93,14 @@ fn picture(width: usize, height: usize) -> Result<Image> {
     Image::new(samples, width, height, PixelFormat::Rgb, Layout::Hwc)
 }
 
-/// A floor that comes near below, in millimetres.
+/// Returns a depth image of a floor, in millimetres.
 fn depth(width: usize, height: usize) -> Result<Image> {
     let samples: Vec<u16> =
         (0..width * height).map(|at| 3000 - (at / width * 2000 / height) as u16).collect();
     Image::new(Pixels::from(samples), width, height, PixelFormat::Grey, Layout::Hwc)
 }
 
-/// What a lidar of 64 beams sees on a plane 1.73 m below it, with a wall around.
+/// Returns the point cloud of a 64-beam lidar 1.73 m above a plane, with a wall at 50 m.
 fn cloud(channels: usize) -> Result<PointCloud> {
     let channels = channels.max(3);
     let mut points = Vec::with_capacity(RINGS * RING_POINTS * channels);
@@ -116,7 +117,7 @@ fn cloud(channels: usize) -> Result<PointCloud> {
     PointCloud::new(points, [RINGS * RING_POINTS, channels])
 }
 
-/// Values with many peaks, no two of one height.
+/// Returns a heat map with many peaks of different heights.
 fn map(rows: usize, columns: usize) -> Heatmap {
     let mut map = Heatmap::default();
     for (at, value) in map.scores_mut(&[rows, columns]).iter_mut().enumerate() {
@@ -126,7 +127,7 @@ fn map(rows: usize, columns: usize) -> Heatmap {
     map
 }
 
-/// Boxes that go to the right, each at its own pace.
+/// Returns boxes that move to the right, each row at its own speed.
 fn boxes(frame: usize) -> BoundingBoxList {
     let boxes = (0..BOXES).map(|at| {
         let (row, column) = (at / 5, at % 5);
@@ -136,7 +137,7 @@ fn boxes(frame: usize) -> BoundingBoxList {
     boxes.collect::<Vec<_>>().into()
 }
 
-/// Cars that drive off, each at its own pace.
+/// Returns cars that drive away, each row at its own speed.
 fn boxes_3d(frame: usize) -> BoundingBox3DList {
     let boxes = (0..BOXES).map(|at| {
         let (row, column) = (at / 5, at % 5);
@@ -166,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn values_have_the_size_that_the_model_names() {
+    fn values_have_the_size_of_the_manifest() {
         let inputs =
             json!({ "vector": { "size": [42] }, "skeleton_sequence": { "joints": 25, "channels": 3 } });
         let inputs = inputs.as_object().unwrap();
@@ -183,12 +184,12 @@ mod tests {
     }
 
     #[test]
-    fn a_depth_lies_over_its_picture() {
+    fn depth_has_the_size_of_its_image() {
         let one = |name| values(&port(name, ValueType::Image), [64, 32], &Map::new()).unwrap().remove(0);
-        let [Value::Image(picture), Value::Image(depth)] = ["image", "depth"].map(one) else {
-            panic!("no pictures");
+        let [Value::Image(image), Value::Image(depth)] = ["image", "depth"].map(one) else {
+            panic!("no images");
         };
-        assert_eq!([depth.width(), depth.height()], [picture.width(), picture.height()]);
+        assert_eq!([depth.width(), depth.height()], [image.width(), image.height()]);
         assert_eq!(depth.format(), PixelFormat::Grey);
         assert!(matches!(depth.pixels(), Pixels::U16(_)));
     }

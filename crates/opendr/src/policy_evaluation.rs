@@ -1,4 +1,4 @@
-//! How good a policy is, whatever learner it is.
+//! Evaluation of policies in environments.
 
 use std::time::Instant;
 
@@ -8,32 +8,32 @@ use opendr_engine::params::Params as _;
 use opendr_engine::{Error, Progress, Result, Unit, Value, ValueType};
 use opendr_rl::{EvaluationProtocol, EvaluationReport, evaluate_controller, observation_from_numbers};
 
-/// A learner's stream that acts in an environment, with a state of its own for each episode.
-pub struct ActingStream {
+/// A controller for an environment made from a learner's stream, whose state is reset at each episode.
+pub struct PolicyController {
     stream: Box<dyn AnyStream>,
     port: &'static str,
     spec: EnvironmentSpec,
 }
 
-impl ActingStream {
-    /// A stream of a learner of `entry` for an environment of this kind.
+impl PolicyController {
+    /// Creates the controller from a stream of a learner of `entry`, for environments of `spec`.
     ///
     /// # Errors
-    /// `Unsupported` when the learner is no policy.
+    /// `Unsupported` when the learner is not a policy.
     pub fn new(stream: Box<dyn AnyStream>, entry: &Entry, spec: &EnvironmentSpec) -> Result<Self> {
         let port = entry.ports.iter().find(|port| port.value_type == ValueType::Observation);
         let acts = entry.outputs.iter().any(|output| output.value_type == ValueType::RlTarget);
         match port {
             Some(port) if acts => Ok(Self { stream, port: port.name, spec: spec.clone() }),
             _ => Err(Error::unsupported(format!(
-                "{} is no policy: it does not act on observations",
+                "{} is not a policy: it has no observation input",
                 entry.spec.class
             ))),
         }
     }
 }
 
-impl Controller for ActingStream {
+impl Controller for PolicyController {
     fn reset(&mut self) {
         self.stream.reset();
     }
@@ -51,7 +51,7 @@ impl Controller for ActingStream {
                 Ok(())
             }
             chosen => Err(Error::invalid_input(format!(
-                "the policy gives {} numbers, but {} takes {}; evaluate it in its own environment",
+                "the policy returns {} numbers, but the action of {} has {}; evaluate the policy in its own environment",
                 chosen.map_or(0, Vec::len),
                 self.spec.id,
                 self.spec.action
@@ -60,16 +60,16 @@ impl Controller for ActingStream {
     }
 }
 
-/// The environment that a loaded policy was trained in, where its container tells.
-pub fn trained_in(learner: &dyn AnyLearner) -> Option<&str> {
+/// Returns the id of the environment in which a loaded policy was trained, if its container names one.
+pub fn training_environment(learner: &dyn AnyLearner) -> Option<&str> {
     learner.model()?.manifest().inputs.get("environment")?.as_str()
 }
 
-/// Measures what acts on episodes that begin with fixed seeds; a stop asked for ends it with the episodes that were done.
+/// Evaluates a controller on episodes with fixed seeds. A requested stop ends the evaluation with the episodes so far.
 ///
 /// # Errors
-/// Those of the environment and of what acts, with the seed; `InvalidInput` when it was stopped before the first episode ended.
-pub fn eval_in(
+/// Those of the environment and of the controller, with the seed; `InvalidInput` when stopped before the first episode ended.
+pub fn evaluate_policy(
     acting: &mut dyn Controller,
     environment: &mut dyn Environment,
     protocol: &EvaluationProtocol,
@@ -92,7 +92,7 @@ pub fn eval_in(
     }
     progress.end();
     if episodes.is_empty() {
-        return Err(Error::invalid_input("stopped before an episode ended: nothing was measured"));
+        return Err(Error::invalid_input("stopped before the first episode ended: there is no result"));
     }
     Ok(EvaluationReport::of(episodes, begun.elapsed().as_secs_f64()))
 }

@@ -1,4 +1,4 @@
-//! The boxes of one picture, class by class.
+//! Accumulation of lists of boxes, by class.
 
 use opendr_engine::Result;
 use opendr_engine::target::{BoundingBox, BoundingBoxList, Classes};
@@ -7,17 +7,18 @@ use super::accumulator::Accumulator;
 use super::matching::{Detection, Truth};
 use crate::class_key::ClassKey;
 
-/// An accumulator over lists of boxes, with or without masks.
+/// An accumulator of lists of boxes, with or without masks.
 #[derive(Debug, Clone)]
-pub(super) struct Pictures {
+pub(super) struct ListAccumulator {
     pub accumulator: Accumulator<ClassKey>,
-    /// Labels of the data set.
+    /// Class names of the data set.
     pub classes: Classes,
     pub use_classes: bool,
 }
 
-impl Pictures {
-    /// Counts a picture; `shapes` are what `overlap(detection, truth)` compares. Tells how good the detections are.
+impl ListAccumulator {
+    /// Adds an image and returns the quality of its detections, 0 to 1. `overlap(detection, truth, crowd)` compares elements
+    /// of `detected` and `annotated`.
     pub(super) fn add<S>(
         &mut self,
         at: u32,
@@ -31,13 +32,13 @@ impl Pictures {
             self.classes = truth.classes.clone();
         }
         let keys = |list: &BoundingBoxList| {
-            let key = |found: &BoundingBox| ClassKey::new(&found.name, &list.classes, &truth.classes);
+            let key = |object: &BoundingBox| ClassKey::new(&object.name, &list.classes, &truth.classes);
             list.boxes.iter().map(key).collect::<Vec<_>>()
         };
-        let (found, there) = (sorted(keys(prediction)), sorted(keys(truth)));
+        let (detected_keys, annotated_keys) = (sorted(keys(prediction)), sorted(keys(truth)));
         let mut classes: Vec<Option<&ClassKey>> = vec![None];
         if self.use_classes {
-            classes = found.iter().chain(&there).map(|(key, _)| Some(key)).collect();
+            classes = detected_keys.iter().chain(&annotated_keys).map(|(key, _)| Some(key)).collect();
             classes.sort_unstable();
             classes.dedup();
         }
@@ -49,22 +50,26 @@ impl Pictures {
                     .map(|(_, at)| *at)
                     .collect()
             };
-            let (found, there) = (of_class(&found), of_class(&there));
+            let (detected_indices, annotated_indices) = (of_class(&detected_keys), of_class(&annotated_keys));
             let some = |indices: &[usize]| indices.iter().map(|at| detections[*at]).collect::<Vec<_>>();
-            let truths: Vec<_> = there.iter().map(|at| truths[*at]).collect();
+            let truths: Vec<_> = annotated_indices.iter().map(|at| truths[*at]).collect();
             let quality = self.accumulator.add(
                 class.unwrap_or(&ClassKey::Any),
                 at,
                 &truths,
-                &some(&found),
+                &some(&detected_indices),
                 |detection, truth| {
-                    overlap(&detected[found[detection]], &annotated[there[truth]], truths[truth].crowd)
+                    overlap(
+                        &detected[detected_indices[detection]],
+                        &annotated[annotated_indices[truth]],
+                        truths[truth].crowd,
+                    )
                 },
             )?;
             qualities.extend(quality);
         }
         Ok(match qualities.len() {
-            0 => quality_of_nothing(detections),
+            0 => quality_without_objects(detections),
             count => qualities.iter().sum::<f64>() / count as f64,
         })
     }
@@ -77,13 +82,13 @@ impl Pictures {
     }
 }
 
-/// How good detections are where there is nothing to find.
-pub(super) fn quality_of_nothing(detections: &[Detection]) -> f64 {
-    let surest = detections.iter().map(|detection| detection.score).fold(0.0, f64::max);
-    1.0 - surest.min(1.0)
+/// Returns the quality of detections in an image without objects.
+pub(super) fn quality_without_objects(detections: &[Detection]) -> f64 {
+    let highest = detections.iter().map(|detection| detection.score).fold(0.0, f64::max);
+    1.0 - highest.min(1.0)
 }
 
-/// Numbers of the boxes by class, in their order within a class.
+/// Returns class and index of the boxes, sorted by class.
 fn sorted(keys: Vec<ClassKey>) -> Vec<(ClassKey, usize)> {
     let mut keys: Vec<_> = keys.into_iter().enumerate().map(|(at, key)| (key, at)).collect();
     keys.sort();

@@ -7,38 +7,38 @@ use opendr_engine::environment::{
 use opendr_engine::{Error, Result};
 
 use super::controllers::{COLUMNS, columns, spread_columns};
-use super::{CorridorController, CorridorSight, FlightMemory, RANGE};
+use super::{CorridorController, CorridorObservation, FlightMemory, RANGE};
 
 /// A corridor that shows the drone's state and the last picture in 16 columns, and whose actions are those of the corridor. It holds
 /// nothing of a map or a planner: what priors are measured in.
 ///
-/// Observations are the [`FlightMemory::SURVEY`] numbers of the state, then the smallest depth in each of 16 columns of the picture as a
+/// Observations are the [`FlightMemory::STATE`] numbers of the state, then the smallest depth in each of 16 columns of the picture as a
 /// share of its range, then the way to the target in metres.
 #[derive(Debug, Clone)]
-pub struct Surveyed<E> {
+pub struct CompactCorridor<E> {
     inner: E,
     spec: EnvironmentSpec,
     memory: FlightMemory,
-    sight: CorridorSight,
+    sight: CorridorObservation,
     observation: Vec<f32>,
 }
 
 /// Numbers of the columns and of the target.
 const VIEW: usize = COLUMNS + 3;
-const LEN: usize = FlightMemory::SURVEY + VIEW;
+const LEN: usize = FlightMemory::STATE + VIEW;
 
-/// The space of the observations of a [`Surveyed`] corridor.
+/// The space of the observations of a [`CompactCorridor`] corridor.
 ///
 /// # Errors
 /// None; a space is checked when it is made.
-pub fn surveyed_space() -> Result<Space> {
-    let (state, any) = (FlightMemory::SURVEY, f32::INFINITY);
+pub fn compact_space() -> Result<Space> {
+    let (state, any) = (FlightMemory::STATE, f32::INFINITY);
     let low = [vec![-any; state], vec![0.0; COLUMNS], vec![-any; 3]].concat();
     let high = [vec![any; state], vec![1.0; COLUMNS], vec![any; 3]].concat();
     Space::bounded(low, high, vec![LEN])
 }
 
-impl<E: Environment> Surveyed<E> {
+impl<E: Environment> CompactCorridor<E> {
     /// `inner`, one of the corridors with two numbers as action.
     ///
     /// # Errors
@@ -52,19 +52,19 @@ impl<E: Environment> Surveyed<E> {
             )));
         }
         let observation = vec![0.0; spec.observation.len()];
-        spec.observation = surveyed_space()?;
-        let (memory, sight) = (FlightMemory::default(), CorridorSight::default());
+        spec.observation = compact_space()?;
+        let (memory, sight) = (FlightMemory::default(), CorridorObservation::default());
         Ok(Self { inner, spec, memory, sight, observation })
     }
 
     fn show(&mut self, numbers: &mut [f32]) -> Result<()> {
         let length = numbers.len();
-        let (survey, view) = numbers
-            .split_first_chunk_mut::<{ FlightMemory::SURVEY }>()
-            .filter(|_| length == LEN)
-            .ok_or_else(|| Error::invalid_input(format!("room for {length} numbers; observations have {LEN}")))?;
+        let (survey, view) =
+            numbers.split_first_chunk_mut::<{ FlightMemory::STATE }>().filter(|_| length == LEN).ok_or_else(
+                || Error::invalid_input(format!("room for {length} numbers; observations have {LEN}")),
+            )?;
         let space = &self.inner.spec().observation;
-        self.memory.survey(space, &self.observation, survey)?;
+        self.memory.state(space, &self.observation, survey)?;
         self.sight.read(space, &self.observation)?;
         for (share, depth) in view.iter_mut().zip(columns(&self.sight)) {
             *share = (depth / RANGE).min(1.0);
@@ -74,7 +74,7 @@ impl<E: Environment> Surveyed<E> {
     }
 }
 
-impl<E: Environment> Environment for Surveyed<E> {
+impl<E: Environment> Environment for CompactCorridor<E> {
     fn spec(&self) -> &EnvironmentSpec {
         &self.spec
     }
@@ -89,7 +89,7 @@ impl<E: Environment> Environment for Surveyed<E> {
     fn step(&mut self, action: &[f32], observation: &mut [f32]) -> Result<Step> {
         let step = self.inner.step(action, &mut self.observation)?;
         if let Some(action) = action.as_array() {
-            self.memory.acted(*action);
+            self.memory.record_action(*action);
         }
         self.show(observation)?;
         Ok(step)
@@ -110,21 +110,21 @@ impl<E: Environment> Environment for Surveyed<E> {
     }
 }
 
-/// A controller of the corridor that reads the observations of a [`Surveyed`] one.
+/// A controller of the corridor that reads the observations of a [`CompactCorridor`] one.
 #[derive(Debug, Clone)]
-pub struct BySurvey<C> {
+pub struct CompactController<C> {
     controller: C,
-    sight: CorridorSight,
+    sight: CorridorObservation,
 }
 
-impl<C: CorridorController> BySurvey<C> {
+impl<C: CorridorController> CompactController<C> {
     /// `controller`, which decides by columns of the picture.
     pub fn new(controller: C) -> Self {
-        Self { controller, sight: CorridorSight::default() }
+        Self { controller, sight: CorridorObservation::default() }
     }
 }
 
-impl<C: CorridorController> Controller for BySurvey<C> {
+impl<C: CorridorController> Controller for CompactController<C> {
     fn reset(&mut self) {
         self.controller.begin();
     }
@@ -151,12 +151,12 @@ impl<C: CorridorController> Controller for BySurvey<C> {
     }
 
     fn save_state(&self, snapshot: &mut Snapshot) -> Result<()> {
-        self.controller.yaw_account().save(snapshot);
+        self.controller.yaw_tracker().save(snapshot);
         Ok(())
     }
 
     fn load_state(&mut self, state: &mut StateReader<'_>) -> Result<()> {
-        self.controller.set_yaw_account(super::YawAccount::load(state)?);
+        self.controller.set_yaw_tracker(super::YawTracker::load(state)?);
         Ok(())
     }
 }

@@ -1,4 +1,4 @@
-//! A network that takes one picture: fused pre-processing in front of a session.
+//! A session with one image as input and fused pre-processing.
 
 use opendr_engine::data::{Image, ImageView, Layout};
 use opendr_engine::model::Model;
@@ -6,18 +6,18 @@ use opendr_engine::{Device, Error, Pool, Result};
 use opendr_inference::{Session, TensorInfo, TensorView};
 use opendr_vision::{InputGeometry, Preprocess, Similarity};
 
-/// The file of the network in every container.
+/// File name of the network in a container.
 const FILE: &str = "model.onnx";
 
-/// A session with the pre-processing of its one input, a picture, and memory used again.
-pub struct PictureNetwork {
+/// A session with the pre-processing of its only input, an image, and reused input memory.
+pub struct ImageNetwork {
     session: Session,
     preprocess: Preprocess,
     inputs: Pool<Vec<f32>>,
 }
 
-impl PictureNetwork {
-    /// Opens the container's network; `preprocess` is made of what the network says of its input.
+impl ImageNetwork {
+    /// Opens the container's network `model.onnx`. `preprocess` returns the pre-processing for the network's input.
     pub fn open(
         model: &Model,
         device: Device,
@@ -26,7 +26,7 @@ impl PictureNetwork {
         Self::open_file(model, FILE, device, |input| Ok(preprocess(input)))
     }
 
-    /// The same for the container's network called `file`, of which there are several.
+    /// Opens the container's network `file`, for containers with several networks.
     pub fn open_file(
         model: &Model,
         file: &str,
@@ -36,7 +36,7 @@ impl PictureNetwork {
         let session = Session::open(&model.file(file)?, device)?;
         let [input] = session.inputs() else {
             return Err(Error::format(format!(
-                "{file} has {} inputs instead of one",
+                "{file} has {} inputs instead of one; export the network with one image as input",
                 session.inputs().len()
             )));
         };
@@ -44,7 +44,7 @@ impl PictureNetwork {
         Ok(Self { session, preprocess, inputs: Pool::default() })
     }
 
-    /// Returns where an output stands in what [`PictureNetwork::run`] shows.
+    /// Returns the index of an output in the slice that [`ImageNetwork::run`] passes to its sink.
     pub fn output(&self, name: &str) -> Result<usize> {
         self.session.output_index(name)
     }
@@ -54,12 +54,12 @@ impl PictureNetwork {
         self.preprocess.size()
     }
 
-    /// Returns what the network says of its outputs.
+    /// Returns names, types and shapes of the network's outputs.
     pub fn outputs(&self) -> &[TensorInfo] {
         self.session.outputs()
     }
 
-    /// Runs on a picture; `sink` sees the outputs and how to come back to the picture's pixels.
+    /// Runs the network on an image. `sink` receives the outputs and the mapping back to image pixels.
     pub fn run(
         &self,
         image: &Image,
@@ -68,7 +68,7 @@ impl PictureNetwork {
         self.run_through(&self.preprocess, image.view(), sink)
     }
 
-    /// The same with an input of `width` x `height` pixels, for networks that take several sizes.
+    /// Runs the network with an input of `width` x `height` pixels, for networks of dynamic size.
     pub fn run_sized(
         &self,
         image: ImageView<'_>,
@@ -78,7 +78,7 @@ impl PictureNetwork {
         self.run_through(&self.preprocess.with_size(width, height), image, sink)
     }
 
-    /// Runs on the part of a picture that `crop` shows.
+    /// Runs the network on the part of an image that `crop` covers.
     pub fn run_crop(
         &self,
         image: &Image,
@@ -88,7 +88,7 @@ impl PictureNetwork {
         self.run_warped(image, crop, |_| (), sink)
     }
 
-    /// Runs on the part of a picture that `crop` shows; `edit` may change the network's input before.
+    /// Runs the network on the part of an image that `crop` covers; `edit` may change the network's input before.
     pub fn run_warped(
         &self,
         image: &Image,
@@ -104,7 +104,7 @@ impl PictureNetwork {
         self.session.run(&[TensorView::new(&shape, &input[..])?], sink)
     }
 
-    /// Swaps left and right of an input.
+    /// Flips an input horizontally.
     pub fn mirror(&self, input: &mut [f32]) {
         let [_, _, _, last] = self.preprocess.shape();
         let [width, _] = self.preprocess.size();
@@ -132,14 +132,16 @@ impl PictureNetwork {
     }
 }
 
-/// Returns size and layout of an input of pictures: `[1, 3, height, width]` or `[1, height, width, 3]`.
+/// Returns the pre-processing for an image input `[1, 3, height, width]` or `[1, height, width, 3]`.
 ///
 /// # Errors
-/// `Format` when it is none, or leaves its size open.
-pub fn input_of(input: &TensorInfo) -> Result<Preprocess> {
+/// `Format` for other shapes, and for a dynamic size.
+pub fn preprocess_from_input(input: &TensorInfo) -> Result<Preprocess> {
     match input.dims[..] {
         [_, Some(3), Some(height), Some(width)] => Ok(Preprocess::new(width, height)),
         [_, Some(height), Some(width), Some(3)] => Ok(Preprocess::new(width, height).layout(Layout::Hwc)),
-        _ => Err(Error::format(format!("{input} is no picture of a fixed size"))),
+        _ => Err(Error::format(format!(
+            "{input} is not an image of a fixed size; export the network with a fixed height and width"
+        ))),
     }
 }

@@ -1,4 +1,4 @@
-//! Where the loader's threads take their work from and lay down what is ready.
+//! Work queue of the loader: threads claim batches and store finished ones.
 
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use opendr_engine::dataset::DatasetIterator;
 use opendr_engine::{Error, Random, Result, ResultExt};
 
-use crate::augment::{Augment, Others, Pipeline};
+use crate::augment::{Augment, OtherSamples, Pipeline};
 use crate::loader::{Collate, LoaderOptions, Skipped};
 
 /// The samples of an epoch, or of the rest of one, in batches.
@@ -18,14 +18,14 @@ pub(super) struct Job<'d, C> {
     pub(super) pipeline: Arc<Pipeline>,
     pub(super) collate: Arc<C>,
     pub(super) options: LoaderOptions,
-    /// The numbers of the samples.
+    /// Sample indices.
     pub(super) order: Vec<usize>,
     pub(super) epoch: u64,
-    /// Where among them the first batch begins.
+    /// Position of the first batch in `order`.
     pub(super) position: usize,
 }
 
-/// A batch with what was left out of it.
+/// A batch with its skipped samples.
 pub(super) struct Loaded<B> {
     pub(super) content: B,
     pub(super) indices: Vec<usize>,
@@ -37,12 +37,12 @@ impl<C: Collate> Job<'_, C> {
         (self.order.len() - self.position).div_ceil(self.options.batch_size)
     }
 
-    /// Where among the samples batch number `number` ends.
+    /// Returns the position in `order` at which batch `number` ends.
     pub(super) fn end(&self, number: usize) -> usize {
         (self.position + (number + 1) * self.options.batch_size).min(self.order.len())
     }
 
-    /// Makes batch number `number`; breaks off once `stopped`.
+    /// Makes batch `number`; fails once `stopped` is set.
     pub(super) fn batch(&self, number: usize, stopped: &AtomicBool) -> Result<Loaded<C::Batch>> {
         let start = self.position + number * self.options.batch_size;
         let order = &self.order[start..self.end(number)];
@@ -50,7 +50,7 @@ impl<C: Collate> Job<'_, C> {
             Loaded { content: self.collate.start(order.len()), indices: Vec::new(), skipped: Vec::new() };
         for index in order.iter().copied() {
             if stopped.load(Ordering::Relaxed) {
-                return Err(Error::internal("a batch of an epoch that was dropped"));
+                return Err(Error::internal("the epoch of the batch was dropped"));
             }
             match self.add(&mut loaded.content, index) {
                 Ok(()) => loaded.indices.push(index),
@@ -64,51 +64,51 @@ impl<C: Collate> Job<'_, C> {
     }
 
     fn add(&self, batch: &mut C::Batch, index: usize) -> Result<()> {
-        let mut random = Random::at([self.options.seed, self.epoch, index as u64]);
+        let mut random = Random::from_key([self.options.seed, self.epoch, index as u64]);
         let done = self.dataset.get(index).and_then(|mut sample| {
-            self.pipeline.apply(&mut sample, &mut random, &Others::of(&*self.dataset))?;
+            self.pipeline.apply(&mut sample, &mut random, &OtherSamples::of(&*self.dataset))?;
             self.collate.add(batch, sample)
         });
         done.context(|| format!("sample {index} ({})", self.dataset.name(index)))
     }
 }
 
-/// A batch, an error, or what a thread panicked with.
+/// A batch, an error, or the panic of a thread.
 pub(super) type Outcome<B> = Result<Result<Loaded<B>>, Box<dyn Any + Send>>;
 
-/// The job, which of its batches are under way, and those that are ready.
-pub(super) struct Desk<'d, C: Collate> {
+/// Shared state of the threads: the job, the claimed batches and the finished ones.
+pub(super) struct WorkQueue<'d, C: Collate> {
     pub(super) job: Job<'d, C>,
     stopped: AtomicBool,
     state: Mutex<State<C::Batch>>,
-    /// There is room for another batch, or the work is over.
+    /// Signals that there is room for another batch, or that the work is over.
     room: Condvar,
-    /// A batch is ready.
+    /// Signals that a batch is ready.
     ready: Condvar,
 }
 
 struct State<B> {
-    /// Batches that a thread has taken on.
+    /// Number of batches claimed by threads.
     claimed: usize,
-    /// Batches that were handed out.
+    /// Number of batches returned to the user.
     handed: usize,
     finished: BTreeMap<usize, Outcome<B>>,
 }
 
-impl<'d, C: Collate> Desk<'d, C> {
+impl<'d, C: Collate> WorkQueue<'d, C> {
     pub(super) fn new(job: Job<'d, C>) -> Self {
         let state = State { claimed: 0, handed: 0, finished: BTreeMap::new() };
         let (room, ready) = (Condvar::new(), Condvar::new());
         Self { job, stopped: AtomicBool::new(false), state: Mutex::new(state), room, ready }
     }
 
-    /// How many threads can help.
+    /// Returns the number of useful threads.
     pub(super) fn helpers(&self) -> usize {
-        let LoaderOptions { threads, ahead, .. } = self.job.options;
+        let LoaderOptions { threads, prefetch: ahead, .. } = self.job.options;
         threads.min(ahead).min(self.job.batches())
     }
 
-    /// What each thread does until all batches are taken on or the work is stopped.
+    /// Runs a worker thread until all batches are claimed or the work is stopped.
     pub(super) fn serve(&self) {
         while let Some(number) = self.claim() {
             let outcome = self.work(number);
@@ -117,12 +117,12 @@ impl<'d, C: Collate> Desk<'d, C> {
         }
     }
 
-    /// Batch number `number`, made by the thread that calls.
+    /// Makes batch `number` on the calling thread.
     pub(super) fn work(&self, number: usize) -> Outcome<C::Batch> {
         catch_unwind(AssertUnwindSafe(|| self.job.batch(number, &self.stopped)))
     }
 
-    /// Batch number `number` once a thread has made it.
+    /// Waits until batch `number` is made.
     pub(super) fn wait_for(&self, number: usize) -> Outcome<C::Batch> {
         let mut state = self.lock();
         loop {
@@ -137,7 +137,7 @@ impl<'d, C: Collate> Desk<'d, C> {
 
     pub(super) fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
-        // Under the lock: a thread between its look at the flag and its sleep would miss the call.
+        // The lock is needed: a thread between its check of the flag and its wait would miss the notification.
         drop(self.lock());
         self.room.notify_all();
     }
@@ -148,7 +148,7 @@ impl<'d, C: Collate> Desk<'d, C> {
             if self.stopped.load(Ordering::Relaxed) || state.claimed == self.job.batches() {
                 return None;
             }
-            if state.claimed < state.handed + self.job.options.ahead {
+            if state.claimed < state.handed + self.job.options.prefetch {
                 state.claimed += 1;
                 return Some(state.claimed - 1);
             }

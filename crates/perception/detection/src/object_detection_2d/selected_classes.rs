@@ -1,15 +1,15 @@
-//! Which classes a detector is trained for.
+//! Selection of the classes that a detector trains on.
 
 use opendr_engine::target::Classes;
 use opendr_engine::{Error, Result};
 
-/// The classes to train: those that are wanted, or all that the data set has.
+/// Returns the classes to train: those of `selection`, or all of the data set when it is empty.
 ///
 /// # Errors
-/// `InvalidParam` when the data set does not have one of them, or names none and none are wanted.
-pub(crate) fn wanted_classes(wanted: &[String], of_dataset: &Classes) -> Result<Classes> {
+/// `InvalidParam` when the data set does not have one of them, or names none and `selection` is empty.
+pub(crate) fn selected_classes(selection: &[String], of_dataset: &Classes) -> Result<Classes> {
     if let Some(unknown) =
-        wanted.iter().find(|name| !of_dataset.is_empty() && of_dataset.index(name).is_none())
+        selection.iter().find(|name| !of_dataset.is_empty() && of_dataset.index(name).is_none())
     {
         let names: Vec<_> = of_dataset.iter().take(10).collect();
         return Err(Error::invalid_param(format!(
@@ -19,11 +19,11 @@ pub(crate) fn wanted_classes(wanted: &[String], of_dataset: &Classes) -> Result<
             if of_dataset.len() > names.len() { ", ..." } else { "" }
         )));
     }
-    match (wanted, of_dataset.is_empty()) {
+    match (selection, of_dataset.is_empty()) {
         ([], true) => {
             Err(Error::invalid_param("the data set names no classes; give their names in `classes`"))
         }
         ([], false) => Ok(of_dataset.clone()),
-        (wanted, _) => Ok(wanted.iter().map(String::as_str).collect()),
+        (selection, _) => Ok(selection.iter().map(String::as_str).collect()),
     }
 }

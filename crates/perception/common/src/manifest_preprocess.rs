@@ -1,4 +1,4 @@
-//! Pre-processing as a model's manifest describes it: `inputs.image` with `mean`, `std` and `colour`.
+//! Pre-processing from a model's manifest: `inputs.image` with `mean`, `std` and `colour`.
 
 use opendr_engine::model::Model;
 use opendr_engine::{Error, Result};
@@ -6,28 +6,30 @@ use opendr_inference::TensorInfo;
 use opendr_vision::{ChannelOrder, Preprocess};
 use serde_json::Value;
 
-use crate::picture_network::input_of;
+use crate::image_network::preprocess_from_input;
 
-/// Returns the pre-processing for the network's `input`: its size and layout, and what the model says of the levels 0..=255, which
-/// become `(level - mean) / std`; both are `usual` where it says nothing.
+/// Returns the pre-processing for the network's `input`: its size and layout, and the normalisation `(level - mean) / std`
+/// of levels 0..=255 from the manifest. `mean` and `std` default to `usual`, `colour` to RGB.
 ///
 /// # Errors
-/// `Format` when the network takes no picture of a fixed size, or the manifest says what makes no sense.
-pub fn described_input(model: &Model, input: &TensorInfo, usual: f32) -> Result<Preprocess> {
-    let preprocess = input_of(input)?;
+/// `Format` when the network's input is not an image of a fixed size, or when the manifest's values are invalid.
+pub fn preprocess_from_manifest(model: &Model, input: &TensorInfo, usual: f32) -> Result<Preprocess> {
+    let preprocess = preprocess_from_input(input)?;
     let described = model.manifest().inputs.get("image");
-    let said = |key: &str| described.and_then(|image| image.get(key));
-    let mean = said("mean").map_or(Ok([usual; 3]), three)?;
-    let std = said("std").map_or(Ok([usual; 3]), three)?;
+    let entry = |key: &str| described.and_then(|image| image.get(key));
+    let mean = entry("mean").map_or(Ok([usual; 3]), three)?;
+    let std = entry("std").map_or(Ok([usual; 3]), three)?;
     if std.contains(&0.0) {
-        return Err(Error::format("inputs.image of the model divides by std = 0"));
+        return Err(Error::format(
+            "inputs.image of the model has std = 0; give the standard deviation of its training",
+        ));
     }
-    let order = match said("colour").and_then(Value::as_str) {
+    let order = match entry("colour").and_then(Value::as_str) {
         None | Some("rgb") => ChannelOrder::Rgb,
         Some("bgr") => ChannelOrder::Bgr,
         Some(other) => {
             return Err(Error::format(format!(
-                "inputs.image.colour of the model is {other:?}; rgb or bgr is known"
+                "inputs.image.colour of the model is {other:?}; it must be rgb or bgr"
             )));
         }
     };
@@ -39,7 +41,7 @@ fn three(numbers: &Value) -> Result<[f32; 3]> {
         numbers.as_array().and_then(|all| all.iter().map(|one| one.as_f64().map(|one| one as f32)).collect());
     let three = given.and_then(|given| <[f32; 3]>::try_from(given).ok());
     three.filter(|three| three.iter().all(|number| number.is_finite())).ok_or_else(|| {
-        Error::format(format!("inputs.image of the model has {numbers} where three numbers should be"))
+        Error::format(format!("inputs.image of the model has {numbers} instead of three numbers"))
     })
 }
 

@@ -1,65 +1,65 @@
-//! How far a training has come: what a checkpoint holds besides weights.
+//! Progress of a training: the contents of a checkpoint besides weights.
 
 use opendr_engine::params::{ParamMap, ParamValue};
 use opendr_engine::{Error, Result, Statistics};
 use serde::{Deserialize, Serialize};
 
-/// How far a training has come.
+/// Progress of a training.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Standing {
-    /// Steps of the optimiser.
+pub struct TrainingState {
+    /// Number of optimiser steps.
     pub step: u64,
-    /// The epoch under way.
+    /// Index of the current epoch.
     pub epoch: u64,
-    /// Samples of it that are done.
+    /// Number of processed samples of the current epoch.
     pub position: usize,
-    /// Sum and number of the losses of this epoch's batches.
+    /// Sum of the losses of the current epoch's batches.
     pub loss_sum: f64,
-    /// Batches that went into `loss_sum`.
+    /// Number of batches in `loss_sum`.
     pub batches: u64,
-    /// The best metric so far, and the step that had it.
+    /// Best validation so far.
     pub best: Option<Best>,
-    /// Validations since then.
+    /// Number of validations since the best one.
     pub since_best: usize,
-    /// Seconds of training, earlier runs included.
+    /// Seconds of training, including earlier runs.
     pub seconds: f64,
     /// Curves so far.
     pub statistics: Statistics,
-    /// What was trained on, and how; a resumed training must have the same.
+    /// Data set and parameters, which a resumed training must not change.
     pub setting: Setting,
 }
 
 /// The best validation so far.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Best {
-    /// Its metric.
+    /// Value of the metric.
     pub value: f64,
-    /// Its step.
+    /// Step of the validation.
     pub step: u64,
 }
 
-/// What must not change when a training is resumed.
+/// Properties that must not change when a training is resumed.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
-    /// How many samples the data set has.
+    /// Number of samples in the data set.
     pub samples: usize,
-    /// The training's parameters.
+    /// Parameters of the training.
     pub params: ParamMap,
 }
 
-/// Parameters without which a resumed training would be another one.
+/// Parameters that a resumed training must not change.
 const FIXED: [&str; 5] = ["batch_size", "accumulate", "seed", "optimizer", "ema"];
 
 impl Setting {
-    /// Checks that a training with `self` can go on as one with `now`.
+    /// Checks that a training with `self` can be resumed as one with `now`.
     ///
     /// # Errors
-    /// `InvalidParam` with the first difference that matters.
+    /// `InvalidParam` with the first relevant difference.
     pub fn check(&self, now: &Self) -> Result<()> {
         if self.samples != now.samples {
             return Err(Error::invalid_input(format!(
-                "the training that is to be resumed had a data set of {} samples, this one has {}; give the same, or train \
-                 anew into another folder",
+                "the training to resume had a data set of {} samples, this one has {}; use the same data set, or start a \
+                 new training in another folder",
                 self.samples, now.samples
             )));
         }
@@ -68,7 +68,7 @@ impl Setting {
             if was != is {
                 let shown = |value: Option<&ParamValue>| value.map_or("none".to_owned(), ToString::to_string);
                 return Err(Error::invalid_param(format!(
-                    "the training that is to be resumed had {name} = {}, not {}; give the same, or train anew into another \
+                    "the training to resume had {name} = {}, not {}; use the same value, or start a new training in another \
                      folder",
                     shown(was),
                     shown(is)

@@ -1,18 +1,20 @@
-//! Networks that take pictures of any size.
+//! ONNX models with dynamic height and width.
 
 use opendr_engine::{Error, Result};
 use opendr_onnx::proto::{Dimension, DimensionValue, TypeValue, ValueInfoProto};
 use opendr_onnx::{bytes_from_model, model_from_bytes};
 
-/// What the sides of inputs and outputs are called in the file.
+/// Names of the dynamic dimensions of inputs and outputs in the ONNX file.
 const INPUT_SIDES: [&str; 2] = ["height", "width"];
 const OUTPUT_SIDES: [&str; 2] = ["rows", "columns"];
 
-/// Leaves height and width of inputs and outputs `[1, channels, height, width]` open. The network is one of
-/// convolutions, additions and joinings, none of which knows a side.
-pub fn open_sides(onnx: &[u8]) -> Result<Vec<u8>> {
+/// Makes height and width of inputs and outputs `[1, channels, height, width]` dynamic. The network may only have operators
+/// that do not fix height and width, such as convolution, addition and concatenation.
+pub fn with_dynamic_sides(onnx: &[u8]) -> Result<Vec<u8>> {
     let mut model = model_from_bytes(onnx)?;
-    let Some(graph) = &mut model.graph else { return Err(Error::internal("a model without a graph")) };
+    let Some(graph) = &mut model.graph else {
+        return Err(Error::internal("the exported model has no graph; please report it"));
+    };
     graph.value_info.clear();
     graph.input.iter_mut().for_each(|input| open(input, INPUT_SIDES));
     graph.output.iter_mut().for_each(|output| open(output, OUTPUT_SIDES));

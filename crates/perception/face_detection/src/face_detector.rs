@@ -1,4 +1,4 @@
-//! The detector that learners of faces carry as a part: whole frames go in.
+//! The face detector that other learners contain as a part.
 
 use opendr_engine::data::Image;
 use opendr_engine::learner::Learner;
@@ -9,33 +9,33 @@ use opendr_vision::Similarity;
 
 use crate::face_detection::{Yunet, YunetParams};
 
-/// The part of the container.
+/// Name of the part of the container.
 const DETECTOR: &str = "detector";
 
 opendr_engine::choices! {
-    /// What the pictures show that a learner of faces is given.
+    /// Content of the images for a learner of faces.
     pub enum FaceInput {
-        /// A whole frame, in which the faces are found.
+        /// A whole frame, in which the faces are detected.
         Frame = "frame",
-        /// One face that was cut out already: the whole picture is it.
+        /// One cropped face: the whole image.
         Face = "face",
     }
 }
 
-/// A face detector with five points a face.
-pub struct FaceFinder {
+/// A face detector with five points per face.
+pub struct FaceDetector {
     detector: Yunet,
 }
 
-impl FaceFinder {
-    /// Opens the part `detector` of `model`; faces below the score `threshold` are none.
+impl FaceDetector {
+    /// Opens the part `detector` of `model`, with `threshold` as the minimum score of faces.
     pub fn open(model: &Model, threshold: f32, device: Device) -> Result<Self> {
         let params = YunetParams { threshold, ..YunetParams::default() };
         Ok(Self { detector: Yunet::load(&model.part(DETECTOR)?, params, device)? })
     }
 
-    /// Fills `faces` with those in `image` that have a place and points, best first.
-    pub fn find(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
+    /// Fills `faces` with the faces in `image` that have an area and five finite points, highest score first.
+    pub fn detect(&self, image: &Image, faces: &mut BoundingBoxList) -> Result<()> {
         self.detector.infer_into(&mut (), image, faces)?;
         let is_finite = |point: &[f32; 2]| point.iter().all(|value| value.is_finite());
         faces.boxes.retain(|face| {
@@ -45,8 +45,8 @@ impl FaceFinder {
     }
 }
 
-/// Returns the face that takes most of the picture.
-pub fn largest(faces: &BoundingBoxList) -> Option<&BoundingBox> {
+/// Returns the face with the largest area.
+pub fn largest_face(faces: &BoundingBoxList) -> Option<&BoundingBox> {
     faces.boxes.iter().max_by(|one, other| one.area().total_cmp(&other.area()))
 }
 
@@ -56,14 +56,15 @@ pub fn eye_angle(face: &BoundingBox) -> f32 {
     eyes.map_or(0.0, |[from, to]| (to[1] - from[1]).atan2(to[0] - from[0]))
 }
 
-/// Returns the square around a face's box, `scale` times its longer side, turned by `angle`, as a crop of `side` pixels.
+/// Returns the square around a face's box, with `scale` times its longer side, rotated by `angle`, as a crop of `side`
+/// pixels.
 pub fn square_around(face: &BoundingBox, scale: f32, angle: f32, side: usize) -> Similarity {
     let centre = [face.left + face.width / 2.0, face.top + face.height / 2.0];
     Similarity::rotated_square(centre, scale * face.width.max(face.height), angle, side)
 }
 
-/// Returns the whole of a picture as a crop of `side` pixels: its longer side fills it.
-pub fn whole_picture(image: &Image, side: usize) -> Similarity {
+/// Returns the whole image as a crop of `side` pixels; its longer side fills it.
+pub fn whole_image(image: &Image, side: usize) -> Similarity {
     let [width, height] = [image.width(), image.height()].map(|side| side as f32);
     Similarity::rotated_square([width / 2.0, height / 2.0], width.max(height), 0.0, side)
 }

@@ -1,36 +1,37 @@
-//! Work in stages, each on a thread of its own, on items that stay in their order.
+//! A pipeline of stages, each on its own thread, that keeps the order of the items.
 
 use std::panic::resume_unwind;
 use std::sync::mpsc::sync_channel;
 use std::thread;
 
-/// Items under way for each stage: one in work, one waiting for it.
+/// Items in flight per stage: one in work, one queued.
 const AHEAD: usize = 2;
 
-/// Hands each item through all `stages` in turn, `work` being what a stage does with it, and then to `each` on the calling
-/// thread. Every stage has a thread, sees the items in their order, and works on one while the stage before works on the
-/// next: the slowest stage sets the pace, not their sum. With one stage everything is done on the calling thread.
+/// Passes each item through all `stages` in turn with `work`, and then to `each` on the calling thread.
 ///
-/// At most two items for each stage are taken from `items` and not yet handed to `each`, so memory is bounded however long
-/// the sequence is and however slow `each`.
+/// Every stage has a thread and receives the items in order. It works on one item while the stage before works on the
+/// next, so the slowest stage sets the pace. A single stage runs on the calling thread.
+///
+/// At most two items per stage are taken from `items` and not yet passed to `each`. Memory is therefore bounded for
+/// long sequences and a slow `each`.
 ///
 /// # Errors
-/// The first error of `each` ends the work; items under way are dropped.
+/// Returns the first error of `each`; items in flight are dropped.
 ///
 /// # Panics
-/// Goes on with a panic of `work`.
+/// Propagates a panic of `work`.
 ///
 /// ```
 /// let mut lines = Vec::new();
 /// let items = (1..=3).map(|n| n.to_string());
-/// opendr_engine::assembly_line(&mut ["a", "b"], items, |stage, item| item.push_str(stage), |item| {
+/// opendr_engine::map_in_stages(&mut ["a", "b"], items, |stage, item| item.push_str(stage), |item| {
 ///     lines.push(item);
 ///     Ok::<_, ()>(())
 /// })
 /// .unwrap();
 /// assert_eq!(lines, ["1ab", "2ab", "3ab"]);
 /// ```
-pub fn assembly_line<S: Send, T: Send, E>(
+pub fn map_in_stages<S: Send, T: Send, E>(
     stages: &mut [S],
     items: impl IntoIterator<Item = T>,
     work: impl Fn(&mut S, &mut T) + Sync,
@@ -48,7 +49,7 @@ pub fn assembly_line<S: Send, T: Send, E>(
         let (first, mut last) = sync_channel(ahead);
         let mut threads = Vec::with_capacity(stages.len());
         for stage in stages {
-            // There is room for all that are under way, so that no stage waits for the next to take.
+            // The channel has room for all items in flight, so that no stage waits for the next one.
             let (to, next) = sync_channel(ahead);
             let from = std::mem::replace(&mut last, next);
             threads.push(scope.spawn(move || {
@@ -60,21 +61,21 @@ pub fn assembly_line<S: Send, T: Send, E>(
                 }
             }));
         }
-        let mut under_way = 0;
+        let mut in_flight = 0;
         let done = loop {
-            while under_way < ahead {
+            while in_flight < ahead {
                 let Some(item) = items.next() else { break };
                 if first.send(item).is_err() {
                     break;
                 }
-                under_way += 1;
+                in_flight += 1;
             }
-            if under_way == 0 {
+            if in_flight == 0 {
                 break Ok(());
             }
-            // Nothing comes any more when a stage has panicked.
+            // The channel closes when a stage panics.
             let Ok(item) = last.recv() else { break Ok(()) };
-            under_way -= 1;
+            in_flight -= 1;
             if let Err(error) = each(item) {
                 break Err(error);
             }
@@ -97,15 +98,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn stages_see_items_in_order_and_keep_what_is_theirs() {
+    fn stages_receive_items_in_order_and_keep_their_state() {
         let mut stages = [(0, 1), (0, 10), (0, 100)];
         let mut next = 0;
-        let work = |(seen, weight): &mut (usize, usize), (n, sum): &mut (usize, usize)| {
-            assert_eq!(seen, n);
-            *seen += 1;
+        let work = |(count, weight): &mut (usize, usize), (n, sum): &mut (usize, usize)| {
+            assert_eq!(count, n);
+            *count += 1;
             *sum += *weight;
         };
-        assembly_line(&mut stages, (0..50).map(|n| (n, 0)), work, |(n, sum)| {
+        map_in_stages(&mut stages, (0..50).map(|n| (n, 0)), work, |(n, sum)| {
             assert_eq!((n, sum), (next, 111));
             next += 1;
             Ok::<_, ()>(())
@@ -124,7 +125,7 @@ mod tests {
                 meeting.wait();
             }
         };
-        assembly_line(&mut stages, 0..2, work, |_| Ok::<_, ()>(())).unwrap();
+        map_in_stages(&mut stages, 0..2, work, |_| Ok::<_, ()>(())).unwrap();
     }
 
     #[test]
@@ -138,14 +139,14 @@ mod tests {
                 assert!(taken.load(Ordering::Relaxed) <= n + AHEAD * count);
                 if n == 5 { Err("enough") } else { Ok(()) }
             };
-            assert_eq!(assembly_line(&mut vec![(); count], items, |(), _| (), each), Err("enough"));
+            assert_eq!(map_in_stages(&mut vec![(); count], items, |(), _| (), each), Err("enough"));
         }
     }
 
     #[test]
     #[should_panic(expected = "seven")]
-    fn panic_of_a_stage_goes_on() {
+    fn panic_of_a_stage_is_propagated() {
         let work = |(): &mut (), n: &mut i32| assert!(*n != 7, "seven");
-        assembly_line(&mut [(); 2], 0.., work, |_| Ok::<_, ()>(())).ok();
+        map_in_stages(&mut [(); 2], 0.., work, |_| Ok::<_, ()>(())).ok();
     }
 }

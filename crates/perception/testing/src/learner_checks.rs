@@ -1,13 +1,13 @@
-//! Learners whose weights nobody gives away keep the promises of the interface too.
+//! Checks of the learner's contract, for learners without published weights.
 
 use std::path::Path;
 
 use opendr_engine::learner::{CheckOptions, Entry, Learner, Probe, check_learner};
 use opendr_engine::{Header, Value};
 
-/// Checks a learner with the weights of `model` as those of the registry are checked; each of `calls` has a value for each
-/// port, in order.
-pub fn check<L: Learner>(model: &Path, scratch: &Path, calls: Vec<Vec<Value>>) {
+/// Checks a learner with the weights of `model` by the checks of the registry's learners. Each of `calls` has a value for
+/// each port, in order.
+pub fn check_trained_learner<L: Learner>(model: &Path, scratch: &Path, calls: Vec<Vec<Value>>) {
     let entry = Box::leak(Box::new(Entry::of::<L>(Probe::<L>::abilities(None, None, None))));
     let stamped = |(values, stamp): (Vec<Value>, i64)| {
         let stamped = entry.ports.iter().zip(values).map(|(port, mut value)| {

@@ -1,4 +1,4 @@
-//! What a learner is measured on.
+//! Inputs on which a learner is measured.
 
 use std::path::{Path, PathBuf};
 
@@ -13,51 +13,52 @@ use opendr::{Error, Progress as _, Result, Value, ValueType, vision};
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
 
-use super::drawn;
-use crate::progress_bar::Bar;
+use super::synthetic;
+use crate::progress_bar::ProgressBar;
 use crate::{learner_flags, loading};
 
-/// Size of a picture of the zoo or of our own, pixels.
+/// Size of sample and synthetic images, in pixels.
 const WIDTH: usize = 1920;
 const HEIGHT: usize = 1080;
-/// How often a microphone hands on what it heard.
-const PIECES_A_SECOND: usize = 10;
+/// Chunks of audio per second, as from a microphone.
+const CHUNKS_PER_SECOND: usize = 10;
 
-/// What was inferred from, as the report names it.
+/// Inputs of a measurement, as serialised in the report.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Seen {
-    /// One picture, again and again.
+pub enum Workload {
+    /// One image, repeated.
     Picture { source: String, width: usize, height: usize },
-    /// A sound, from its beginning again and again: whole, or in pieces where the learner takes them.
+    /// Audio, repeated: whole, or in chunks where the learner is streaming.
     Sound { source: String, sample_rate: u32, piece_s: f64 },
-    /// Values of another type, one after the other.
+    /// Values of another type, in turn.
     Values { source: String, of: &'static str, count: usize },
-    /// What an environment showed in the course of episodes.
+    /// Observations of the environment with this id.
     Environment(String),
 }
 
-/// The values of one port.
+/// Values of one port.
 pub struct Input {
     pub port: &'static Port,
     pub values: Vec<Value>,
 }
 
-/// The values of the learner's ports, and what the first are. A port that may be left out is, unless the user named a file.
+/// Returns the values of the learner's ports and the description of the first port's. An optional port has none, unless the user
+/// named a file.
 ///
 /// # Errors
-/// What kept a file that the user named from being read, or `Unsupported` for a type that nothing can be drawn of.
+/// The error of a file that cannot be read, or `Unsupported` for a type without synthetic values.
 pub fn inputs(
     spec: &str,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
-) -> Result<(Seen, Vec<Input>)> {
+    bar: &ProgressBar,
+) -> Result<(Workload, Vec<Input>)> {
     let Some((first, further)) = entry.ports.split_first() else {
-        return Err(Error::unsupported(format!("{spec} takes nothing that it could be measured on")));
+        return Err(Error::unsupported(format!("{spec} has no input port and cannot be measured")));
     };
-    let described = described(spec, matches, bar)?;
-    let (seen, values) = first_values(first, &described, entry, matches, bar)?;
+    let described = manifest_inputs(spec, matches, bar)?;
+    let (workload, values) = first_values(first, &described, entry, matches, bar)?;
     let size = match values.first() {
         Some(Value::Image(image)) => [image.width(), image.height()],
         _ => [WIDTH, HEIGHT],
@@ -68,11 +69,11 @@ pub fn inputs(
         let values = match files.iter().find(|file| file.name() == port.name) {
             Some(file) => vec![file.value(0)?],
             None if port.optional && !port.init => continue,
-            None => drawn::values(port, size, &described)?,
+            None => synthetic::values(port, size, &described)?,
         };
         inputs.push(Input { port, values });
     }
-    Ok((seen, inputs))
+    Ok((workload, inputs))
 }
 
 fn first_values(
@@ -80,8 +81,8 @@ fn first_values(
     described: &Map<String, Json>,
     entry: &'static Entry,
     matches: &ArgMatches,
-    bar: &Bar,
-) -> Result<(Seen, Vec<Value>)> {
+    bar: &ProgressBar,
+) -> Result<(Workload, Vec<Value>)> {
     let kind = port.value_type;
     let (source, values) = match matches.get_one::<PathBuf>("input") {
         Some(path) => (path.display().to_string(), vec![open_value(kind, path)?]),
@@ -89,19 +90,19 @@ fn first_values(
             Some((source, Value::Image(image))) => {
                 (source, vec![vision::resize(&image, WIDTH, HEIGHT)?.into()])
             }
-            Some((source, Value::Audio(sound))) => {
+            Some((source, Value::Audio(audio))) => {
                 let rate = described.get(port.name).and_then(|input| input.get("rate")?.as_u64());
-                (source, vec![at_rate(sound, rate)?.into()])
+                (source, vec![at_rate(audio, rate)?.into()])
             }
             Some((source, value)) => (source, vec![value]),
-            None => ("drawn".to_owned(), drawn::values(port, [WIDTH, HEIGHT], described)?),
+            None => ("drawn".to_owned(), synthetic::values(port, [WIDTH, HEIGHT], described)?),
         },
     };
-    seen(source, values, entry)
+    workload(source, values, entry)
 }
 
-/// What the model says of its inputs.
-fn described(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Map<String, Json>> {
+/// Returns the inputs that the model's manifest describes.
+fn manifest_inputs(spec: &str, matches: &ArgMatches, bar: &ProgressBar) -> Result<Map<String, Json>> {
     let container = match matches.get_one::<PathBuf>("model") {
         Some(path) => path.clone(),
         None => loading::pretrained(spec, matches, bar)?,
@@ -109,36 +110,36 @@ fn described(spec: &str, matches: &ArgMatches, bar: &Bar) -> Result<Map<String, 
     Ok(Model::open(&container)?.manifest().inputs.clone())
 }
 
-/// A sound of one channel at the rate of the model.
-fn at_rate(sound: Audio, rate: Option<u64>) -> Result<Audio> {
+/// Returns mono audio resampled to the model's rate; audio of several channels stays unchanged.
+fn at_rate(audio: Audio, rate: Option<u64>) -> Result<Audio> {
     match rate.and_then(|rate| u32::try_from(rate).ok()) {
-        Some(rate) if rate != sound.sample_rate() && sound.channels() == 1 => {
-            Audio::new(resampled(sound.as_slice(), sound.sample_rate(), rate)?, 1, rate)
+        Some(rate) if rate != audio.sample_rate() && audio.channels() == 1 => {
+            Audio::new(resampled(audio.as_slice(), audio.sample_rate(), rate)?, 1, rate)
         }
-        _ => Ok(sound),
+        _ => Ok(audio),
     }
 }
 
-fn seen(source: String, values: Vec<Value>, entry: &'static Entry) -> Result<(Seen, Vec<Value>)> {
+fn workload(source: String, values: Vec<Value>, entry: &'static Entry) -> Result<(Workload, Vec<Value>)> {
     Ok(match values.first() {
         Some(Value::Image(image)) => {
-            (Seen::Picture { source, width: image.width(), height: image.height() }, values)
+            (Workload::Picture { source, width: image.width(), height: image.height() }, values)
         }
-        Some(Value::Audio(sound)) => {
-            let pieces = if entry.capabilities.streaming { pieces(sound)? } else { vec![sound.clone()] };
-            let piece_s = pieces.first().map_or(0.0, Audio::duration_s);
-            let sample_rate = sound.sample_rate();
-            (Seen::Sound { source, sample_rate, piece_s }, pieces.into_iter().map(Value::Audio).collect())
+        Some(Value::Audio(audio)) => {
+            let chunks = if entry.capabilities.streaming { chunks(audio)? } else { vec![audio.clone()] };
+            let piece_s = chunks.first().map_or(0.0, Audio::duration_s);
+            let sample_rate = audio.sample_rate();
+            (Workload::Sound { source, sample_rate, piece_s }, chunks.into_iter().map(Value::Audio).collect())
         }
         first => {
             let of = first.map_or("nothing", |value| value.as_value_ref().value_type().name());
-            (Seen::Values { source, of, count: values.len() }, values)
+            (Workload::Values { source, of, count: values.len() }, values)
         }
     })
 }
 
-/// The first sample of the zoo that is a `kind`; none when it cannot be got.
-fn sample(kind: ValueType, matches: &ArgMatches, bar: &Bar) -> Result<Option<(String, Value)>> {
+/// Returns the first sample of the zoo of type `kind`; `None` when none can be downloaded.
+fn sample(kind: ValueType, matches: &ArgMatches, bar: &ProgressBar) -> Result<Option<(String, Value)>> {
     let zoo = loading::zoo(matches)?;
     let is_of_kind = |name: &str| {
         Path::new(name)
@@ -152,15 +153,15 @@ fn sample(kind: ValueType, matches: &ArgMatches, bar: &Bar) -> Result<Option<(St
         let name = item.to_string();
         match zoo.get(&name, bar) {
             Ok(path) => return Ok(Some((name, open_value(kind, path)?))),
-            Err(error) => bar.note(&format!("measuring on what is drawn, since {error}")),
+            Err(error) => bar.note(&format!("measuring on synthetic data: {error}")),
         }
     }
     Ok(None)
 }
 
-/// The sound in pieces of a tenth of a second, as a microphone gives it; the rest at the end is left out.
-fn pieces(sound: &Audio) -> Result<Vec<Audio>> {
-    let length = (sound.sample_rate() as usize / PIECES_A_SECOND).max(1) * sound.channels();
-    let pieces = sound.as_slice().chunks_exact(length);
-    pieces.map(|piece| Audio::new(piece.to_vec(), sound.channels(), sound.sample_rate())).collect()
+/// Splits audio into chunks of a tenth of a second; an incomplete last chunk is dropped.
+fn chunks(audio: &Audio) -> Result<Vec<Audio>> {
+    let length = (audio.sample_rate() as usize / CHUNKS_PER_SECOND).max(1) * audio.channels();
+    let chunks = audio.as_slice().chunks_exact(length);
+    chunks.map(|chunk| Audio::new(chunk.to_vec(), audio.channels(), audio.sample_rate())).collect()
 }
