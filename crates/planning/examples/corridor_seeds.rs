@@ -17,7 +17,7 @@ use opendr_planning::end_to_end::{EndToEndPlanningFitParams, EndToEndPlanningRl,
 use opendr_rl::{
     EvaluationProtocol, PolicyParams, SuccessRate, evaluate_controller, observation_from_numbers,
 };
-use opendr_simulation::uav_corridor::{FlightMemory, FlightMemoryWrapper};
+use opendr_simulation::uav_corridor::FlightMemoryWrapper;
 use opendr_simulation::{RegisteredSource, make};
 
 const EVALUATED: [&str; 4] = [
@@ -47,8 +47,8 @@ fn main() -> Result<()> {
         if let Some(surroundings) = surroundings_of(model)? {
             println!("  the proposal with learnt surroundings, without corrections");
             for id in EVALUATED {
-                let memory = FlightMemory::default().with_surroundings(surroundings.clone());
-                let mut corridor = FlightMemoryWrapper::with_memory(make(id)?, memory)?;
+                let mut corridor =
+                    FlightMemoryWrapper::new(make(id)?)?.with_surroundings(surroundings.clone());
                 print_rate(id, success_rate(&mut NoCorrection, &mut corridor, episodes)?);
             }
             println!("  with corrections");

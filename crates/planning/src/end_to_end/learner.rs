@@ -1,6 +1,6 @@
 //! The learner of end-to-end planning.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use opendr_engine::data::Observation;
 use opendr_engine::environment::{Environment, EnvironmentSource, Space};
@@ -86,16 +86,39 @@ fn memory_with(surroundings: Option<&Arc<Surroundings>>) -> FlightMemory {
     }
 }
 
+/// Surroundings that are learnt when the first environment has proved to be a corridor.
+struct SharedSurroundings<'a> {
+    known: Mutex<Option<Option<Arc<Surroundings>>>>,
+    find: &'a (dyn Fn() -> Result<Option<Arc<Surroundings>>> + Sync),
+}
+
+impl SharedSurroundings<'_> {
+    fn get(&self) -> Result<Option<Arc<Surroundings>>> {
+        let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*known {
+            Some(known) => Ok(known.clone()),
+            None => {
+                let found = (self.find)()?;
+                *known = Some(found.clone());
+                Ok(found)
+            }
+        }
+    }
+}
+
 /// A source of corridors with the map of the flight.
 struct MemorySource<'a> {
     source: &'a dyn EnvironmentSource,
-    surroundings: Option<Arc<Surroundings>>,
+    surroundings: &'a SharedSurroundings<'a>,
 }
 
 impl EnvironmentSource for MemorySource<'_> {
     fn make(&self) -> Result<Box<dyn Environment>> {
-        let memory = memory_with(self.surroundings.as_ref());
-        Ok(Box::new(FlightMemoryWrapper::with_memory(self.source.make()?, memory)?))
+        let corridor = FlightMemoryWrapper::new(self.source.make()?)?;
+        Ok(match self.surroundings.get()? {
+            None => Box::new(corridor),
+            Some(surroundings) => Box::new(corridor.with_surroundings(surroundings)),
+        })
     }
 }
 
@@ -172,22 +195,24 @@ impl LearnerRl for EndToEndPlanningRl {
         val_env: Option<&dyn EnvironmentSource>,
         job: &FitJob<'_>,
     ) -> Result<Statistics> {
-        fit_params.check()?;
-        let surroundings = match base {
-            Some(base) => surroundings_of(base)?,
-            None if fit_params.surroundings_flights == 0 => None,
-            None => {
-                let compute = Compute::with_threads(fit_params.training.num_workers);
-                let flights = fit_params.surroundings_flights;
-                Some(Arc::new(learn_surroundings(flights, fit_params.seed, &compute, job.progress)?))
-            }
+        let compute = Compute::with_threads(fit_params.training.num_workers);
+        let surroundings = SharedSurroundings {
+            known: Mutex::new(None),
+            find: &|| match (base, fit_params.surroundings_flights) {
+                (Some(base), _) => surroundings_of(base),
+                (None, 0) => Ok(None),
+                (None, flights) => {
+                    let learnt = learn_surroundings(flights, fit_params.seed, &compute, job.progress)?;
+                    Ok(Some(Arc::new(learnt)))
+                }
+            },
         };
-        let remembered = |source| MemorySource { source, surroundings: surroundings.clone() };
+        let remembered = |source| MemorySource { source, surroundings: &surroundings };
         let (env, val_env) = (remembered(env), val_env.map(remembered));
         let val_env = val_env.as_ref().map(|source| source as &dyn EnvironmentSource);
         let statistics =
             fit_policy::<PpoInCorridors>(base, &params.to_map(), fit_params, &env, val_env, job)?;
-        if let Some(surroundings) = surroundings {
+        if let Some(surroundings) = surroundings.get()? {
             add_surroundings(&surroundings, job)?;
         }
         Ok(statistics)

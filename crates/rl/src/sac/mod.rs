@@ -217,7 +217,7 @@ impl OffPolicyAlgorithm for Sac {
         if !critic_loss.is_finite() {
             return Err(diverged("the loss of values", critic_loss.into(), timesteps));
         }
-        let actor_loss = self.learn_policy(ent_coef);
+        let actor_loss = if trains_actor { self.learn_policy(ent_coef) } else { 0.0 };
         if !actor_loss.is_finite() {
             return Err(diverged("the loss of the policy", actor_loss.into(), timesteps));
         }
