@@ -89,8 +89,8 @@ mod tests {
     #[test]
     fn it_learns_more_than_how_often() {
         let compute = Compute::single();
-        let learnt = learn_surroundings(12, 3, &compute, &Silent).unwrap();
-        assert_eq!(learnt, learn_surroundings(12, 3, &Compute::with_threads(2), &Silent).unwrap());
+        let learnt = learn_surroundings(40, 3, &compute, &Silent).unwrap();
+        assert_eq!(learnt, learn_surroundings(40, 3, &Compute::with_threads(2), &Silent).unwrap());
         let mut corridor = UavDepthCorridor::new(&UavDepthCorridorParams::default()).unwrap();
         let mut others = SurroundingsSamples::default();
         (0..6).for_each(|seed| others.fly(&mut corridor, &ResetOptions::new(), 900 + seed).unwrap());
