@@ -7,9 +7,9 @@
 //!
 //! ```
 //! use opendr_engine::environment::{Environment, ResetOptions};
-//! use opendr_planning::end_to_end::DenseEpisodes;
+//! use opendr_planning::end_to_end::DenseObstacles;
 //!
-//! let mut corridor = DenseEpisodes::new(opendr_simulation::make("UavDepthCorridor-v1")?);
+//! let mut corridor = DenseObstacles::new(opendr_simulation::make("UavDepthCorridor-v1")?);
 //! let mut observation = vec![0.0; corridor.spec().observation.len()];
 //! corridor.reset(Some(3), &ResetOptions::new(), &mut observation)?;
 //! let step = corridor.step(&[0.0, 0.0], &mut observation)?;
