@@ -79,7 +79,8 @@ impl Mover for Orbit {
     }
 }
 
-/// Goes the shortest way to the best pose, which only a simulator knows.
+/// Goes the shortest way to the best pose, which only a simulator knows, and stays there. No upper bound: views from one place
+/// count once, and a mover that looks from several good places may end more certain.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Oracle;
 
