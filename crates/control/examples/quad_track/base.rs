@@ -17,9 +17,9 @@ use crate::settings::Settings;
 
 const LAYOUT: TrackingLayout = TrackingLayout::QUAD_TRACK;
 
-/// Gains on the nominal plant, by `cargo run --release -p opendr-control --example tune_pid 300`.
-const HORIZONTAL: PidGains = PidGains { kp: 5.09, ki: 0.358, kd: 7.50, filter: 0.003, limit: 8.0 };
-const VERTICAL: PidGains = PidGains { kp: 7.18, ki: 0.422, kd: 5.10, filter: 0.028, limit: 8.0 };
+/// Gains on the nominal plant, by `cargo run --release -p opendr-control --example tune_pid 400`.
+const HORIZONTAL: PidGains = PidGains { kp: 8.344, ki: 0.384, kd: 5.199, filter: 0.00427, limit: 8.0 };
+const VERTICAL: PidGains = PidGains { kp: 15.449, ki: 0.0732, kd: 2.909, filter: 0.0399, limit: 8.0 };
 pub fn tuned_pid() -> Result<TrackingPid> {
     TrackingPid::new(LAYOUT, &[HORIZONTAL, HORIZONTAL, VERTICAL], CONTROL_PERIOD)
 }
