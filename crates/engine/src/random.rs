@@ -10,10 +10,10 @@ use crate::{Error, Result};
 /// ```
 /// use opendr_engine::Random;
 ///
-/// let mut random = Random::at([7, 0, 42]); // seed 7, epoch 0, sample 42
+/// let mut random = Random::from_key([7, 0, 42]); // seed 7, epoch 0, sample 42
 /// let side = random.uniform(0.5, 2.0);
 /// assert!((0.5..2.0).contains(&side));
-/// assert_eq!(side, Random::at([7, 0, 42]).uniform(0.5, 2.0));
+/// assert_eq!(side, Random::from_key([7, 0, 42]).uniform(0.5, 2.0));
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Random {
