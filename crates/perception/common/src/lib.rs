@@ -24,7 +24,7 @@
 //!     index,
 //! };
 //! let mut candidates = vec![candidate(1.0, 0.8, 0), candidate(0.0, 0.9, 1), candidate(50.0, 0.7, 2)];
-//! let suppression = Suppression { kind: SuppressionKind::Hard, overlap: 0.5, threshold: 0.1, most: 100 };
+//! let suppression = Suppression { kind: SuppressionKind::Hard, iou_threshold: 0.5, threshold: 0.1, max_boxes: 100 };
 //! suppression.run(&mut candidates, &mut Vec::new());
 //! let kept: Vec<u32> = candidates.iter().map(|candidate| candidate.index).collect();
 //! assert_eq!(kept, [1, 2]);
