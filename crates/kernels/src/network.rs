@@ -118,6 +118,14 @@ impl Tape {
         self.values.last().map_or(&[], |values| values)
     }
 
+    /// The input of a layer in the last [`Network::forward`].
+    ///
+    /// # Panics
+    /// Where there is no such layer, or before a pass.
+    pub fn input_of(&self, layer: usize) -> &[f32] {
+        &self.values[layer]
+    }
+
     /// Forgets all but some rows of the batch of the last [`Network::forward`], given in rising order: the way back is then
     /// only gone for them, as if they had come alone.
     ///

@@ -32,8 +32,8 @@ impl Settings {
             first_seed: 1_000_000,
             case: None,
             film: None,
-            ridge: 0.02,
-            constant: 10.0,
+            ridge: 0.01,
+            constant: 5.0,
             params,
             plant: Vec::new(),
         };

@@ -49,6 +49,7 @@ struct Buffers {
     gradients: Vec<f32>,
     /// Preconditioned gradients of the last layer.
     direction: Vec<f32>,
+    product: Vec<f32>,
     /// Commands: of now, of the base, of the conventional controller, of the delayed observation.
     adapted: Vec<f32>,
     base: Vec<f32>,
@@ -116,6 +117,7 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
             feedback: vec![0.0; axes],
             gradients: vec![0.0; count],
             direction: Vec::new(),
+            product: Vec::new(),
             adapted: vec![0.0; axes],
             base: vec![0.0; axes],
             conventional: vec![0.0; axes],
@@ -360,7 +362,7 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
     /// Moves the parameters so that the command of a delay ago would have been different by the signal.
     fn learn(&mut self) -> Result<()> {
         let Self { adapted, base, buffers, params, layout, phase, preconditioner, .. } = self;
-        let Buffers { recent, signals, gradients, direction, delayed, .. } = buffers;
+        let Buffers { recent, signals, gradients, direction, product, delayed, .. } = buffers;
         let slots = (recent.len() / layout.len) as u64;
         // The slot that this step's observation will overwrite is the oldest.
         let oldest = (phase.of_episode % slots) as usize * layout.len;
@@ -369,15 +371,15 @@ impl<P: AdaptablePolicy> OnlineAdapter<P> {
             layout.clear_errors(observation);
         }
         adapted.act(observation, delayed)?;
-        gradients.fill(0.0);
-        adapted.backward(signals, gradients)?;
         let last_only = params.last_layer_only || preconditioner.is_some();
         let range = if last_only { adapted.last_layer() } else { 0..gradients.len() };
+        gradients[range.clone()].fill(0.0);
+        adapted.backward(signals, last_only, gradients)?;
         let gradients = &gradients[range.clone()];
         let along = match preconditioner {
             None => gradients,
             Some(preconditioner) => {
-                preconditioner.apply(gradients, direction);
+                preconditioner.apply(gradients, direction, product);
                 direction
             }
         };

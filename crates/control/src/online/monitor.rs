@@ -6,13 +6,13 @@ use opendr_engine::params::Params;
 #[derive(Debug, Clone, Copy, PartialEq, Params)]
 pub struct MonitorParams {
     /// Stiffness of the position loop that the base closes.
-    #[param(default = 5.0, range = 0.0..=1e6, unit = "1/s^2")]
+    #[param(default = 8.0, range = 0.0..=1e6, unit = "1/s^2")]
     pub stiffness: f64,
     /// Damping of that loop.
-    #[param(default = 6.0, range = 0.0..=1e6, unit = "1/s")]
+    #[param(default = 5.0, range = 0.0..=1e6, unit = "1/s")]
     pub damping: f64,
     /// Time constant from a command to the acceleration.
-    #[param(default = 0.2, range = 0.0..=10.0, unit = "s")]
+    #[param(default = 0.25, range = 0.0..=10.0, unit = "s")]
     pub lag: f64,
     /// Time over which costs are averaged.
     #[param(default = 1.5, range = 0.01..=1000.0, unit = "s")]
@@ -125,7 +125,7 @@ mod tests {
 
     /// A plant of one axis with a load, flown by the base plus a push.
     fn fly(push: f64, load: f64) -> (Verdict, [f64; 2]) {
-        let params = MonitorParams { lag: 0.0, ..MonitorParams::default() };
+        let params = MonitorParams { lag: 0.0, stiffness: 5.0, damping: 6.0, ..MonitorParams::default() };
         let mut monitor = Monitor::new(params, 1, 0.01);
         let (mut position, mut speed, mut verdict) = (0.0, 0.0, Verdict::Undecided);
         for _ in 0..1000 {

@@ -10,16 +10,16 @@ use super::monitor::MonitorParams;
 #[derive(Debug, Clone, PartialEq, Params)]
 pub struct AdaptationParams {
     /// What the parameters learn from.
-    #[param(default = LearningSignal::ExpertRule)]
+    #[param(default = LearningSignal::ReferenceModel)]
     pub signal: LearningSignal,
     /// Change of the command per second and unit of the signal.
-    #[param(default = 8.0, range = 0.0..=1e4, log)]
+    #[param(default = 3.0, range = 0.0..=1e4, log)]
     pub rate: f32,
     /// Weight of the error's rate in the signal.
     #[param(default = 0.6, range = 0.0..=100.0, unit = "s")]
     pub rate_weight: f32,
     /// Rate at which the reference model follows the observed velocity.
-    #[param(default = 4.0, range = 0.01..=1000.0, unit = "1/s")]
+    #[param(default = 6.0, range = 0.01..=1000.0, unit = "1/s")]
     pub observer: f32,
     /// Magnitude at which the expert rule saturates, in units of the error.
     #[param(default = 0.3, range = 1e-6..=1e6, log)]
@@ -31,7 +31,7 @@ pub struct AdaptationParams {
     #[param(default = 0.05, range = 0.0..=10.0, unit = "s")]
     pub filter: f32,
     /// Time from a command to its effect on the error: the parameters of the command of then are changed.
-    #[param(default = 0.2, range = 0.0..=2.0, unit = "s")]
+    #[param(default = 0.3, range = 0.0..=2.0, unit = "s")]
     pub delay: f32,
     /// Share of the distance from the base that is given back each second.
     #[param(default = 0.005, range = 0.0..=100.0)]

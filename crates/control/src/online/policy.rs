@@ -23,12 +23,12 @@ pub trait AdaptablePolicy: Clone {
     /// `InvalidInput` for an observation of another space.
     fn act(&mut self, observation: &[f32], action: &mut [f32]) -> Result<()>;
 
-    /// Adds to `gradients` those of the parameters, from the gradient of the action that the last [`Self::act`] wrote. Parameters
-    /// before the last layer may be left out by policies that differentiate that layer alone.
+    /// Adds to `gradients` those of all parameters, from the gradient of the action that the last [`Self::act`] wrote; with
+    /// `last_layer_only` those outside [`Self::last_layer`] may be left as they are.
     ///
     /// # Errors
     /// `InvalidInput` where a length does not fit.
-    fn backward(&mut self, daction: &[f32], gradients: &mut [f32]) -> Result<()>;
+    fn backward(&mut self, daction: &[f32], last_layer_only: bool, gradients: &mut [f32]) -> Result<()>;
 }
 
 /// A policy of `opendr-rl` whose actions are numbers, with the memory in which it acts.
@@ -76,7 +76,10 @@ impl AdaptablePolicy for NeuralPolicy {
         self.policy.act(&self.compute, observation, Acting::Deterministic, &mut self.memory, action)
     }
 
-    fn backward(&mut self, daction: &[f32], gradients: &mut [f32]) -> Result<()> {
-        self.policy.action_gradient(&self.compute, daction, &mut self.memory, gradients)
+    fn backward(&mut self, daction: &[f32], last_layer_only: bool, gradients: &mut [f32]) -> Result<()> {
+        match last_layer_only {
+            true => self.policy.last_layer_gradient(daction, &mut self.memory, gradients),
+            false => self.policy.action_gradient(&self.compute, daction, &mut self.memory, gradients),
+        }
     }
 }

@@ -59,7 +59,7 @@ impl Preconditioner {
             }
             policy.act(&observation, &mut action)?;
             gradients.fill(0.0);
-            policy.backward(&unit, &mut gradients)?;
+            policy.backward(&unit, true, &mut gradients)?;
             let inputs = || gradients[range.clone()].iter().step_by(axes).map(|input| f64::from(*input));
             for (own, one) in covariance.chunks_exact_mut(size).zip(inputs()) {
                 own.iter_mut().zip(inputs()).for_each(|(sum, other)| *sum += share * one * other);
@@ -82,18 +82,56 @@ impl Preconditioner {
     }
 
     /// Writes the inverse times `gradients` of a last layer, `[size, axes]`, into `direction`.
-    pub(super) fn apply(&self, gradients: &[f32], direction: &mut [f32]) {
+    ///
+    /// The gradients of one observation are the outer product of the layer's inputs and the gradients of its outputs, which stand in
+    /// the row of the bias; so one product with a vector suffices.
+    pub(super) fn apply(&self, gradients: &[f32], direction: &mut [f32], product: &mut Vec<f32>) {
         let axes = gradients.len() / self.size;
-        direction.fill(0.0);
-        for (to, weights) in direction.chunks_exact_mut(axes).zip(self.inverse.chunks_exact(self.size)) {
-            for (weight, from) in weights.iter().zip(gradients.chunks_exact(axes)) {
-                to.iter_mut().zip(from).for_each(|(to, from)| *to += weight * from);
-            }
+        let outputs = &gradients[gradients.len() - axes..];
+        let larger = |best: usize, at: usize| if outputs[at].abs() > outputs[best].abs() { at } else { best };
+        let axis = (1..axes).fold(0, larger);
+        product.clear();
+        product.resize(self.size, 0.0);
+        if outputs[axis] == 0.0 {
+            return direction.fill(0.0);
+        }
+        for (row, weights) in self.inverse.chunks_exact(self.size).enumerate() {
+            let input = gradients[row * axes + axis] / outputs[axis];
+            product.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += input * weight);
+        }
+        for (to, part) in direction.chunks_exact_mut(axes).zip(&*product) {
+            to.iter_mut().zip(outputs).for_each(|(to, output)| *to = part * output);
         }
     }
 
     /// Whether it belongs to a last layer of so many parameters for so many axes.
     pub(super) fn fits(&self, parameters: usize, axes: usize) -> bool {
         self.size * axes == parameters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The short way by the outer product is the product of the matrices.
+    #[test]
+    fn the_direction_is_the_matrix_times_the_gradients() {
+        let inverse = vec![2.0, 0.5, -0.1, 0.5, 1.0, 0.3, -0.1, 0.3, 4.0];
+        let preconditioner = Preconditioner { size: 3, inverse: inverse.clone() };
+        let (inputs, outputs) = ([0.7f32, -0.4, 1.0], [0.2f32, -3.0]);
+        let gradients: Vec<f32> =
+            inputs.iter().flat_map(|input| outputs.map(|output| input * output)).collect();
+        let (mut direction, mut product) = (vec![9.0; 6], Vec::new());
+        preconditioner.apply(&gradients, &mut direction, &mut product);
+        for row in 0..3 {
+            for axis in 0..2 {
+                let expected: f32 = (0..3).map(|at| inverse[3 * row + at] * gradients[2 * at + axis]).sum();
+                assert!((direction[2 * row + axis] - expected).abs() < 1e-5);
+            }
+        }
+        preconditioner.apply(&[0.0; 6], &mut direction, &mut product);
+        assert_eq!(direction, [0.0; 6]);
+        assert!(preconditioner.fits(6, 2) && !preconditioner.fits(6, 3));
     }
 }

@@ -1,7 +1,8 @@
 //! Online adaptation on `QuadTrack-v1`, around a network that was not trained: its adapter keeps the limits all the same.
 
 use opendr_control::online::{
-    AdaptablePolicy, AdaptationParams, EventKind, FreezeReason, LearningSignal, NeuralPolicy, OnlineAdapter,
+    AdaptablePolicy, AdaptationParams, EventKind, FreezeReason, LearningSignal, MonitorParams, NeuralPolicy,
+    OnlineAdapter,
 };
 use opendr_control::{PidGains, TrackingLayout, TrackingPid};
 use opendr_engine::environment::{Controller, Environment as _, ResetOptions};
@@ -44,14 +45,15 @@ impl AdaptablePolicy for Trimmed {
         Ok(())
     }
 
-    fn backward(&mut self, daction: &[f32], gradients: &mut [f32]) -> Result<()> {
+    fn backward(&mut self, daction: &[f32], _: bool, gradients: &mut [f32]) -> Result<()> {
         gradients.iter_mut().zip(daction).for_each(|(gradient, own)| *gradient += own);
         Ok(())
     }
 }
 
 fn params() -> AdaptationParams {
-    AdaptationParams { rate: 2.0, signal: LearningSignal::ExpertRule, ..AdaptationParams::default() }
+    let monitor = MonitorParams { stiffness: 5.0, damping: 5.0, ..MonitorParams::default() };
+    AdaptationParams { monitor, rate: 2.0, signal: LearningSignal::ExpertRule, ..AdaptationParams::default() }
 }
 
 fn adapter(params: AdaptationParams) -> (OnlineAdapter<Trimmed>, QuadTrack) {

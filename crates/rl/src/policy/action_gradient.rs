@@ -26,6 +26,43 @@ impl Policy {
         memory: &mut PolicyMemory,
         gradients: &mut [f32],
     ) -> Result<()> {
+        self.with_output_gradient(daction, memory, gradients, |doutputs, memory, gradients| {
+            self.backward(compute, doutputs, memory, gradients);
+        })
+    }
+
+    /// The same for the parameters of [`Self::last_layer`] alone; the others of `gradients` stay as they are. It costs a fraction.
+    ///
+    /// # Errors
+    /// As [`Self::action_gradient`].
+    pub fn last_layer_gradient(
+        &self,
+        daction: &[f32],
+        memory: &mut PolicyMemory,
+        gradients: &mut [f32],
+    ) -> Result<()> {
+        let width = self.head.outputs();
+        self.with_output_gradient(daction, memory, gradients, |doutputs, memory, gradients| {
+            let inputs = memory.trunk.input_of(self.trunk.network().layers().len() - 1);
+            let own = &mut gradients[self.last_layer()];
+            let size = own.len() / width - 1;
+            for (inputs, doutputs) in inputs.chunks_exact(size).zip(doutputs.chunks_exact(width)) {
+                let inputs = inputs.iter().chain([&1.0]);
+                for (own, input) in own.chunks_exact_mut(width).zip(inputs) {
+                    own.iter_mut().zip(doutputs).for_each(|(own, doutput)| *own += input * doutput);
+                }
+            }
+        })
+    }
+
+    /// Turns gradients of actions into those of the network's outputs, and calls `add` with them.
+    fn with_output_gradient(
+        &self,
+        daction: &[f32],
+        memory: &mut PolicyMemory,
+        gradients: &mut [f32],
+        add: impl FnOnce(&[f32], &mut PolicyMemory, &mut [f32]),
+    ) -> Result<()> {
         self.config.check_no_memory("adaptation")?;
         let axes = self.head.action_len();
         let outputs = memory.trunk.output().len();
@@ -73,7 +110,7 @@ impl Policy {
             Head::Categorical { .. } | Head::Binary(_) | Head::Greedy { .. } => false,
         };
         if known {
-            self.backward(compute, &doutputs, memory, gradients);
+            add(&doutputs, memory, gradients);
         }
         memory.doutputs = doutputs;
         match known {
@@ -126,6 +163,11 @@ mod tests {
                 assert!((moved[0] - gradients[at]).abs() < 3e-3, "{at}: {} {}", moved[0], gradients[at]);
             }
             let last = policy.last_layer();
+            let mut own = vec![0.0; gradients.len()];
+            policy.last_layer_gradient(&weights, &mut tape, &mut own).unwrap();
+            for (own, whole) in own[last.clone()].iter().zip(&gradients[last.clone()]) {
+                assert!((own - whole).abs() < 1e-5, "{own} {whole}");
+            }
             assert!(last.end <= gradients.len() && last.len() == 8 * policy.head().outputs());
         }
     }
